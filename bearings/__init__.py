@@ -1,0 +1,1 @@
+"""Touchdown bearings and what stands beside them: magnetic bearing, housing. Physics only."""

@@ -1,0 +1,147 @@
+"""The ball set of a bearing: geometry, material, and what follows from them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from bearings.stiffness import in_series, race_contact_stiffness
+from modelkit.variables import integer, real
+
+MOST_BALLS = 32  # room in the state vector
+
+
+@dataclass(frozen=True)
+class BallSet:
+    """Balls and races. Defaults: SKF 6004 of the source's Table 1."""
+
+    count: int = integer(9, "number of balls", minimum=3, maximum=MOST_BALLS)
+    diameter: float = real(6.4e-3, "m", "ball diameter", above=0.0)
+    pitch_diameter: float = real(31e-3, "m", "pitch diameter", above=0.0)
+    play: float = real(5e-6, "m", "radial play between balls and races; negative: preload")
+    conformity: float = real(1.04, "1", "groove radius over ball radius", above=1.0, maximum=2.0)
+    modulus: float = real(207e9, "Pa", "modulus of elasticity of balls and rings", above=0.0)
+    poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
+    density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
+    first_angle: float = real(-math.pi / 2, "rad", "attitude angle of the first ball at the start")
+    damping: float = real(
+        0.0, "N.s/m2", "damping of the race contacts, proportional to indentation (2.38)", minimum=0.0
+    )
+
+    @property
+    def ball_radius(self) -> float:
+        """m"""
+        return self.diameter / 2.0
+
+    @property
+    def pitch_radius(self) -> float:
+        """m"""
+        return self.pitch_diameter / 2.0
+
+    @property
+    def inner_radius(self) -> float:
+        """Radius of the inner race where the balls run (m)."""
+        return self.pitch_radius - self.ball_radius
+
+    @property
+    def outer_radius(self) -> float:
+        """Radius of the outer race where the balls run (m)."""
+        return self.pitch_radius + self.ball_radius
+
+    @property
+    def ball_mass(self) -> float:
+        """kg"""
+        return self.density * math.pi / 6.0 * self.diameter**3
+
+    @property
+    def ball_inertia(self) -> float:
+        """Of a solid sphere about its centre (kg m2)."""
+        return 0.4 * self.ball_mass * self.ball_radius**2
+
+    @property
+    def touch_angle(self) -> float:
+        """Angle at the bearing's centre between neighbours that just touch (rad)."""
+        return 2.0 * math.asin(min(1.0, self.ball_radius / self.pitch_radius))
+
+    def inner_stiffness(self) -> float:
+        """Ball on inner race (2.45), N/m^1.5."""
+        return race_contact_stiffness(
+            self.diameter, self.inner_radius, self.conformity, self.modulus, self.poisson
+        )
+
+    def outer_stiffness(self) -> float:
+        """Ball on outer race (2.45), N/m^1.5."""
+        return race_contact_stiffness(
+            self.diameter, -self.outer_radius, self.conformity, self.modulus, self.poisson
+        )
+
+    def series_stiffness(self) -> float:
+        """Inner ring over ball to outer ring (2.5), N/m^1.5."""
+        return in_series(self.inner_stiffness(), self.outer_stiffness())
+
+    def angles(self) -> list[float]:
+        """Attitude angles of evenly spaced balls (rad)."""
+        return [self.first_angle + 2.0 * math.pi * i / self.count for i in range(self.count)]
+
+    def resting_place(self, weight: float) -> tuple[float, float]:
+        """Where a ring of `weight` (N, downwards) rests on evenly spaced balls, from the centre (m).
+
+        With a ball exactly below it is held sideways by nothing within the play, and rests in the middle.
+        """
+        angles = np.array(self.angles())
+        nx, ny = np.cos(angles), np.sin(angles)
+        stiffness = self.series_stiffness()
+        sunk = (weight / stiffness) ** (1.0 / 1.5)
+        scale = max(abs(self.play), sunk, 1e-9)
+
+        def imbalance(place: np.ndarray) -> np.ndarray:
+            indentation = np.maximum((place[0] * nx + place[1] * ny) * scale - self.play, 0.0)
+            force = stiffness * indentation**1.5
+            return np.array([np.sum(force * nx), np.sum(force * ny) + weight]) / max(weight, 1e-12)
+
+        lowest = max(float(np.max(-ny)), 0.5)
+        guess = [0.0, -(max(self.play, 0.0) / lowest + sunk) / scale]
+        found = least_squares(imbalance, guess, xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        return float(found.x[0] * scale), float(found.x[1] * scale)
+
+    def problem(self) -> str | None:
+        """Why these balls cannot be put together, or None."""
+        if self.diameter >= self.pitch_diameter:
+            return (
+                f"balls.diameter = {self.diameter:g} m does not fit "
+                f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be smaller"
+            )
+        if self.count * self.touch_angle > 2.0 * math.pi:
+            needed = self.diameter / math.sin(math.pi / self.count)
+            return (
+                f"balls.count = {self.count} balls of {self.diameter:g} m do not fit "
+                f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"
+            )
+        if -self.play >= self.diameter:
+            return f"balls.play = {self.play:g} m presses the balls flat; it must be above {-self.diameter:g} m"
+        return None
+
+
+@dataclass(frozen=True)
+class BallReport:
+    """The balls as a whole."""
+
+    loaded: int = integer(0, "balls pressed by both rings now", local=True)
+    force: float = real(0.0, "N", "largest ball force now", local=True)
+    indentation: float = real(0.0, "m", "largest approach of the rings at a ball now", local=True)
+    peak_force: float = real(0.0, "N", "largest ball force since the start", local=True)
+    peak_indentation: float = real(
+        0.0, "m", "largest approach of the rings at a ball since the start", local=True
+    )
+
+
+@dataclass(frozen=True)
+class RaceStiffness:
+    """Contact stiffness that follows from the geometry (2.43-2.46)."""
+
+    inner: float = real(0.0, "N/m^n", "ball on inner race, n = 1.5", constant=True)
+    outer: float = real(0.0, "N/m^n", "ball on outer race, n = 1.5", constant=True)
+    series: float = real(0.0, "N/m^n", "inner to outer ring through a ball, n = 1.5", constant=True)

@@ -1,0 +1,137 @@
+"""Plain touchdown bearing: a bushing fixed in its housing, with nothing that rolls.
+
+The simplest thing a journal can land in. It serves as a bearing of its own (planetary whirl, dry
+friction), and as the check of the contact law and of the coupling against closed forms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearings import seat
+from bearings.contact import ContactLaw, elastic_energy
+from bearings.friction import FrictionLaw, prepared
+from bearings.journal_contact import ContactMemory, ContactReport, touch, watch_contact
+from modelkit.kernel import kernel
+from modelkit.model import Model
+from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from modelkit.variables import group, real
+
+LOSS = seat.INSIDE
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Defaults: the disk of section 4.3 in a bronze bushing."""
+
+    clearance: float = real(0.3e-3, "m", "radial clearance of the journal in the bore", above=0.0)
+    journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
+    interface: Interface = group(Interface)
+    contact: ContactLaw = group(ContactLaw, damping=1e7)
+    friction: FrictionLaw = group(FrictionLaw, static=0.27, dynamic=0.18)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Loads, and the contact."""
+
+    journal: SeatReaction = group(SeatReaction)
+    housing: MountReaction = group(MountReaction)
+    contact: ContactReport = group(ContactReport)
+    energy: Energy = group(Energy)
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What parameters fix."""
+
+    friction: FrictionLaw = group(FrictionLaw)
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Memory between evaluations and steps."""
+
+    seat: seat.SeatMemory = group(seat.SeatMemory)
+    contact: ContactMemory = group(ContactMemory)
+    normal: float = real(0.0, "N", "normal force at the last evaluation")
+    indentation: float = real(0.0, "m", "indentation at the last evaluation")
+    rate: float = real(0.0, "m/s", "its rate")
+
+
+@kernel
+def react(t, y, dy, m):
+    """Load on journal and housing; inside there is only the heat."""
+    p, s = m.p, m.s
+    bore = seat.housing_motion(y)
+    j = touch(seat.journal_motion(y), bore, p.journal_radius, p.clearance, p.contact, m.d.friction)
+    s.normal, s.indentation, s.rate = j.normal, j.indentation, j.rate
+    dy[LOSS] = j.loss
+    return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
+
+
+@kernel
+def rhs(t, y, dy, m):
+    """Everything the bearing integrates within a macro step."""
+    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+
+
+@kernel
+def observe(t, y, m):
+    """Peaks and the first contact, after each accepted micro-step."""
+    s = m.s
+    touched = (s.normal, s.indentation, s.rate)
+    watch_contact(m.time + t, seat.journal_motion(y), touched, m.o.contact, s.contact)
+
+
+@kernel
+def report(y, m):
+    """Outputs wanted once per macro step."""
+    c, s = m.o.contact, m.s
+    c.force, c.indentation = s.normal, s.indentation
+    c.sliding = y[seat.JW] * m.p.journal_radius
+    m.o.energy.potential = elastic_energy(s.indentation, m.p.contact)
+    m.o.energy.dissipated = y[LOSS]
+
+
+@kernel
+def start(memory):
+    """Nothing inside."""
+    m = memory[0]
+    seat.take_inputs(m.y, m)
+
+
+@kernel
+def advance(memory, work, time, step):
+    """One macro step."""
+    return seat.advance(react, rhs, observe, report, memory, work, time, step, step)
+
+
+def derive(p: Parameters) -> Derived:
+    """Fill in what the friction law leaves open."""
+    return Derived(friction=prepared(p.friction))
+
+
+def weights(p: Parameters) -> np.ndarray:
+    """Error weights of the state."""
+    return seat.weights([0.0])
+
+
+MODEL = Model(
+    name="bushing",
+    title="Plain touchdown bushing",
+    about="Bore fixed in the housing: contact and friction, no rolling elements",
+    parameters=Parameters,
+    inputs=seat.BearingInputs,
+    outputs=Outputs,
+    derived=Derived,
+    hidden=Hidden,
+    state_size=LOSS + 1,
+    start=start,
+    advance=advance,
+    weights=weights,
+    derive=derive,
+    react=react,
+)

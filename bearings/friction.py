@@ -1,0 +1,83 @@
+"""Friction coefficients as odd functions of the sliding speed.
+
+Three laws, chosen by `FrictionLaw.kind`:
+
+COULOMB   (2.13), regularised: dynamic tanh(slope v)
+STRIBECK  static/dynamic blend: (dynamic + (static - dynamic) exp(-(v/v_s)^2)) tanh(slope v)
+MAKKAR    Makkar et al. (the source's Fig 22):
+          g1 (tanh g2 v - tanh g3 v) + g4 tanh g5 v + g6 v
+
+Makkar's plateau g4 is `dynamic` and its slope g5 is `slope`. Its g1 follows from `static`, the peak,
+unless it is given: `makkar_amplitude` finds the g1 whose peak is the static coefficient.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cache
+
+from scipy.optimize import brentq, minimize_scalar
+
+from modelkit.kernel import kernel
+from modelkit.variables import integer, real
+
+COULOMB = 0
+STRIBECK = 1
+MAKKAR = 2
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """Constants of a friction law; speeds in m/s."""
+
+    kind: int = integer(
+        MAKKAR, "friction law: 0 Coulomb, 1 static-dynamic Stribeck, 2 Makkar", minimum=0, maximum=2
+    )
+    static: float = real(0.15, "1", "static coefficient, the peak of the curve", minimum=0.0)
+    dynamic: float = real(0.10, "1", "dynamic coefficient, the plateau (g4)", minimum=0.0)
+    slope: float = real(100.0, "s/m", "steepness of the curve through zero speed (g5)", above=0.0)
+    stribeck_speed: float = real(0.05, "m/s", "speed at which static friction has faded", above=0.0)
+    g1: float = real(0.0, "1", "Makkar's g1; 0 takes it from the static coefficient", minimum=0.0)
+    g2: float = real(100.0, "s/m", "Makkar's g2", above=0.0)
+    g3: float = real(10.0, "s/m", "Makkar's g3", above=0.0)
+    g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0)
+
+
+@kernel
+def coefficient(speed, law):
+    """Friction coefficient at sliding speed `speed` (m/s), with its sign."""
+    if law.kind == 0:
+        return law.dynamic * math.tanh(law.slope * speed)
+    if law.kind == 1:
+        fade = math.exp(-((speed / law.stribeck_speed) ** 2))
+        return (law.dynamic + (law.static - law.dynamic) * fade) * math.tanh(law.slope * speed)
+    rise = math.tanh(law.g2 * speed)
+    plateau = rise if law.slope == law.g2 else math.tanh(law.slope * speed)
+    return law.g1 * (rise - math.tanh(law.g3 * speed)) + law.dynamic * plateau + law.g6 * speed
+
+
+@cache
+def makkar_amplitude(
+    static: float, dynamic: float, g2: float, g3: float, slope: float, g6: float
+) -> float:
+    """The g1 with which Makkar's curve peaks at `static`; 0 where the curve already reaches it."""
+
+    def peak(g1: float) -> float:
+        def negative(v: float) -> float:
+            rise = g1 * (math.tanh(g2 * v) - math.tanh(g3 * v))
+            return -(rise + dynamic * math.tanh(slope * v) + g6 * v)
+
+        return -minimize_scalar(negative, bounds=(0.0, 3.0 / g3), method="bounded", options={"xatol": 1e-12}).fun
+
+    if static <= peak(0.0):
+        return 0.0
+    return float(brentq(lambda g1: peak(g1) - static, 0.0, 100.0 * static, xtol=1e-14))
+
+
+def prepared(law: FrictionLaw) -> FrictionLaw:
+    """`law` with g1 filled in where it was left to follow from the static coefficient."""
+    if law.kind != MAKKAR or law.g1 > 0.0:
+        return law
+    g1 = makkar_amplitude(law.static, law.dynamic, law.g2, law.g3, law.slope, law.g6)
+    return replace(law, g1=g1)

@@ -1,0 +1,151 @@
+"""The housing of a touchdown bearing: a mass on springs and dampers to the ground, at rest at the start.
+
+The outer ring sits in it and moves with it. `x0`, `y0` put its rest position off the rotor's axis
+(misalignment). Frame and signs as everywhere: x horizontal, y up, SI.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelkit import dopri
+from modelkit.kernel import kernel
+from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model
+from modelkit.ports import Energy, MountLoad, MountState
+from modelkit.variables import group, real
+
+X, Y, VX, VY, WORK, LOSS = range(6)
+TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Defaults: the disk and rotor I of the source."""
+
+    mass: float = real(5.0, "kg", "mass of the housing", above=0.0)
+    outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
+    stiffness: float = real(2.5e8, "N/m", "stiffness to the ground, each direction", minimum=0.0)
+    damping: float = real(2500.0, "N.s/m", "damping to the ground, each direction", minimum=0.0)
+    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    x0: float = real(0.0, "m", "horizontal position with the spring relaxed (misalignment)")
+    y0: float = real(0.0, "m", "vertical position with the spring relaxed (misalignment)")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Force of the bearing."""
+
+    seat: MountLoad = group(MountLoad)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Motion."""
+
+    seat: MountState = group(MountState)
+    energy: Energy = group(Energy)
+
+
+@kernel
+def rhs(t, y, dy, m):
+    """Newton under the force mean + slope (t - t_mid)."""
+    p, u = m.p, m.u.seat
+    mass = p.mass + p.outer_ring
+    s = t - m.half
+    fx, fy = u.fx + u.dfx * s, u.fy + u.dfy * s
+    dy[X] = y[VX]
+    dy[Y] = y[VY]
+    dy[VX] = (fx - p.stiffness * (y[X] - p.x0) - p.damping * y[VX]) / mass
+    dy[VY] = (fy - p.stiffness * (y[Y] - p.y0) - p.damping * y[VY]) / mass - p.gravity
+    dy[WORK] = fx * y[VX] + fy * y[VY]
+    dy[LOSS] = p.damping * (y[VX] ** 2 + y[VY] ** 2)
+
+
+@kernel
+def publish(y, m):
+    """Outputs at the end of the step."""
+    p, o = m.p, m.o.seat
+    mass = p.mass + p.outer_ring
+    ex, ey = y[X] - p.x0, y[Y] - p.y0
+    o.x, o.y, o.vx, o.vy = y[X], y[Y], y[VX], y[VY]
+    o.ax_free = -(p.stiffness * ex + p.damping * y[VX]) / mass
+    o.ay_free = -(p.stiffness * ey + p.damping * y[VY]) / mass - p.gravity
+    o.inv_m = 1.0 / mass
+    o.k_over_m, o.c_over_m = p.stiffness / mass, p.damping / mass
+    o.work = y[WORK]
+    e = m.o.energy
+    e.kinetic = 0.5 * mass * (y[VX] ** 2 + y[VY] ** 2)
+    e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * p.gravity * y[Y]
+    e.dissipated = y[LOSS]
+
+
+@kernel
+def start(memory):
+    """At rest, sagged under its own weight."""
+    m = memory[0]
+    p = m.p
+    sag = (p.mass + p.outer_ring) * p.gravity / p.stiffness if p.stiffness > 0.0 else 0.0
+    m.y[X], m.y[Y] = p.x0, p.y0 - sag
+    publish(m.y, m)
+
+
+@kernel
+def _ignore(t, y, m):
+    """Nothing happens inside a housing's step that its end does not show."""
+
+
+@kernel
+def advance(memory, work, time, step):
+    """One macro step under the given force."""
+    m = memory[0]
+    u = m.u.seat
+    if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
+        return BAD_INPUT
+    m.time = time
+    m.half = 0.5 * step
+    m.h, failure, evaluations = dopri.integrate(
+        rhs, _ignore, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
+    )
+    m.evaluations += evaluations
+    publish(m.y, m)
+    if failure == dopri.STEP_UNDERFLOW:
+        return STIFF
+    if failure == dopri.TOO_MANY_STEPS:
+        return BUSY
+    return OK
+
+
+def weights(p: Parameters) -> np.ndarray:
+    """Positions matter at 1 um, velocities at 1 cm/s."""
+    return np.array([1e6, 1e6, 1e2, 1e2, 0.0, 0.0])
+
+
+_MASS = ("mass", "outer_ring")
+_SAG = (*_MASS, "stiffness", "gravity")
+
+MODEL = Model(
+    name="housing",
+    title="Housing",
+    about="Housing with the outer ring on springs and dampers to the ground",
+    parameters=Parameters,
+    inputs=Inputs,
+    outputs=Outputs,
+    state_size=6,
+    start=start,
+    advance=advance,
+    weights=weights,
+    rhs=rhs,
+    publish=publish,
+    starts_from={
+        "seat.x": ("x0",),
+        "seat.y": ("y0", *_SAG),
+        "seat.ay_free": _SAG,
+        "seat.inv_m": _MASS,
+        "seat.k_over_m": ("stiffness", *_MASS),
+        "seat.c_over_m": ("damping", *_MASS),
+        "energy.potential": (*_SAG, "y0"),
+    },
+)

@@ -1,0 +1,365 @@
+"""Simplified touchdown bearing without a cage (section 2.1 of the source, harmonised as in 4.3).
+
+The inner ring has three coordinates; each ball has its attitude angle and its spin (2.4). Where a ball
+is pressed between the rings, one spring in series stands for both of its contacts (2.5, 2.6); friction
+at both drives the ball along the race (2.10) and spins it (2.11); neighbours push and rub (2.8).
+
+All angles and spins are counter-clockwise here (the source counts a ball's spin clockwise). With n the
+outward and t = (-n_y, n_x) the tangential direction at a ball, s_i and s_o the sliding speeds at the
+inner and outer race:
+
+    r_m m gamma'' = mu(s_i) F + mu(s_o) F_o + H_b - H_(b+1) - g m cos(gamma) - F (e . t)/r_m     (2.10)
+    I theta''     = r_b (mu(s_o) F_o - mu(s_i) F) - r_b mu_bb (H_b + H_(b+1))                      (2.11)
+    F_o           = F + r_m m gamma'^2                                                            (2.9)
+
+Deviations from the source, each named where it acts:
+- (2.10) as printed has a further term mu r_b/r_m (F + F_o), which counts the contact moment twice;
+  `as_printed` adds it (a passive bearing then loses angular momentum to nowhere).
+- A ball driven into the narrowing gap resists with -F (e . t)/r_m; without it the model creates energy.
+- Friction on a ball reacts on the rings as a force, too, so that action equals reaction.
+- Neighbours push along the chord between their centres.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearings import ring, seat
+from bearings.balls import MOST_BALLS, BallReport, BallSet, RaceStiffness
+from bearings.contact import ContactLaw, elastic_energy, normal_force
+from bearings.friction import FrictionLaw, coefficient, prepared
+from bearings.journal_contact import ContactMemory, ContactReport
+from modelkit.kernel import kernel
+from modelkit.model import Model
+from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from modelkit.variables import array, group, integer, real
+
+BALLS = ring.NEXT  # three components a ball from here: attitude angle, its rate, spin
+BALL_SPIN_SCALE = 1e3  # rad/s
+ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
+
+    clearance: float = real(0.3e-3, "m", "radial clearance of the journal in the bore", above=0.0)
+    journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
+    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    as_printed: int = integer(
+        0, "1: (2.10) with its last friction term as printed, which breaks momentum", minimum=0, maximum=1
+    )
+    interface: Interface = group(Interface)
+    contact: ContactLaw = group(ContactLaw, damping=1e7)
+    friction: FrictionLaw = group(FrictionLaw)
+    balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
+    race_friction: FrictionLaw = group(FrictionLaw)
+    ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
+    ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
+    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
+
+
+@dataclass(frozen=True)
+class Neighbours:
+    """Contacts between balls."""
+
+    force: float = real(0.0, "N", "largest force between balls now", local=True)
+    indentation: float = real(0.0, "m", "largest indentation between balls now", local=True)
+    peak_force: float = real(0.0, "N", "largest force between balls since the start", local=True)
+    peak_indentation: float = real(
+        0.0, "m", "largest indentation between balls since the start", local=True
+    )
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """How the balls move."""
+
+    orbit: float = real(0.0, "rad/s", "mean speed of the balls around the bearing", local=True)
+    ball: float = real(0.0, "rad/s", "mean spin speed of the balls", local=True)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Loads, and what to know of the inside."""
+
+    journal: SeatReaction = group(SeatReaction)
+    housing: MountReaction = group(MountReaction)
+    contact: ContactReport = group(ContactReport)
+    ring: ring.RingReport = group(ring.RingReport)
+    balls: BallReport = group(BallReport)
+    neighbours: Neighbours = group(Neighbours)
+    spin: Speeds = group(Speeds)
+    energy: Energy = group(Energy)
+    stiffness: RaceStiffness = group(RaceStiffness)
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What parameters fix."""
+
+    friction: FrictionLaw = group(FrictionLaw)
+    race_friction: FrictionLaw = group(FrictionLaw)
+    ball_friction: FrictionLaw = group(FrictionLaw)
+    race: ContactLaw = group(ContactLaw)
+    inner: float = real(0.0, "N/m^n", "ball on inner race")
+    outer: float = real(0.0, "N/m^n", "ball on outer race")
+    mass: float = real(0.0, "kg", "of a ball")
+    inertia: float = real(0.0, "kg.m2", "of a ball")
+    ball_radius: float = real(0.0, "m", "of a ball")
+    pitch_radius: float = real(0.0, "m", "where ball centres run")
+    inner_radius: float = real(0.0, "m", "inner race")
+    touch_angle: float = real(0.0, "rad", "between neighbours that just touch")
+    rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
+    rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
+    angles: tuple = array(MOST_BALLS)
+
+
+@dataclass(frozen=True)
+class BallMemory:
+    """Balls at the last evaluation."""
+
+    loaded: float = real(0.0, "1", "how many")
+    force: float = real(0.0, "N", "largest")
+    indentation: float = real(0.0, "m", "largest")
+    energy: float = real(0.0, "J", "stored in the contacts")
+    pushed: float = real(0.0, "N", "largest between neighbours")
+    overlap: float = real(0.0, "m", "largest between neighbours")
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Memory between evaluations and steps."""
+
+    seat: seat.SeatMemory = group(seat.SeatMemory)
+    ring: ring.RingMemory = group(ring.RingMemory)
+    contact: ContactMemory = group(ContactMemory)
+    balls: BallMemory = group(BallMemory)
+
+
+@kernel
+def _race_forces(y, dy, m):
+    """Ring against balls against housing: (force on the ring x, y; moment on it; heat).
+
+    Sets the derivatives of the balls' angles, speeds and spins as far as races and gravity go.
+    """
+    p, d, s = m.p, m.d, m.s.balls
+    law, play, rm, rb, ri = d.race, p.balls.play, d.pitch_radius, d.ball_radius, d.inner_radius
+    ex, ey = y[ring.RX] - y[seat.HX], y[ring.RY] - y[seat.HY]
+    ux, uy = y[ring.RVX] - y[seat.HVX], y[ring.RVY] - y[seat.HVY]
+    reach = play <= 0.0 or ex * ex + ey * ey > play * play
+    fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
+    for b in range(p.balls.count):
+        i = BALLS + 3 * b
+        c, sn = math.cos(y[i]), math.sin(y[i])
+        orbit, spin = y[i + 1], y[i + 2]
+        v = rm * orbit
+        elastic, force, inner, wedge = 0.0, 0.0, 0.0, 0.0
+        if reach:
+            indentation = ex * c + ey * sn - play
+            if indentation > 0.0:
+                rate = ux * c + uy * sn
+                elastic = law.stiffness * indentation * math.sqrt(indentation)
+                force = max(elastic + law.damping * indentation * rate, 0.0)
+                sliding = y[ring.RW] * ri + uy * c - ux * sn - v + rb * spin
+                inner = coefficient(sliding, d.race_friction) * force
+                wedge = elastic * (ey * c - ex * sn) / rm
+                fx -= force * c - inner * sn
+                fy -= force * sn + inner * c
+                moment -= inner * ri
+                heat += inner * sliding + (force - elastic) * rate
+                s.loaded += 1.0
+                s.energy += 0.4 * elastic * indentation
+                if force > s.force:
+                    s.force = force
+                if indentation > s.indentation:
+                    s.indentation = indentation
+        pressed = force + rm * d.mass * orbit * orbit
+        back = -(v + rb * spin)
+        outer = coefficient(back, d.race_friction) * pressed
+        heat += outer * back
+        along = inner + outer - wedge - p.gravity * d.mass * c
+        if p.as_printed == 1:
+            along += (outer - inner) * rb / rm
+        dy[i] = orbit
+        dy[i + 1] = along / (rm * d.mass)
+        dy[i + 2] = rb * (outer - inner) / d.inertia
+    return fx, fy, moment, heat
+
+
+@kernel
+def _neighbour_forces(y, dy, m):
+    """Each ball against the next one; adds to the derivatives, returns the heat."""
+    p, d, s = m.p, m.d, m.s.balls
+    rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
+    heat = 0.0
+    for b in range(count):
+        i = BALLS + 3 * b
+        k = i + 3 if b + 1 < count else BALLS
+        between = y[k] - y[i] + (0.0 if b + 1 < count else 2.0 * math.pi)
+        if between >= d.touch_angle:
+            continue
+        half = 0.5 * between
+        overlap = 2.0 * (rb - rm * math.sin(half))
+        lever = rm * math.cos(half)
+        rate = lever * (y[i + 1] - y[k + 1])
+        elastic = p.ball_contact.stiffness * overlap**p.ball_contact.exponent
+        force = normal_force(overlap, rate, p.ball_contact)
+        sliding = rb * (y[i + 2] + y[k + 2])
+        rub = coefficient(sliding, d.ball_friction) * force
+        push = force * lever / (rm * rm * d.mass)
+        dy[i + 1] -= push
+        dy[k + 1] += push
+        dy[i + 2] -= rb * rub / d.inertia
+        dy[k + 2] -= rb * rub / d.inertia
+        heat += rub * sliding + (force - elastic) * rate
+        s.energy += elastic * overlap / (p.ball_contact.exponent + 1.0)
+        if force > s.pushed:
+            s.pushed = force
+        if overlap > s.overlap:
+            s.overlap = overlap
+    return heat
+
+
+@kernel
+def react(t, y, dy, m):
+    """Derivative of ring and balls, and the load on journal and housing."""
+    p, s = m.p, m.s.balls
+    s.loaded, s.force, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0
+    s.pushed, s.overlap = 0.0, 0.0
+    j = ring.journal_on_ring(y, m)
+    bx, by, moment, heat = _race_forces(y, dy, m)
+    heat += _neighbour_forces(y, dy, m)
+    dy[ring.RX] = y[ring.RVX]
+    dy[ring.RY] = y[ring.RVY]
+    dy[ring.RVX] = (bx - j.fx) / p.ring.mass
+    dy[ring.RVY] = (by - j.fy) / p.ring.mass - p.gravity
+    dy[ring.RANGLE] = y[ring.RW]
+    dy[ring.RW] = (j.ring_moment + moment) / p.ring.inertia
+    dy[ring.LOSS] = j.loss + heat
+    return Load(j.fx, j.fy, j.journal_moment, -bx, -by)
+
+
+@kernel
+def rhs(t, y, dy, m):
+    """Everything the bearing integrates within a macro step."""
+    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+
+
+@kernel
+def observe(t, y, m):
+    """Peaks and events, after each accepted micro-step."""
+    ring.watch(t, y, m)
+    o, n, s = m.o.balls, m.o.neighbours, m.s.balls
+    o.peak_force = max(o.peak_force, s.force)
+    o.peak_indentation = max(o.peak_indentation, s.indentation)
+    n.peak_force = max(n.peak_force, s.pushed)
+    n.peak_indentation = max(n.peak_indentation, s.overlap)
+
+
+@kernel
+def report(y, m):
+    """Outputs wanted once per macro step."""
+    p, d, o, s = m.p, m.d, m.o, m.s.balls
+    ring.report(y, m, d.inner_radius)
+    o.balls.loaded = int(s.loaded)
+    o.balls.force, o.balls.indentation = s.force, s.indentation
+    o.neighbours.force, o.neighbours.indentation = s.pushed, s.overlap
+    moving = d.mass * d.pitch_radius**2
+    kinetic, height, orbit, spin = 0.0, 0.0, 0.0, 0.0
+    for b in range(p.balls.count):
+        i = BALLS + 3 * b
+        kinetic += 0.5 * moving * y[i + 1] ** 2 + 0.5 * d.inertia * y[i + 2] ** 2
+        height += d.pitch_radius * math.sin(y[i])
+        orbit += y[i + 1]
+        spin += y[i + 2]
+    o.spin.orbit, o.spin.ball = orbit / p.balls.count, spin / p.balls.count
+    speed2 = y[ring.RVX] ** 2 + y[ring.RVY] ** 2
+    o.energy.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * p.ring.inertia * y[ring.RW] ** 2
+    stored = s.energy + elastic_energy(m.s.ring.indentation, p.contact)
+    o.energy.potential = stored + p.gravity * (p.ring.mass * y[ring.RY] + d.mass * height)
+    o.energy.dissipated = y[ring.LOSS]
+
+
+@kernel
+def start(memory):
+    """Ring and balls at rest, the first ball at its angle."""
+    m = memory[0]
+    y, d = m.y, m.d
+    seat.take_inputs(y, m)
+    ring.place(y, d.rest_x, d.rest_y)
+    for b in range(m.p.balls.count):
+        y[BALLS + 3 * b] = d.angles[b]
+        y[BALLS + 3 * b + 1] = 0.0
+        y[BALLS + 3 * b + 2] = 0.0
+    o = m.o.stiffness
+    o.inner, o.outer, o.series = d.inner, d.outer, d.race.stiffness
+
+
+@kernel
+def advance(memory, work, time, step):
+    """One macro step."""
+    return seat.advance(react, rhs, observe, report, memory, work, time, step, step)
+
+
+def derive(p: Parameters) -> Derived:
+    """Stiffness and masses from geometry, and where everything starts."""
+    b = p.balls
+    rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
+    return Derived(
+        friction=prepared(p.friction),
+        race_friction=prepared(p.race_friction),
+        ball_friction=prepared(p.ball_friction),
+        race=ContactLaw(stiffness=b.series_stiffness(), damping=b.damping),
+        inner=b.inner_stiffness(),
+        outer=b.outer_stiffness(),
+        mass=b.ball_mass,
+        inertia=b.ball_inertia,
+        ball_radius=b.ball_radius,
+        pitch_radius=b.pitch_radius,
+        inner_radius=b.inner_radius,
+        touch_angle=b.touch_angle,
+        rest_x=rest_x,
+        rest_y=rest_y,
+        angles=tuple(b.angles() + [0.0] * (MOST_BALLS - b.count)),
+    )
+
+
+def check(p: Parameters) -> str | None:
+    """What is wrong between the parameters."""
+    return p.balls.problem()
+
+
+def weights(p: Parameters) -> np.ndarray:
+    """Error weights of the state."""
+    ball = [ORBIT_SCALE / seat.VELOCITY_SCALE * p.balls.pitch_radius, 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE]
+    return seat.weights(ring.error_weights() + ball * p.balls.count)
+
+
+_GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
+
+MODEL = Model(
+    name="simplified_cageless",
+    title="Simplified cageless touchdown bearing",
+    about="Full-complement ball bearing: one ring on springs at the balls, each ball with its angle and spin",
+    parameters=Parameters,
+    inputs=seat.BearingInputs,
+    outputs=Outputs,
+    derived=Derived,
+    hidden=Hidden,
+    state_size=BALLS + 3 * MOST_BALLS,
+    start=start,
+    advance=advance,
+    weights=weights,
+    derive=derive,
+    check=check,
+    react=react,
+    starts_from={
+        "stiffness.inner": _GEOMETRY,
+        "stiffness.outer": _GEOMETRY,
+        "stiffness.series": _GEOMETRY,
+    },
+)

@@ -1,0 +1,193 @@
+"""The one slave class: an FMU around any `modelkit.model.Model`.
+
+What pythonfmu leaves open is closed here. Its C++ side must never see an exception it did not ask for,
+so a failed step is logged and answered with False; where only an exception can report failure
+(initialisation), the references that its clean-up drops twice are held once more. The whole state of
+an instance is one block of memory, so saving it is copying bytes. Vectors are answered whole.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import sys
+import traceback
+from pathlib import Path
+from typing import Any, ClassVar
+from xml.etree.ElementTree import Element
+
+from pythonfmu import Fmi2Slave
+from pythonfmu.enums import Fmi2Status
+
+from fmus.description import describe, guid
+from modelkit.model import Instance, Model, ModelError
+
+
+class ModelSlave(Fmi2Slave):
+    """FMU of the model named by the class attribute `model`."""
+
+    model: ClassVar[Model]
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.description = self.model.about
+        self._instance = Instance(self.model)
+        self._reals = self._instance.reals
+        self._integers = self._instance.integers
+        settable = {s.index for s in self._instance.slots if s.causality != "output"}
+        self._settable_before = settable
+        self._settable = {s.index for s in self._instance.slots if s.causality == "input"}
+        self._readable = {s.index for s in self._instance.slots}
+        self._known: set[tuple[int, ...]] = set()  # value references that were checked before
+        self._initialising = True
+        self._stale = True  # outputs do not yet follow from what was set
+        self._failed = ""
+        self._start_time = 0.0
+        if self.resources:
+            _let_go_of_the_interpreter(Path(self.resources), type(self).__name__)
+
+    # -- description ---------------------------------------------------------------------------------
+
+    def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
+        """modelDescription.xml with units, bounds, dependencies and initial unknowns."""
+        return describe(self.model, type(self).__name__, self.log_categories)
+
+    # -- life cycle ----------------------------------------------------------------------------------
+
+    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        self._start_time = start_time
+
+    def exit_initialization_mode(self) -> None:
+        problem = self._refresh()
+        if problem:
+            self._raise(problem)
+        self._initialising = False
+        self._known.clear()
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        try:
+            if self._failed:
+                raise ModelError(f"stopped before: {self._failed}")
+            if self._initialising:
+                raise ModelError("cannot step before initialisation is complete")
+            self._instance.step(current_time, step_size)
+        except ModelError as error:
+            return self._fail(str(error))
+        except Exception:
+            return self._fail(traceback.format_exc())
+        return True
+
+    # -- variables -----------------------------------------------------------------------------------
+
+    def set_real(self, vrs: list[int], values: list[float]) -> None:
+        self._set(self._reals, vrs, values)
+
+    def set_integer(self, vrs: list[int], values: list[int]) -> None:
+        self._set(self._integers, vrs, values)
+
+    def get_real(self, vrs: list[int]) -> list[float]:
+        if self._initialising and self._stale and self._refresh():
+            return [math.nan] * len(vrs)
+        try:
+            reals = self._reals
+            return [reals[i] for i in vrs]
+        except IndexError:
+            self._fail(f"value references {sorted(set(vrs) - self._readable)} do not exist")
+            return [math.nan] * len(vrs)
+
+    def get_integer(self, vrs: list[int]) -> list[int]:
+        if self._initialising and self._stale and self._refresh():
+            return [0] * len(vrs)
+        try:
+            # the C side holds 32 bits; a real asked for as an integer is the caller's mistake
+            return [max(-(2**31), min(2**31 - 1, self._integers[i])) for i in vrs]
+        except IndexError:
+            self._fail(f"value references {sorted(set(vrs) - self._readable)} do not exist")
+            return [0] * len(vrs)
+
+    def _set(self, store: Any, vrs: list[int], values: list[Any]) -> None:
+        key = tuple(vrs)
+        if key not in self._known:
+            allowed = self._settable_before if self._initialising else self._settable
+            wrong = sorted(set(vrs) - allowed)
+            if wrong:
+                names = {s.index: s.variable.name for s in self._instance.slots}
+                listed = ", ".join(names.get(i, f"value reference {i}") for i in wrong)
+                self._fail(f"{listed} cannot be set now; parameters are fixed after initialisation")
+                return
+            self._known.add(key)
+        for i, value in zip(vrs, values, strict=True):
+            store[i] = value
+        self._stale = True
+
+    # -- state ---------------------------------------------------------------------------------------
+
+    def _get_fmu_state(self) -> bytes:  # type: ignore[override]
+        status = b"I" if self._initialising else b"F" if self._failed else b"S"
+        return guid(self.model.name).encode() + status + self._instance.save()
+
+    def _set_fmu_state(self, state: bytes) -> None:  # type: ignore[override]
+        own = guid(self.model.name).encode()
+        expected = len(own) + 1 + len(self._instance.save())
+        if len(state) != expected or not state.startswith(own):
+            self._fail("the state to restore is not one of this FMU")
+            return
+        status = state[len(own) : len(own) + 1]
+        self._instance.restore(state[len(own) + 1 :])
+        self._initialising = status == b"I"
+        self._failed = self._failed or "restored a failed state" if status == b"F" else ""
+        self._known.clear()
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: bytes) -> bytes:  # type: ignore[override]
+        return state
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> bytes:  # type: ignore[override]
+        return state
+
+    # -- failure -------------------------------------------------------------------------------------
+
+    def _refresh(self) -> str:
+        """Compute state and outputs from parameters and inputs; returns what is wrong, or ""."""
+        try:
+            self._instance.start(self._start_time)
+        except ModelError as error:
+            return str(error)
+        except Exception:
+            return traceback.format_exc()
+        self._stale = False
+        return ""
+
+    def _fail(self, message: str) -> bool:
+        self._failed = message.strip().splitlines()[-1]
+        self.log(message, Fmi2Status.error)
+        return False
+
+    def _raise(self, message: str) -> None:
+        """Fail where only an exception is heard.
+
+        pythonfmu answers an exception by releasing class, instance and log, and releases them again
+        with the instance. One more reference each keeps the second release from freeing freed memory.
+        """
+        self._fail(message)
+        for kept in (type(self), self, self.log_queue):
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
+        raise RuntimeError(message)
+
+
+def _let_go_of_the_interpreter(resources: Path, identifier: str) -> None:
+    """Free what pythonfmu would otherwise free twice when the process ends.
+
+    Its library keeps a handle on the interpreter that a static destructor and a library destructor
+    both release, which aborts about every other process. The handle only matters where the library
+    started the interpreter itself; where a Python program loads the FMU it can go at once.
+    """
+    if not sys.platform.startswith("linux") or not sys.orig_argv:
+        return
+    binary = resources.parent / "binaries" / "linux64" / f"{identifier}.so"
+    try:
+        library = ctypes.PyDLL(str(binary), mode=ctypes.RTLD_LOCAL | 4)  # RTLD_NOLOAD: only if loaded
+        library.finalizePythonInterpreter()
+    except (OSError, AttributeError):
+        return

@@ -1,0 +1,67 @@
+"""The project's sources as they travel inside an FMU.
+
+FMUs in one process share one interpreter. So that FMUs of different versions, and an installed project
+of yet another one, never meet under one module name, the sources travel as a package named by the hash
+of its content, with their imports of each other rewritten to it.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from modelkit.kernel import source_hash
+
+ROOT = Path(__file__).resolve().parents[1]
+PHYSICS = ("modelkit", "rotor", "bearings")
+SLAVE_MODULES = ("__init__.py", "slave.py", "description.py")
+_IMPORT = re.compile(r"^(from|import) (modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
+
+
+def content_hash() -> str:
+    """Hash over everything that decides what an FMU contains."""
+    return source_hash((*PHYSICS, "fmus"))
+
+
+def package_name() -> str:
+    """Name of the package inside the FMU."""
+    return f"touchdown_{content_hash()}"
+
+
+def rewritten(text: str) -> str:
+    """`text` with the project's own imports turned to the package inside the FMU."""
+    return _IMPORT.sub(lambda match: f"{match[1]} {package_name()}.{match[2]}", text)
+
+
+def write_package(folder: Path) -> Path:
+    """Write the package into `folder`; returns its path."""
+    package = folder / package_name()
+    for name in PHYSICS:
+        for path in sorted((ROOT / name).rglob("*.py")):
+            _copy(path, package / path.relative_to(ROOT))
+    for name in SLAVE_MODULES:
+        _copy(ROOT / "fmus" / name, package / "fmus" / name)
+    _copy(ROOT / "fmus" / "resident.py", package / "__init__.py")
+    return package
+
+
+def script_name(name: str) -> str:
+    """Module name of an FMU's script: one interpreter may hold several versions of it."""
+    return f"{name}_{content_hash()}"
+
+
+def write_script(name: str, folder: Path) -> Path:
+    """Write the script of FMU `name` into `folder`; returns its path."""
+    text = rewritten((ROOT / "fmus" / "scripts" / f"{name}.py").read_text(encoding="utf-8"))
+    text += (
+        "\n\n# pythonfmu runs this file anew and drops one reference to these globals for every instance\n"
+        f"__import__({package_name()!r}).HELD.append(globals())\n"
+    )
+    path = folder / f"{script_name(name)}.py"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def _copy(source: Path, target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(rewritten(source.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,0 +1,200 @@
+"""What a model is, and one running instance of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from modelkit import dopri
+from modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record, layout
+
+OK = 0
+BAD_INPUT = 1
+STIFF = 2
+BUSY = 3
+
+
+class ModelError(Exception):
+    """A model cannot go on; the message names the variable, the value and the remedy."""
+
+
+def no_check(parameters: Any) -> str | None:
+    """Bounds of single parameters suffice."""
+    return None
+
+
+@dataclass(frozen=True)
+class Model:
+    """A component: its declarations and its kernels.
+
+    Kernels see one record `m`: parameters m.p, inputs m.u, outputs m.o, derived constants m.d, hidden
+    memory m.s, the state m.y with m.n components in use, m.weight (error weights), m.time (s) at the
+    beginning of the macro step, m.half (s) half its length, m.h (s) the micro-step to try next.
+
+    start(m)                     sets the state and the outputs from parameters and inputs
+    advance(memory, work, t, H)  one macro step; returns one of OK, BAD_INPUT, STIFF, BUSY
+    rhs(t, y, dy, m)             bodies: time derivative under the loads m.u
+    publish(y, m)                bodies: outputs from the state
+    react(t, y, dy, m)           bearings: derivative of what is inside, and the `Load` given
+    """
+
+    name: str
+    title: str
+    about: str
+    parameters: type
+    inputs: type
+    outputs: type
+    state_size: int
+    start: Callable[[Any], None]
+    advance: Callable[[Any, Any, float, float], int]
+    weights: Callable[[Any], np.ndarray]
+    derived: type = Nothing
+    hidden: type = Nothing
+    derive: Callable[[Any], Any] | None = None  # parameters -> derived
+    check: Callable[[Any], str | None] = no_check  # parameters -> what is wrong between them
+    rhs: Callable[..., Any] | None = None
+    publish: Callable[..., Any] | None = None
+    react: Callable[..., Any] | None = None
+    starts_from: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
+    Names or prefixes ending in a dot; an output that is not listed starts at zero whatever is set."""
+
+    def memory_layout(self) -> np.dtype:
+        """Everything an instance is, as one record: saving it is copying its bytes."""
+        return np.dtype(
+            [
+                ("time", "f8"),
+                ("half", "f8"),
+                ("h", "f8"),
+                ("n", "i8"),
+                ("evaluations", "i8"),
+                ("p", layout(self.parameters)),
+                ("u", layout(self.inputs)),
+                ("o", layout(self.outputs)),
+                ("d", layout(self.derived)),
+                ("s", layout(self.hidden)),
+                ("y", "f8", (self.state_size,)),
+                ("weight", "f8", (self.state_size,)),
+            ]
+        )
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Where a variable lives in an instance's memory, counted in 8-byte words."""
+
+    variable: Variable
+    causality: str  # "parameter", "input" or "output"
+    index: int
+
+
+def slots(model: Model) -> list[Slot]:
+    """All exposed variables of `model`: parameters, inputs, outputs, in memory order."""
+    memory = model.memory_layout()
+    found: list[Slot] = []
+    for part, kind, causality in (
+        ("p", model.parameters, "parameter"),
+        ("u", model.inputs, "input"),
+        ("o", model.outputs, "output"),
+    ):
+        fields = memory.fields
+        assert fields is not None
+        offset = fields[part][1] // 8
+        found += [
+            Slot(v, causality, offset + i) for i, v in enumerate(flatten(kind())) if v.name
+        ]
+    return found
+
+
+class Instance:
+    """A model with its memory. The FMU and the in-process component both drive this class."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.memory = np.zeros(1, model.memory_layout())
+        self.memory["p"] = np.array([as_tuple(model.parameters())], layout(model.parameters))
+        self.memory["u"] = np.array([as_tuple(model.inputs())], layout(model.inputs))
+        raw = self.memory.view("u1").data
+        self.reals = raw.cast("d")
+        self.integers = raw.cast("q")
+        self.work = dopri.scratch(model.state_size)
+        self.slots = slots(model)
+        self._bytes = raw
+
+    @property
+    def record(self) -> Any:
+        """The memory as one record."""
+        return self.memory[0]
+
+    def start(self, time: float) -> None:
+        """Check the parameters, derive what follows from them, and set state and outputs at `time` (s).
+
+        Raises ModelError where a parameter or an input is out of bounds.
+        """
+        self._check_bounds()
+        model, m = self.model, self.memory[0]
+        parameters = from_record(model.parameters, m["p"])
+        problem = model.check(parameters)
+        if problem:
+            raise ModelError(problem)
+        if model.derive is not None:
+            self.memory["d"] = np.array([as_tuple(model.derive(parameters))], layout(model.derived))
+        self.memory["o"] = np.array([as_tuple(model.outputs())], layout(model.outputs))
+        self.memory["s"] = np.array([as_tuple(model.hidden())], layout(model.hidden))
+        self.memory["y"] = 0.0
+        weights = model.weights(parameters)
+        self.memory["n"] = len(weights)
+        self.memory["weight"] = 0.0
+        self.memory["weight"][0, : len(weights)] = weights
+        self.memory["time"] = time
+        self.memory["h"] = 1e-6
+        self.memory["evaluations"] = 0
+        model.start(self.memory)
+
+    def step(self, time: float, step: float) -> None:
+        """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
+        if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
+            raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
+        status = self.model.advance(self.memory, self.work, time, step)
+        if status != OK:
+            raise ModelError(self._why(status, time, step))
+
+    def save(self) -> bytes:
+        """The whole state."""
+        return self._bytes.tobytes()
+
+    def restore(self, state: bytes) -> None:
+        """Go back to what `save` returned."""
+        self._bytes[:] = state
+
+    def _check_bounds(self) -> None:
+        for slot in self.slots:
+            if slot.causality == "output":
+                continue
+            store = self.reals if slot.variable.spec.kind == "real" else self.integers
+            problem = slot.variable.problem(store[slot.index])
+            if problem:
+                raise ModelError(problem)
+
+    def _why(self, status: int, time: float, step: float) -> str:
+        if status == BAD_INPUT:
+            for slot in self.slots:
+                value = self.reals[slot.index]
+                if slot.causality == "input" and not math.isfinite(value):
+                    return (
+                        f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
+                        "look at the component that feeds it"
+                    )
+        if status == BUSY:
+            return (
+                f"more than {dopri.MOST_STEPS} micro-steps within one macro step of {step:g} s "
+                f"at t = {time:.9g} s; take a smaller macro step or a larger interface.tolerance"
+            )
+        return (
+            f"the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; "
+            "take a smaller macro step, or look for a contact that starts with a deep overlap"
+        )

@@ -1,0 +1,170 @@
+"""The interface contract between bodies and what bears them.
+
+A *seat* is the place where a bearing (touchdown or magnetic) holds a journal; a *mount* is where it
+sits in its housing. The body gives motion and what the bearing needs to carry a reduced model of the
+body through a macro step; the bearing gives back the load as mean and slope, which act on the body as
+the load did that it exchanged: same momentum and first moment in time, or, for a housing on springs,
+same position and velocity at the end.
+
+Frame: x horizontal, y vertical up, z along the shaft; angles counter-clockwise; SI. A load is named
+after the body it acts on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from modelkit.variables import integer, real
+
+
+@dataclass(frozen=True)
+class BodyMotion:
+    """Translation of a body at the beginning of the macro step."""
+
+    x: float = real(0.0, "m", "horizontal position", nominal=1e-4)
+    y: float = real(0.0, "m", "vertical position", nominal=1e-4)
+    vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
+    vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
+    ax_free: float = real(
+        0.0, "m/s2", "horizontal acceleration from everything but this bearing's force"
+    )
+    ay_free: float = real(
+        0.0, "m/s2", "vertical acceleration from everything but this bearing's force"
+    )
+    inv_m: float = real(
+        0.0, "1/kg", "acceleration per force of this bearing; 0: motion is prescribed", constant=True
+    )
+
+
+@dataclass(frozen=True)
+class MountMotion(BodyMotion):
+    """Motion of a housing at the beginning of the macro step.
+
+    A housing hangs on springs that are stiff beside the macro step (about 1 kHz): with `k_over_m` and
+    `c_over_m` the bearing carries it as the oscillator it is, not as a point mass.
+    """
+
+    k_over_m: float = real(
+        0.0, "1/s2", "restoring acceleration per displacement; 0: a point mass", constant=True, minimum=0.0
+    )
+    c_over_m: float = real(
+        0.0, "1/s", "damping acceleration per velocity; 0: a point mass", constant=True, minimum=0.0
+    )
+
+
+@dataclass(frozen=True)
+class SeatMotion(BodyMotion):
+    """Motion of a journal at the beginning of the macro step."""
+
+    omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise", nominal=1000.0)
+    alpha_free: float = real(
+        0.0, "rad/s2", "spin acceleration from everything but this bearing's moment"
+    )
+    inv_I: float = real(
+        0.0, "1/(kg.m2)", "spin acceleration per moment; 0: spin is prescribed", constant=True
+    )
+
+
+@dataclass(frozen=True)
+class MountLoad:
+    """Force on a housing over the last macro step."""
+
+    fx: float = real(0.0, "N", "mean horizontal force over the last macro step")
+    fy: float = real(0.0, "N", "mean vertical force over the last macro step")
+    dfx: float = real(0.0, "N/s", "slope of the horizontal force, 12/H^3 int (t - t_mid) F dt")
+    dfy: float = real(0.0, "N/s", "slope of the vertical force, 12/H^3 int (t - t_mid) F dt")
+
+
+@dataclass(frozen=True)
+class SeatLoad:
+    """Force and moment on a journal over the last macro step."""
+
+    fx: float = real(0.0, "N", "mean horizontal force over the last macro step")
+    fy: float = real(0.0, "N", "mean vertical force over the last macro step")
+    mz: float = real(0.0, "N.m", "mean moment about the shaft over the last macro step")
+    dfx: float = real(0.0, "N/s", "slope of the horizontal force, 12/H^3 int (t - t_mid) F dt")
+    dfy: float = real(0.0, "N/s", "slope of the vertical force, 12/H^3 int (t - t_mid) F dt")
+    dmz: float = real(0.0, "N.m/s", "slope of the moment, 12/H^3 int (t - t_mid) M dt")
+
+
+@dataclass(frozen=True)
+class Account:
+    """What one side of a connection states of the energy that crossed it, since the start."""
+
+    work: float = real(0.0, "J", "work of the load on the body's motion as this side knows it", local=True)
+    jump: float = real(
+        0.0, "J", "mean load times the jump of that motion at each restart", local=True
+    )
+
+
+@dataclass(frozen=True)
+class SeatReaction(SeatLoad, Account):
+    """What a bearing gives at its seat."""
+
+
+@dataclass(frozen=True)
+class MountReaction(MountLoad, Account):
+    """What a bearing gives at its mount."""
+
+
+@dataclass(frozen=True)
+class SeatState(SeatMotion, Account):
+    """What a body gives at a seat."""
+
+
+@dataclass(frozen=True)
+class MountState(MountMotion, Account):
+    """What a housing gives at its mount."""
+
+
+# How a bearing carries the motion of what it is attached to through a macro step.
+HOLD = 0
+VELOCITY = 1
+ACCELERATION = 2
+MODEL = 3
+
+
+@dataclass(frozen=True)
+class Interface:
+    """How a bearing treats its inputs between communication points, and how finely it steps."""
+
+    order: int = integer(
+        MODEL,
+        "motion within a macro step: 0 held, 1 velocity, 2 acceleration extrapolated, "
+        "3 interface model driven by the bearing's own load",
+        minimum=0,
+        maximum=3,
+    )
+    tolerance: float = real(
+        1e-6, "1", "error of one micro-step over the model's scales", above=0.0, maximum=1e-2
+    )
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energy of a component."""
+
+    kinetic: float = real(0.0, "J", "kinetic energy of the bodies inside", local=True)
+    potential: float = real(0.0, "J", "elastic and gravitational energy", local=True)
+    dissipated: float = real(0.0, "J", "energy turned into heat since the start", local=True)
+
+
+class Load(NamedTuple):
+    """Instantaneous load of a bearing: on the journal (N, N, N m) and on the housing (N, N)."""
+
+    jx: float
+    jy: float
+    jm: float
+    hx: float
+    hy: float
+
+
+class Motion(NamedTuple):
+    """Instantaneous planar motion of a body: m, m, m/s, m/s, rad/s."""
+
+    x: float
+    y: float
+    vx: float
+    vy: float
+    spin: float

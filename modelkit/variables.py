@@ -1,0 +1,131 @@
+"""Variables, declared once.
+
+A model states its parameters, inputs and outputs as frozen dataclasses whose fields are made by
+`real`, `integer` or `group`. Everything else is derived from them: the memory layout a kernel reads
+(``p.contact.stiffness``), the FMU's XML, bounds checks, tables and column headers.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Spec:
+    """What is declared of one scalar beside its name and default."""
+
+    kind: str  # "real" or "integer"
+    unit: str
+    meaning: str
+    minimum: float | None = None
+    maximum: float | None = None
+    above: float | None = None  # exclusive lower bound
+    nominal: float | None = None
+    local: bool = False  # a diagnostic, not part of the coupling
+    constant: bool = False  # fixed once initialised
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar of a model: full dotted name, declaration, default."""
+
+    name: str
+    spec: Spec
+    default: float
+
+    def problem(self, value: float) -> str | None:
+        """Why `value` is not allowed, or None."""
+        s = self.spec
+        if not math.isfinite(value):
+            return f"{self.name} = {value} is not a finite number"
+        if s.above is not None and not value > s.above:
+            return f"{self.name} = {value:g} {s.unit} must be above {s.above:g} {s.unit}"
+        if s.minimum is not None and value < s.minimum:
+            return f"{self.name} = {value:g} {s.unit} must be at least {s.minimum:g} {s.unit}"
+        if s.maximum is not None and value > s.maximum:
+            return f"{self.name} = {value:g} {s.unit} must be at most {s.maximum:g} {s.unit}"
+        return None
+
+
+def real(default: float, unit: str, meaning: str, **bounds: Any) -> Any:
+    """Declare a float64 scalar; `bounds` are the optional fields of `Spec`."""
+    return field(default=default, metadata={"spec": Spec("real", unit, meaning, **bounds)})
+
+
+def integer(default: int, meaning: str, **bounds: Any) -> Any:
+    """Declare an int64 scalar (a count or a choice)."""
+    return field(default=default, metadata={"spec": Spec("integer", "1", meaning, **bounds)})
+
+
+def array(size: int) -> Any:
+    """Declare a float64 array; only for values derived from parameters, never exposed."""
+    return field(default=(0.0,) * size, metadata={"array": size})
+
+
+def group(kind: type, **changes: Any) -> Any:
+    """Declare a nested group of variables, its defaults changed by `changes`."""
+    value = kind(**changes)
+    return field(default_factory=lambda: value, metadata={"group": kind})
+
+
+@dataclass(frozen=True)
+class Nothing:
+    """The empty set of variables."""
+
+
+def layout(kind: type) -> np.dtype:
+    """Structured dtype of a declaration, nested as it is declared; every leaf is 8 bytes wide."""
+    parts: list[Any] = []
+    for f in fields(kind):
+        if "group" in f.metadata:
+            parts.append((f.name, layout(f.metadata["group"])))
+        elif "array" in f.metadata:
+            parts.append((f.name, "f8", (f.metadata["array"],)))
+        else:
+            parts.append((f.name, "f8" if f.metadata["spec"].kind == "real" else "i8"))
+    return np.dtype(parts)
+
+
+def flatten(instance: Any, prefix: str = "") -> list[Variable]:
+    """The scalars of a declaration in memory order, with dotted names; arrays are left out."""
+    found: list[Variable] = []
+    for f in fields(instance):
+        value = getattr(instance, f.name)
+        name = f"{prefix}{f.name}"
+        if "group" in f.metadata:
+            found += flatten(value, f"{name}.")
+        elif "spec" in f.metadata:
+            found.append(Variable(name, f.metadata["spec"], value))
+    return found
+
+
+def as_tuple(instance: Any) -> tuple:
+    """Values of a declaration, nested as `layout` nests them."""
+    return tuple(
+        as_tuple(value) if dataclasses.is_dataclass(value) else value
+        for value in (getattr(instance, f.name) for f in fields(instance))
+    )
+
+
+def as_record(instance: Any) -> Any:
+    """A declaration's values as a record that kernels read (numpy record scalar)."""
+    return np.array([as_tuple(instance)], dtype=layout(type(instance)))[0]
+
+
+def from_record(kind: type, record: Any) -> Any:
+    """The declaration of type `kind` with the values of `record`."""
+    values: dict[str, Any] = {}
+    for f in fields(kind):
+        value = record[f.name]
+        if "group" in f.metadata:
+            values[f.name] = from_record(f.metadata["group"], value)
+        elif "array" in f.metadata:
+            values[f.name] = tuple(float(v) for v in value)
+        else:
+            values[f.name] = float(value) if f.metadata["spec"].kind == "real" else int(value)
+    return kind(**values)

@@ -1,0 +1,216 @@
+"""A rigid rotor in planar motion: a disk that floats, falls, bounces and spins.
+
+Three coordinates: position of the shaft centre and rotation. Its seats lie in the plane of the centre
+of mass; a rotor that tilts is a matter of the flexible model. Unbalance enters with spin acceleration
+as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre feels
+
+    m e (omega^2 cos(theta + phase) + alpha sin(theta + phase)),   likewise in y.
+
+Sign and frame: x horizontal, y up, angles counter-clockwise, SI.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelkit import dopri
+from modelkit.kernel import kernel
+from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model
+from modelkit.ports import Energy, SeatLoad, SeatState
+from modelkit.variables import group, real
+
+X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
+SIZE = 9
+TOLERANCE = 1e-9  # of the scales below; the motion within a macro step is nearly polynomial
+DRAG_SPEED = 0.1  # rad/s; below it the constant drag torque fades, so that it cannot reverse the spin
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """The disk of section 4.3 of the source."""
+
+    mass: float = real(1.65, "kg", "mass", above=0.0)
+    inertia: float = real(0.5e-3, "kg.m2", "polar moment of inertia", above=0.0)
+    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    speed: float = real(942.477796076938, "rad/s", "spin speed at the start")
+    eccentricity: float = real(0.0, "m", "distance of the centre of mass from the shaft centre", minimum=0.0)
+    unbalance_angle: float = real(0.0, "rad", "angle of the centre of mass at the start")
+    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0)
+    viscous_drag: float = real(0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0)
+    x: float = real(0.0, "m", "horizontal position at the start")
+    y: float = real(0.0, "m", "vertical position at the start")
+    vx: float = real(0.0, "m/s", "horizontal velocity at the start")
+    vy: float = real(0.0, "m/s", "vertical velocity at the start")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Loads of the touchdown bearing (A) and of the magnetic bearing (amb)."""
+
+    A: SeatLoad = group(SeatLoad)
+    amb: SeatLoad = group(SeatLoad)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Motion at both seats."""
+
+    A: SeatState = group(SeatState)
+    amb: SeatState = group(SeatState)
+    energy: Energy = group(Energy)
+
+
+@kernel
+def rhs(t, y, dy, m):
+    """Newton and Euler under the loads mean + slope (t - t_mid)."""
+    p, a, b = m.p, m.u.A, m.u.amb
+    s = t - m.half
+    ax, ay, am = a.fx + a.dfx * s, a.fy + a.dfy * s, a.mz + a.dmz * s
+    bx, by, bm = b.fx + b.dfx * s, b.fy + b.dfy * s, b.mz + b.dmz * s
+    drag = _drag(y[SPIN], p)
+    alpha = (am + bm - drag) / p.inertia
+    ux, uy = _unbalance(y[ANGLE], y[SPIN], alpha, p)
+    dy[X] = y[VX]
+    dy[Y] = y[VY]
+    dy[VX] = (ax + bx) / p.mass + ux
+    dy[VY] = (ay + by) / p.mass + uy - p.gravity
+    dy[ANGLE] = y[SPIN]
+    dy[SPIN] = alpha
+    dy[WORK_A] = ax * y[VX] + ay * y[VY] + am * y[SPIN]
+    dy[WORK_AMB] = bx * y[VX] + by * y[VY] + bm * y[SPIN]
+    dy[LOSS] = drag * y[SPIN]
+
+
+@kernel
+def _drag(spin, p):
+    return p.drag * math.tanh(spin / DRAG_SPEED) + p.viscous_drag * spin
+
+
+@kernel
+def _unbalance(angle, spin, alpha, p):
+    """Acceleration of the shaft centre by the unbalance (m/s2)."""
+    if p.eccentricity == 0.0:
+        return 0.0, 0.0
+    c, s = math.cos(angle + p.unbalance_angle), math.sin(angle + p.unbalance_angle)
+    w2 = spin * spin
+    return p.eccentricity * (w2 * c + alpha * s), p.eccentricity * (w2 * s - alpha * c)
+
+
+@kernel
+def publish(y, m):
+    """Outputs at the end of the step: at each seat what it does not cause itself is 'free'."""
+    p = m.p
+    _publish_seat(y, p, m.o.A, m.u.amb, m.half)
+    _publish_seat(y, p, m.o.amb, m.u.A, m.half)
+    m.o.A.work = y[WORK_A]
+    m.o.amb.work = y[WORK_AMB]
+    e = m.o.energy
+    e.kinetic = 0.5 * p.mass * (y[VX] ** 2 + y[VY] ** 2) + 0.5 * p.inertia * y[SPIN] ** 2
+    e.potential = p.mass * p.gravity * y[Y]
+    e.dissipated = y[LOSS]
+
+
+@kernel
+def _publish_seat(y, p, seat, other, half):
+    """`other` is the load of the other seat, taken at its end value."""
+    alpha = (other.mz + other.dmz * half - _drag(y[SPIN], p)) / p.inertia
+    ux, uy = _unbalance(y[ANGLE], y[SPIN], alpha, p)
+    seat.x, seat.y, seat.vx, seat.vy = y[X], y[Y], y[VX], y[VY]
+    seat.ax_free = (other.fx + other.dfx * half) / p.mass + ux
+    seat.ay_free = (other.fy + other.dfy * half) / p.mass + uy - p.gravity
+    seat.inv_m = 1.0 / p.mass
+    seat.omega = y[SPIN]
+    seat.alpha_free = alpha
+    seat.inv_I = 1.0 / p.inertia
+
+
+@kernel
+def start(memory):
+    """State and outputs from the parameters."""
+    m = memory[0]
+    p, y = m.p, m.y
+    y[X], y[Y], y[VX], y[VY] = p.x, p.y, p.vx, p.vy
+    y[SPIN] = p.speed
+    m.half = 0.0
+    publish(y, m)
+
+
+@kernel
+def _finite(load):
+    return math.isfinite(load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz)
+
+
+@kernel
+def _ignore(t, y, m):
+    """Nothing happens inside a rotor's step that its end does not show."""
+
+
+@kernel
+def advance(memory, work, time, step):
+    """One macro step under the given loads."""
+    m = memory[0]
+    if not (_finite(m.u.A) and _finite(m.u.amb)):
+        return BAD_INPUT
+    m.time = time
+    m.half = 0.5 * step
+    m.h, failure, evaluations = dopri.integrate(
+        rhs, _ignore, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
+    )
+    m.evaluations += evaluations
+    publish(m.y, m)
+    if failure == dopri.STEP_UNDERFLOW:
+        return STIFF
+    if failure == dopri.TOO_MANY_STEPS:
+        return BUSY
+    return OK
+
+
+def weights(p: Parameters) -> np.ndarray:
+    """Positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s."""
+    w = np.zeros(SIZE)
+    w[[X, Y]] = 1e6
+    w[[VX, VY]] = 1e2
+    w[[ANGLE, SPIN]] = 1e-1
+    return w
+
+
+def _starts_from() -> dict[str, tuple[str, ...]]:
+    found: dict[str, tuple[str, ...]] = {
+        "energy.kinetic": ("mass", "inertia", "speed", "vx", "vy"),
+        "energy.potential": ("mass", "gravity", "y"),
+    }
+    for seat, other in (("A", "amb"), ("amb", "A")):
+        turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
+        unbalance = ("eccentricity", "unbalance_angle", *turning)
+        found |= {
+            f"{seat}.{name}": (name if name in ("x", "y", "vx", "vy") else source,)
+            for name, source in (
+                ("x", ""), ("y", ""), ("vx", ""), ("vy", ""),
+                ("inv_m", "mass"), ("omega", "speed"), ("inv_I", "inertia"),
+            )
+        }
+        found[f"{seat}.alpha_free"] = turning
+        found[f"{seat}.ax_free"] = ("mass", f"{other}.fx", *unbalance)
+        found[f"{seat}.ay_free"] = ("mass", "gravity", f"{other}.fy", *unbalance)
+    return found
+
+
+MODEL = Model(
+    name="rigid_rotor",
+    title="Rigid rotor",
+    about="Rigid disk in planar motion with spin, unbalance and drag; one seat for a touchdown "
+    "bearing (A), one for a magnetic bearing (amb)",
+    parameters=Parameters,
+    inputs=Inputs,
+    outputs=Outputs,
+    state_size=SIZE,
+    start=start,
+    advance=advance,
+    weights=weights,
+    rhs=rhs,
+    publish=publish,
+    starts_from=_starts_from(),
+)
