@@ -1,0 +1,1 @@
+"""The master: scenes, coupling, recording, results. It knows no physics."""

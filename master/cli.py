@@ -1,0 +1,161 @@
+"""The command `touchdown`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from master.errors import TouchdownError
+
+FAILED = 2
+STOPPED = 3
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit status. A user's mistake is one line on stderr."""
+    options = _parser().parse_args(arguments)
+    try:
+        return options.run(options)
+    except TouchdownError as error:
+        print(f"touchdown: {error}", file=sys.stderr)
+        return FAILED
+    except KeyboardInterrupt:
+        print("touchdown: interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="touchdown", description="Rotor drops onto touchdown bearings, co-simulated with FMUs."
+    )
+    verbs = parser.add_subparsers(required=True, metavar="VERB")
+
+    scenes = verbs.add_parser("scenes", help="list the scenes, or show one")
+    scenes.add_argument("scene", nargs="?", help="show this scene's components and settings")
+    scenes.set_defaults(run=_scenes)
+
+    run = verbs.add_parser("run", help="run a scene")
+    run.add_argument("scene", help="name of a scene, or path of a .toml")
+    run.add_argument("-o", "--output", type=Path, help="folder for the results (default: runs/SCENE)")
+    run.add_argument("--scheme", help="coupling scheme: hold, velocity, acceleration, interface (default)")
+    run.add_argument("--macro-step", help='macro step, in s or as text such as "20 us"')
+    run.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="set run.KEY or COMPONENT.VARIABLE"
+    )
+    run.add_argument(
+        "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
+    )
+    run.add_argument("--in-process", action="store_true", help="step the models without FMUs")
+    run.add_argument("--csv", action="store_true", help="also write result.csv")
+    run.add_argument("--no-pictures", action="store_true", help="draw nothing")
+    run.add_argument("--quiet", action="store_true", help="no progress bar")
+    run.set_defaults(run=_run)
+
+    build = verbs.add_parser("build", help="build the FMUs")
+    build.add_argument("names", nargs="*", help="FMUs to build (default: all)")
+    build.add_argument("-o", "--output", type=Path, default=Path("build"), help="folder (default: build)")
+    build.set_defaults(run=_build)
+
+    check = verbs.add_parser("check", help="check FMUs: validity, contract, a dry run")
+    check.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
+    check.set_defaults(run=_check)
+    return parser
+
+
+def _scenes(options: argparse.Namespace) -> int:
+    from master import scene as scenes
+
+    if options.scene is None:
+        names = scenes.names()
+        width = max(len(name) for name in names)
+        for name in names:
+            print(f"  {name:<{width}}  {scenes.load(name).title}")
+        return 0
+    chosen = scenes.load(options.scene)
+    print(chosen.title)
+    print(chosen.about.strip())
+    print(
+        f"\nrun: {chosen.run.duration:g} s from {chosen.zero or 'the start'}, "
+        f"macro step {chosen.run.macro_step:g} s, scheme {chosen.run.scheme}"
+    )
+    for name, spec in chosen.components.items():
+        settings = "".join(f"\n      {key} = {value}" for key, value in spec.set.items())
+        print(f"  {name}: {spec.fmu}{settings}")
+    for bearing, body in chosen.attach:
+        print(f"  {bearing} on {body}")
+    return 0
+
+
+def _run(options: argparse.Namespace) -> int:
+    from master.run import run_scene
+    from master.scene import load
+    from master.summary import table
+
+    chosen = load(options.scene)
+    for text in options.swap:
+        chosen = chosen.with_swap(*_assignment(text, "--swap"))
+    for text in options.set:
+        chosen = chosen.with_setting(*_assignment(text, "--set"))
+    if options.scheme:
+        chosen = chosen.with_setting("run.scheme", options.scheme)
+    if options.macro_step:
+        chosen = chosen.with_setting("run.macro_step", options.macro_step)
+    result = run_scene(
+        chosen,
+        options.output or Path("runs") / chosen.name,
+        in_process=options.in_process,
+        csv=options.csv,
+        pictures=not options.no_pictures,
+        progress=not options.quiet,
+    )
+    print(table(result.summary))
+    print(f"results in {result.folder}")
+    for warning in result.warnings:
+        print(f"touchdown: warning: {warning}", file=sys.stderr)
+    if result.stopped_because:
+        print(
+            f"touchdown: stopped: {result.stopped_because}; what was recorded is in {result.folder}",
+            file=sys.stderr,
+        )
+        return 130 if result.stopped_because == "interrupted" else STOPPED
+    return 0
+
+
+def _build(options: argparse.Namespace) -> int:
+    from fmus.build import build, names
+    from master.errors import one_of
+
+    known = names()
+    for name in options.names:
+        if name not in known:
+            raise TouchdownError(f"there is no FMU called {name}; {one_of(name, known)}")
+    for name in options.names or known:
+        try:
+            print(build(name, options.output))
+        except OSError as error:
+            raise TouchdownError(
+                f"cannot write to {options.output}: {error.strerror}; choose another folder with -o"
+            ) from None
+    return 0
+
+
+def _check(options: argparse.Namespace) -> int:
+    from master.check import check_fmu
+
+    failed = 0
+    for name in options.fmus:
+        report = check_fmu(name)
+        print(report.text)
+        failed += bool(report.problems)
+    return FAILED if failed else 0
+
+
+def _assignment(text: str, option: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals or not name or not value:
+        raise TouchdownError(f"{option} {text}: write NAME=VALUE")
+    return name.strip(), value.strip()

@@ -1,0 +1,119 @@
+"""What the master knows of a component: named variables, and calls in a fixed order.
+
+    set(...)  enter()  [push() / pull()]...  exit()  then for each macro step  push()  step(t, H)  pull()
+
+`bind` fixes, before `enter`, which variables are exchanged at every step. Broken order is a programming
+error; what a user can cause raises TouchdownError.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from master.errors import TouchdownError, one_of
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable of a component."""
+
+    name: str
+    reference: int
+    kind: str  # "Real" or "Integer"; others are known by name only
+    causality: str
+    variability: str
+    unit: str | None
+    minimum: float | None
+    maximum: float | None
+    start: float | None
+    description: str
+
+    @property
+    def settable(self) -> bool:
+        """Whether a scene may give it a value."""
+        return self.causality in ("parameter", "input") and self.kind in ("Real", "Integer")
+
+    @property
+    def constant(self) -> bool:
+        """Whether its value is settled once the component is initialised."""
+        return self.variability in ("fixed", "constant", "tunable")
+
+
+class Component(ABC):
+    """An FMU, or a model stepped in process."""
+
+    def __init__(self, name: str, origin: str, variables: Mapping[str, Variable]) -> None:
+        self.name = name
+        self.origin = origin  # what it is made of, for people
+        self.variables = variables
+        self.inputs = np.zeros(0)
+        self.outputs = np.zeros(0)
+
+    def variable(self, name: str) -> Variable:
+        """The variable called `name`."""
+        try:
+            return self.variables[name]
+        except KeyError:
+            raise TouchdownError(
+                f"component {self.name} ({self.origin}) has no variable {name}; "
+                + one_of(name, self.variables)
+            ) from None
+
+    @abstractmethod
+    def set(self, values: Mapping[str, float]) -> None:
+        """Set parameters or inputs before initialisation; values are in SI units and within bounds."""
+
+    @abstractmethod
+    def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
+        """Exchange real `inputs` through self.inputs, and read real variables `names` into `outputs`."""
+
+    @abstractmethod
+    def enter(self, start_time: float) -> None:
+        """Enter initialisation."""
+
+    @abstractmethod
+    def exit(self) -> None:
+        """Leave initialisation; the component may be stepped."""
+
+    @abstractmethod
+    def push(self) -> None:
+        """Hand self.inputs over."""
+
+    @abstractmethod
+    def pull(self) -> None:
+        """Fetch self.outputs."""
+
+    @abstractmethod
+    def step(self, time: float, step: float) -> None:
+        """Advance from `time` by `step` (s)."""
+
+    @abstractmethod
+    def read(self, names: Sequence[str]) -> list[float]:
+        """Values of any variables."""
+
+    @abstractmethod
+    def save(self) -> object:
+        """The whole state, for `restore`."""
+
+    @abstractmethod
+    def restore(self, state: object) -> None:
+        """Go back to a saved state."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Free what the component holds; nothing may be called after it."""
+
+
+def check_value(component: Component, variable: Variable, value: float) -> None:
+    """Raise TouchdownError where `value` is out of the bounds the component declares."""
+    what = f"{component.name}.{variable.name} = {value:g} {variable.unit or ''}".rstrip()
+    if variable.minimum is not None and value < variable.minimum:
+        raise TouchdownError(f"{what} must be at least {variable.minimum:g}")
+    if variable.maximum is not None and value > variable.maximum:
+        raise TouchdownError(f"{what} must be at most {variable.maximum:g}")
+    if variable.kind == "Integer" and value != round(value):
+        raise TouchdownError(f"{what} must be a whole number")

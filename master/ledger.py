@@ -1,0 +1,75 @@
+"""The energy ledger: what crosses a connection must be the same seen from both sides.
+
+Each side states the work of its load on its own idea of the body's motion. The bearing also states, as
+`jump`, half the sum of the loads before and after times the jump of its copy at each restart. Per macro
+step n the residual is
+
+    r_n = dW_bearing(n) + dJ(n + 1) - dW_body(n)
+
+and what is reported is the sum of all |r_n| over all connections, over the scene's energy scale (the
+energy lost by falling, m g c). It is a live estimate of the coupling's error.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from master.system import Attachment, System
+
+
+@dataclass
+class Entry:
+    """One connection's account."""
+
+    attachment: Attachment
+    bearing_work: int  # positions in the system's signals
+    jump: int
+    body_work: int
+    last: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    pending: float = 0.0  # work difference of the last step, its jump not yet known
+    total: float = 0.0  # sum of |r_n|, J
+    net: float = 0.0  # sum of r_n, J
+
+
+class Ledger:
+    """Accounts of all connections that state work on both sides."""
+
+    def __init__(self, system: System, scale: float) -> None:
+        self._signals = system.signals
+        self.scale = scale  # J; 0: unknown, residuals are then absolute
+        self.entries: list[Entry] = []
+        for a in system.attachments:
+            keys = (
+                (a.bearing, f"{a.bearing_port}.work"),
+                (a.bearing, f"{a.bearing_port}.jump"),
+                (a.body, f"{a.body_port}.work"),
+            )
+            if all(key in system.position for key in keys):
+                self.entries.append(Entry(a, *(system.position[key] for key in keys)))
+        self._index = np.array(
+            [i for e in self.entries for i in (e.bearing_work, e.jump, e.body_work)], dtype=np.intp
+        )
+
+    def update(self) -> None:
+        """Book the macro step that was just taken."""
+        values = self._signals[self._index].tolist()
+        for n, entry in enumerate(self.entries):
+            bearing, jump, body = values[3 * n : 3 * n + 3]
+            last = entry.last
+            residual = entry.pending + (jump - last[1])
+            entry.total += abs(residual)
+            entry.net += residual
+            entry.pending = (bearing - last[0]) - (body - last[2])
+            entry.last = (bearing, jump, body)
+
+    @property
+    def residual(self) -> float:
+        """Sum of |r_n| over all connections and steps, over the energy scale (or in J without one)."""
+        total = sum(entry.total for entry in self.entries)
+        return total / self.scale if self.scale > 0.0 else total
+
+    def worst(self) -> Entry | None:
+        """The connection with the largest residual."""
+        return max(self.entries, key=lambda entry: entry.total, default=None)

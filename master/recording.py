@@ -1,0 +1,127 @@
+"""Recording to HDF5, streamed: memory stays flat, and what was recorded survives a run that stops.
+
+One group per component, one dataset per variable (attributes unit and description), and `time` in
+seconds from the scene's zero.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from master.component import Component
+from master.errors import TouchdownError
+
+BLOCK = 4096  # rows held before they are written
+
+
+class Recorder:
+    """Rows of all recorded variables of a system."""
+
+    def __init__(self, path: Path, components: dict[str, Component]) -> None:
+        self.path = path
+        self._components = components
+        self.names = {
+            name: [
+                v.name
+                for v in component.variables.values()
+                if v.causality in ("output", "local") and v.kind in ("Real", "Integer")
+            ]
+            for name, component in components.items()
+        }
+        try:
+            self._file = h5py.File(path, "w", libver="latest")
+        except OSError as error:
+            raise TouchdownError(f"cannot write {path}: {error}; choose another folder with -o") from None
+        self._time = self._dataset("time", "s", "time from the scene's zero")
+        self._datasets = {
+            (name, variable): self._dataset(
+                f"{name}/{variable}",
+                components[name].variable(variable).unit or "1",
+                components[name].variable(variable).description,
+            )
+            for name, variables in self.names.items()
+            for variable in variables
+        }
+        self._block = np.zeros((BLOCK, 1 + len(self._datasets)))
+        self._filled = 0
+        self.rows = 0
+
+    def _dataset(self, name: str, unit: str, description: str) -> h5py.Dataset:
+        dataset = self._file.create_dataset(
+            name, (0,), maxshape=(None,), chunks=(BLOCK,), dtype="f8", compression="gzip", compression_opts=1
+        )
+        dataset.attrs["unit"] = unit
+        dataset.attrs["description"] = description
+        return dataset
+
+    def append(self, time: float) -> None:
+        """Record all variables at `time` (s)."""
+        row = self._block[self._filled]
+        row[0] = time
+        column = 1
+        for name, variables in self.names.items():
+            values = self._components[name].read(variables)
+            row[column : column + len(values)] = values
+            column += len(values)
+        self._filled += 1
+        if self._filled == BLOCK:
+            self._write()
+
+    def _write(self) -> None:
+        n = self._filled
+        if n:
+            for column, dataset in enumerate((self._time, *self._datasets.values())):
+                dataset.resize((self.rows + n,))
+                dataset[self.rows :] = self._block[:n, column]
+            self.rows += n
+            self._filled = 0
+            self._file.flush()
+
+    def close(self) -> None:
+        """Write what is left."""
+        if self._file:
+            self._write()
+            self._file.close()
+
+
+class Recording:
+    """A recorded run, read back."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = h5py.File(path, "r")
+        self.time = np.asarray(self._file["time"])
+
+    def __contains__(self, name: str) -> bool:
+        return self._key(name) in self._file
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Values of COMPONENT.VARIABLE."""
+        return np.asarray(self._file[self._key(name)])
+
+    def columns(self) -> list[tuple[str, str]]:
+        """(COMPONENT.VARIABLE, unit) of everything recorded."""
+        found: list[tuple[str, str]] = []
+        for component, group in self._file.items():
+            if isinstance(group, h5py.Group):
+                found += [(f"{component}.{name}", str(d.attrs["unit"])) for name, d in group.items()]
+        return found
+
+    @staticmethod
+    def _key(name: str) -> str:
+        component, _, variable = name.partition(".")
+        return f"{component}/{variable}"
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def write_csv(recording: Recording, path: Path) -> None:
+    """All columns with their units, full precision, true times."""
+    columns = recording.columns()
+    data = np.column_stack([recording.time, *(recording[name] for name, _ in columns)])
+    header = ",".join(["time [s]", *(f"{name} [{unit}]" for name, unit in columns)])
+    np.savetxt(path, data, delimiter=",", header=header, comments="", fmt="%.17g")

@@ -1,0 +1,108 @@
+"""Run a scene from start to finish: simulate, record, sum up, draw."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tqdm import tqdm
+
+from master.errors import TouchdownError
+from master.recording import Recording, write_csv
+from master.scene import Scene
+from master.simulation import open_system, simulate
+from master.summary import summarise
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run left behind."""
+
+    folder: Path
+    summary: dict[str, object]
+    stopped_because: str = ""
+    warnings: list[str] = field(default_factory=list)
+    pictures: list[Path] = field(default_factory=list)
+
+
+def run_scene(
+    scene: Scene,
+    folder: Path,
+    in_process: bool = False,
+    csv: bool = False,
+    pictures: bool = True,
+    progress: bool = False,
+) -> Result:
+    """Run `scene` and write summary.json, result.h5 and what else is asked for into `folder`.
+
+    Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
+    it recorded, and says why in the result.
+    """
+    _make_writable(folder)
+    system = open_system(scene, in_process)
+    try:
+        with _Bar(scene, progress) as show:
+            outcome = simulate(scene, system, folder / "result.h5", show)
+        recording = Recording(folder / "result.h5")
+        try:
+            summary = summarise(scene, system, outcome, recording)
+            (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+            if csv:
+                write_csv(recording, folder / "result.csv")
+            drawn: list[Path] = []
+            if pictures:
+                from master.plots import draw_all  # matplotlib is slow to import
+
+                drawn = draw_all(scene, system, recording, folder)
+        finally:
+            recording.close()
+    finally:
+        system.close()
+    warnings = []
+    if outcome.warned_at is not None:
+        warnings.append(
+            f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
+            f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
+        )
+    return Result(folder, summary, outcome.stopped_because, warnings, drawn)
+
+
+def _make_writable(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".touchdown"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise TouchdownError(
+            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
+        ) from None
+
+
+class _Bar:
+    """Progress bar over simulated time, with speed and ledger residual."""
+
+    def __init__(self, scene: Scene, shown: bool) -> None:
+        self._scene = scene
+        self._bar = tqdm(
+            total=scene.run.duration,
+            disable=not shown,
+            unit="s",
+            bar_format="{desc} {percentage:3.0f}%|{bar:30}| {n:.3f}/{total:.3f} s simulated, "
+            "{rate_inv_fmt} left {remaining} {postfix}",
+            desc=scene.name,
+            mininterval=0.2,
+        )
+
+    def __enter__(self) -> Callable[[float, float], None]:
+        def show(time: float, residual: float) -> None:
+            if time > self._bar.n:
+                self._bar.update(time - self._bar.n)
+                self._bar.set_postfix_str(f"ledger {residual:.1e}", refresh=False)
+
+        return show
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()

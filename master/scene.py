@@ -1,0 +1,196 @@
+"""A scene: components, how they are attached, and how to run them; read from TOML.
+
+    title = "..."
+    about = "..."
+    zero = "amb.shutdown_time"                     # times and the duration count from here
+    energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
+    attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
+    connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target
+
+    [run]
+    duration = 5.0        # s
+    macro_step = 2e-5     # s
+
+    [components.rotor]
+    fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
+    [components.rotor.set]
+    mass = "1.65 kg"      # a number in SI, or text with a unit
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from master import schemes
+from master.errors import TouchdownError, one_of
+from master.units import to_si
+
+SCENES = Path(__file__).parent / "scenes"
+
+
+@dataclass(frozen=True)
+class ComponentSpec:
+    """A component: where it comes from and what is set in it."""
+
+    fmu: str
+    set: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class RunSpec:
+    """How to run."""
+
+    duration: float = 1.0  # s, from the scene's zero
+    macro_step: float = 2e-5  # s
+    scheme: str = schemes.DEFAULT
+    record_every: int = 5  # macro steps
+    warn_residual: float = 1e-3  # ledger over energy scale: say so
+    stop_residual: float = 0.1  # ledger over energy scale: stop
+
+
+RUN_UNITS = {"duration": "s", "macro_step": "s", "record_every": "1", "warn_residual": "1", "stop_residual": "1"}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything a run needs."""
+
+    name: str
+    title: str
+    components: Mapping[str, ComponentSpec]
+    about: str = ""
+    attach: tuple[tuple[str, str], ...] = ()
+    connect: tuple[tuple[str, str], ...] = ()
+    zero: str | None = None
+    energy_scale: tuple[str, ...] = ()
+    run: RunSpec = RunSpec()
+    folder: Path = Path()  # relative paths of FMUs start here
+
+    def with_setting(self, name: str, value: object) -> Scene:
+        """A copy with run.KEY or COMPONENT.VARIABLE set to `value`."""
+        head, _, tail = name.partition(".")
+        if not tail:
+            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
+        if head == "run":
+            return replace(self, run=_run({tail: value}, self.run))
+        spec = self._component(head)
+        changed = replace(spec, set={**spec.set, tail: value})
+        return replace(self, components={**self.components, head: changed})
+
+    def with_swap(self, name: str, fmu: str) -> Scene:
+        """A copy with component `name` made of another FMU, which starts from its own defaults."""
+        self._component(name)
+        if fmu.endswith(".fmu"):
+            fmu = str(Path(fmu).absolute())
+        return replace(self, components={**self.components, name: ComponentSpec(fmu)})
+
+    def _component(self, name: str) -> ComponentSpec:
+        try:
+            return self.components[name]
+        except KeyError:
+            raise TouchdownError(
+                f"scene {self.name} has no component {name}; {one_of(name, [*self.components, 'run'])}"
+            ) from None
+
+
+def names() -> list[str]:
+    """The scenes that come with the project."""
+    return sorted(path.stem for path in SCENES.glob("*.toml"))
+
+
+def load(name: str) -> Scene:
+    """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    path = SCENES / f"{name}.toml"
+    if name.endswith(".toml"):
+        path = Path(name)
+    elif name not in names():
+        raise TouchdownError(f"unknown scene {name}; {one_of(name, names())}, or give the path of a .toml")
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TouchdownError(f"cannot read scene {path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TouchdownError(f"scene {path} is not valid TOML: {error}") from None
+    return parse(data, path.stem, path.parent)
+
+
+def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
+    """A scene from the tables of its TOML file."""
+    known = ("title", "about", "zero", "energy_scale", "attach", "connect", "run", "components")
+    _refuse_unknown(data, known, f"scene {name}")
+    components = {}
+    for key, table in _table(data.get("components"), f"scene {name}: [components]").items():
+        where = f"scene {name}: [components.{key}]"
+        table = _table(table, where)
+        _refuse_unknown(table, ("fmu", "set"), where)
+        if not isinstance(table.get("fmu"), str):
+            raise TouchdownError(f"{where} needs fmu = \"NAME\" or the path of an .fmu")
+        components[key] = ComponentSpec(table["fmu"], _flat(_table(table.get("set", {}), where)))
+    if not components:
+        raise TouchdownError(f"scene {name} has no components; add [components.NAME] with fmu = \"...\"")
+    return Scene(
+        name=name,
+        title=str(data.get("title", name)),
+        about=str(data.get("about", "")),
+        components=components,
+        attach=_pairs(data.get("attach", []), f"scene {name}: attach"),
+        connect=_pairs(data.get("connect", []), f"scene {name}: connect"),
+        zero=data.get("zero"),
+        energy_scale=tuple(data.get("energy_scale", ())),
+        run=_run(_table(data.get("run", {}), f"scene {name}: [run]"), RunSpec()),
+        folder=folder,
+    )
+
+
+def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
+    _refuse_unknown(changes, ("scheme", *RUN_UNITS), "[run]")
+    values: dict[str, Any] = {}
+    for key, value in changes.items():
+        if key == "scheme":
+            values[key] = schemes.scheme(str(value)).name
+            continue
+        number = to_si(value, RUN_UNITS[key], f"run.{key}")
+        if number <= 0.0 or not math.isfinite(number):
+            raise TouchdownError(f"run.{key} = {value} must be above 0")
+        if key == "record_every":
+            if number != int(number):
+                raise TouchdownError(f"run.record_every = {value} must be a whole number of macro steps")
+            number = int(number)
+        values[key] = number
+    return replace(run, **values)
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
+    """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
+    found: dict[str, object] = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            found |= _flat(value, f"{prefix}{key}.")
+        else:
+            found[f"{prefix}{key}"] = value
+    return found
+
+
+def _table(value: object, where: str) -> Mapping[str, Any]:
+    if not isinstance(value, Mapping):
+        raise TouchdownError(f"{where} must be a table")
+    return value
+
+
+def _pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
+    if not isinstance(value, list) or not all(
+        isinstance(p, list) and len(p) == 2 and all(isinstance(s, str) and "." in s for s in p) for p in value
+    ):
+        raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
+    return tuple((p[0], p[1]) for p in value)
+
+
+def _refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:
+    for key in table:
+        if key not in known:
+            raise TouchdownError(f"{where} has an unknown key {key}; {one_of(key, known)}")

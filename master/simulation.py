@@ -1,0 +1,180 @@
+"""The loop: macro steps at t = k H, bearings first, then the bodies under the loads handed over."""
+
+from __future__ import annotations
+
+import math
+import signal
+import threading
+import time as clock
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from fmus.build import cached, names
+from master.component import Component
+from master.errors import TouchdownError
+from master.fmi import FmuComponent, find
+from master.ledger import Ledger
+from master.recording import Recorder
+from master.scene import Scene
+from master.schemes import scheme
+from master.system import System, assemble
+from master.twin import TwinComponent
+from modelkit.kernel import user_cache
+
+BEAT = 64  # macro steps between looks at progress, ledger and components that have nothing left to do
+
+
+@dataclass
+class Outcome:
+    """What the loop reports beside the recording."""
+
+    steps: int = 0
+    zero: float = 0.0  # s, the scene's zero on the simulation's clock
+    end: float = 0.0  # s, on the simulation's clock
+    wall_time: float = 0.0  # s, stepping only
+    start_up: float = 0.0  # s, loading and initialising
+    residual: float = 0.0  # of the ledger, over its scale
+    warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
+    stopped_because: str = ""
+
+
+def open_system(scene: Scene, in_process: bool = False) -> System:
+    """Load the scene's components, as FMUs or in process, and wire them up."""
+
+    def load(name: str, fmu: str) -> Component:
+        path = find(fmu, scene.folder, names())
+        if path is None:
+            return TwinComponent(name, fmu) if in_process else FmuComponent(name, cached(fmu), user_cache())
+        return FmuComponent(name, path, user_cache())
+
+    return assemble(scene, scheme(scene.run.scheme), load)
+
+
+def simulate(
+    scene: Scene,
+    system: System,
+    record_to: Path | None = None,
+    progress: Callable[[float, float], None] = lambda time, residual: None,
+    watch: Callable[[float, System], None] | None = None,
+) -> Outcome:
+    """Initialise `system` and run it to the scene's end.
+
+    progress(time from zero in s, ledger residual) is called now and then; watch(time, system) after
+    every macro step. A run that cannot go on, or is interrupted, keeps its recording; the reason then
+    stands in the outcome's `stopped_because`.
+    """
+    began = clock.perf_counter()
+    outcome = Outcome()
+    recorder: Recorder | None = None
+    try:
+        outcome.zero = system.value(scene.zero) if scene.zero else 0.0
+        ledger = Ledger(system, energy_scale(scene, system))
+        system.initialise()
+        if record_to is not None:
+            recorder = Recorder(record_to, system.components)
+            recorder.append(-outcome.zero)
+        steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
+        outcome.start_up = clock.perf_counter() - began
+        with _interrupts_noted() as interrupted:
+            _loop(scene, system, steps, ledger, recorder, outcome, progress, watch, interrupted)
+    except TouchdownError as error:
+        if outcome.steps == 0 and recorder is None:
+            raise
+        outcome.stopped_because = str(error)
+    finally:
+        if recorder is not None:
+            recorder.close()
+    return outcome
+
+
+@contextmanager
+def _interrupts_noted() -> Iterator[threading.Event]:
+    """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU."""
+    noted = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield noted
+        return
+    before = signal.signal(signal.SIGINT, lambda *_: noted.set())
+    try:
+        yield noted
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def macro_steps(duration: float, step: float) -> int:
+    """How many macro steps of `step` cover `duration` (s)."""
+    if step > duration:
+        raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")
+    return math.ceil(duration / step - 1e-6)
+
+
+def energy_scale(scene: Scene, system: System) -> float:
+    """Product of the scene's energy_scale variables (J); 0 where it names none."""
+    return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
+
+
+def _loop(
+    scene: Scene,
+    system: System,
+    steps: int,
+    ledger: Ledger,
+    recorder: Recorder | None,
+    outcome: Outcome,
+    progress: Callable[[float, float], None],
+    watch: Callable[[float, System], None] | None,
+    interrupted: threading.Event,
+) -> None:
+    step, every = scene.run.macro_step, scene.run.record_every
+    active = list(system.order)
+    began = clock.perf_counter()
+    try:
+        for k in range(steps):
+            if interrupted.is_set():
+                raise TouchdownError("interrupted")
+            time = k * step
+            for name in active:
+                system.feed(name)
+                component = system.components[name]
+                component.step(time, step)
+                component.pull()
+            ledger.update()
+            done = k + 1
+            outcome.steps = done
+            outcome.end = done * step
+            if recorder is not None and (done % every == 0 or done == steps):
+                recorder.append(outcome.end - outcome.zero)
+            if watch is not None:
+                watch(outcome.end, system)
+            if done % BEAT == 0 or done == steps:
+                outcome.wall_time = clock.perf_counter() - began
+                outcome.residual = ledger.residual
+                _judge(scene, ledger, outcome)
+                active = [name for name in active if _has_work(system.components[name])]
+                progress(outcome.end - outcome.zero, outcome.residual)
+    finally:
+        outcome.wall_time = clock.perf_counter() - began
+        outcome.residual = ledger.residual
+
+
+def _has_work(component: Component) -> bool:
+    """A component that says `active` = 0 gives nothing any more and is not stepped."""
+    return "active" not in component.variables or component.read(["active"])[0] != 0
+
+
+def _judge(scene: Scene, ledger: Ledger, outcome: Outcome) -> None:
+    """Warn or stop where the coupling creates or loses too much energy."""
+    if ledger.scale <= 0.0:
+        return
+    time = outcome.end - outcome.zero
+    if outcome.warned_at is None and ledger.residual > scene.run.warn_residual:
+        outcome.warned_at = time
+    if not ledger.residual <= scene.run.stop_residual:
+        worst = ledger.worst()
+        assert worst is not None
+        raise TouchdownError(
+            f"the energy ledger of {worst.attachment.title} is off by {ledger.residual:.2g} of the energy "
+            f"lost by falling at t = {time:.6g} s; the macro step of {scene.run.macro_step:g} s is too long "
+            f"for scheme {scene.run.scheme}, try --macro-step {scene.run.macro_step / 5:g}"
+        )

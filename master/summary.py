@@ -1,0 +1,170 @@
+"""The figures of a run: flat, named with their units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import get_window
+
+from master.recording import Recording
+from master.scene import Scene
+from master.simulation import Outcome, energy_scale
+from master.system import Attachment, System
+
+RPM = 60.0 / (2.0 * math.pi)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure taken from a bearing's variable; `missing` marks "has not happened"."""
+
+    key: str
+    variable: str
+    factor: float = 1.0
+    from_zero: bool = False  # a time, counted from the scene's zero
+    missing: float | None = None
+
+
+FIGURES = (
+    Figure("first_contact_time_s", "contact.first_time", from_zero=True, missing=-1.0),
+    Figure("first_contact_speed_m_s", "contact.first_speed"),
+    Figure("peak_contact_force_N", "contact.peak_force"),
+    Figure("peak_indentation_rotor_ring_um", "contact.peak_indentation", 1e6),
+    Figure("peak_indentation_rings_um", "balls.peak_indentation", 1e6),
+    Figure("peak_ball_force_N", "balls.peak_force"),
+    Figure("peak_indentation_ball_ball_um", "neighbours.peak_indentation", 1e6),
+    Figure("ring_sync_time_s", "ring.sync_time", from_zero=True, missing=-1.0),
+    Figure("loaded_balls_end", "balls.loaded"),
+)
+
+
+def touchdown_seats(system: System) -> list[Attachment]:
+    """Attachments at which a journal can touch down, with the name of the bearing's report."""
+    return [a for a in system.attachments if "contact.first_time" in system.components[a.bearing].variables
+            and f"{a.bearing_port}.omega" in system.components[a.bearing].variables]
+
+
+def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
+    """All figures of a run; None where something did not happen or was too short to tell."""
+    found: dict[str, object] = {
+        "scene": scene.name,
+        "completed": not outcome.stopped_because,
+    }
+    if outcome.stopped_because:
+        found["stopped_because"] = outcome.stopped_because
+    seats = touchdown_seats(system)
+    for a in seats:
+        tail = f"_{a.bearing}" if len(seats) > 1 else ""
+        found |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
+        found |= {f"{key}{tail}": value for key, value in _orbit_figures(a, outcome, recording).items()}
+    for name in dict.fromkeys(a.body for a in seats):
+        tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
+        port = next(a.body_port for a in seats if a.body == name)
+        found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(f"{name}.{port}.omega")
+    found |= _run_figures(scene, system, outcome, recording)
+    return found
+
+
+def _bearing_figures(system: System, a: Attachment, outcome: Outcome) -> dict[str, object]:
+    component = system.components[a.bearing]
+    found: dict[str, object] = {}
+    for figure in FIGURES:
+        if figure.variable not in component.variables:
+            continue
+        value = component.read([figure.variable])[0]
+        if figure.missing is not None and value == figure.missing:
+            found[figure.key] = None
+        elif isinstance(value, int):
+            found[figure.key] = value
+        else:
+            found[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
+    return found
+
+
+def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dict[str, object]:
+    x = recording[f"{a.body}.{a.body_port}.x"]
+    y = recording[f"{a.body}.{a.body_port}.y"]
+    time = recording.time
+    fall = None
+    after = time > 0.0
+    if after.any():
+        start = int(np.argmax(time >= -1e-12))
+        fall = 1e6 * float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
+    settled = time >= 0.2 * (outcome.end - outcome.zero)
+    return {
+        "largest_displacement_um": fall,
+        "pendulum_frequency_Hz": dominant_frequency(time[settled], x[settled]),
+    }
+
+
+def dominant_frequency(
+    time: np.ndarray, values: np.ndarray, low: float = 8.0, high: float = 100.0
+) -> float | None:
+    """Frequency of the largest line between `low` and `high` (Hz); None for less than four of its periods.
+
+    Hann window, zero-padded, the maximum refined by a parabola through the logarithm of three lines.
+    """
+    if len(time) < 64 or time[-1] - time[0] < 4.0 / low * 0.5:
+        return None
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    centred = values - np.mean(values)
+    if not np.any(centred):
+        return None
+    count = 8 * len(centred)
+    spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
+    frequency = np.fft.rfftfreq(count, step)
+    band = np.flatnonzero((frequency >= low) & (frequency <= high))
+    peak = int(band[np.argmax(spectrum[band])])
+    if peak in (band[0], band[-1]):
+        return None
+    a, b, c = np.log(spectrum[peak - 1 : peak + 2] + 1e-300)
+    return float(frequency[peak] + 0.5 * (a - c) / (a - 2.0 * b + c) * frequency[1])
+
+
+def energy_total(system: System, recording: Recording) -> np.ndarray | None:
+    """Sum of all stated energies minus what was supplied (J); constant where nothing is lost."""
+    parts = []
+    for name, component in system.components.items():
+        for variable, sign in (
+            ("energy.kinetic", 1.0), ("energy.potential", 1.0), ("energy.dissipated", 1.0), ("supplied", -1.0),
+        ):  # fmt: skip
+            if variable in component.variables:
+                parts.append(sign * recording[f"{name}.{variable}"])
+    return np.sum(parts, axis=0) if parts else None
+
+
+def _run_figures(
+    scene: Scene, system: System, outcome: Outcome, recording: Recording
+) -> dict[str, object]:
+    scale = energy_scale(scene, system)
+    total = energy_total(system, recording)
+    balance = None
+    if total is not None and scale > 0.0 and len(total) > 1:
+        balance = float(np.max(np.abs(total[1:] - total[1])) / scale)
+    simulated = outcome.end
+    return {
+        "energy_residual_relative": outcome.residual if scale > 0.0 else None,
+        "energy_balance_relative": balance,
+        "energy_scale_J": scale if scale > 0.0 else None,
+        "wall_time_s": outcome.wall_time,
+        "start_up_s": outcome.start_up,
+        "simulated_time_s": simulated,
+        "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
+        "scheme": scene.run.scheme,
+        "macro_step_s": scene.run.macro_step,
+        "macro_steps": outcome.steps,
+    }
+
+
+def table(summary: dict[str, object]) -> str:
+    """The figures as text, one a line."""
+    width = max(len(key) for key in summary)
+
+    def shown(value: object) -> str:
+        if value is None:
+            return "-"
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+    return "\n".join(f"  {key:<{width}}  {shown(value)}" for key, value in summary.items())

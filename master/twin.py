@@ -1,0 +1,116 @@
+"""A component stepped in process: the FMU's model without the FMU.
+
+It drives the same instance class as the FMU's slave through the same calls, so both agree bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+
+import numpy as np
+
+from fmus.description import causality
+from fmus.slave import ModelSlave
+from master.component import Component, Variable
+from master.errors import TouchdownError
+from modelkit.model import Instance, Model, ModelError, Slot
+
+
+def model_of(name: str) -> Model:
+    """The model behind the FMU script `name`."""
+    module = import_module(f"fmus.scripts.{name}")
+    for value in vars(module).values():
+        if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
+            return value.model
+    raise LookupError(f"fmus/scripts/{name}.py declares no ModelSlave")
+
+
+def _variable(slot: Slot) -> Variable:
+    spec = slot.variable.spec
+    role, variability, _ = causality(slot)
+    return Variable(
+        name=slot.variable.name,
+        reference=slot.index,
+        kind="Real" if spec.kind == "real" else "Integer",
+        causality=role,
+        variability=variability,
+        unit=spec.unit,
+        minimum=spec.minimum if spec.minimum is not None else spec.above,
+        maximum=spec.maximum,
+        start=slot.variable.default,
+        description=spec.meaning,
+    )
+
+
+class TwinComponent(Component):
+    """A model of the project, stepped without the FMI in between."""
+
+    def __init__(self, name: str, fmu: str) -> None:
+        self._instance = Instance(model_of(fmu))
+        variables = [_variable(slot) for slot in self._instance.slots]
+        super().__init__(name, f"{fmu}, in process", {v.name: v for v in variables})
+        self._words = self._instance.memory.view("f8")
+        self._initialising = False
+        self._start_time = 0.0
+
+    def set(self, values: Mapping[str, float]) -> None:
+        for name, value in values.items():
+            v = self.variable(name)
+            if v.kind == "Real":
+                self._instance.reals[v.reference] = value
+            else:
+                self._instance.integers[v.reference] = int(value)
+
+    def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
+        self.inputs = np.zeros(len(inputs))
+        self.outputs = outputs
+        self._in = np.array([self.variable(n).reference for n in inputs], dtype=np.intp)
+        self._out = np.array([self.variable(n).reference for n in names], dtype=np.intp)
+
+    def enter(self, start_time: float) -> None:
+        self._initialising = True
+        self._start_time = start_time
+
+    def exit(self) -> None:
+        self._start()
+        self._initialising = False
+
+    def push(self) -> None:
+        self._words[self._in] = self.inputs
+
+    def pull(self) -> None:
+        if self._initialising:
+            self._start()
+        self.outputs[:] = self._words[self._out]
+
+    def step(self, time: float, step: float) -> None:
+        try:
+            self._instance.step(time, step)
+        except ModelError as error:
+            raise TouchdownError(f"component {self.name}: {error}") from None
+
+    def read(self, names: Sequence[str]) -> list[float]:
+        if self._initialising:
+            self._start()
+        variables = [self.variable(n) for n in names]
+        return [
+            self._instance.reals[v.reference] if v.kind == "Real" else self._instance.integers[v.reference]
+            for v in variables
+        ]
+
+    def save(self) -> object:
+        return self._instance.save()
+
+    def restore(self, state: object) -> None:
+        assert isinstance(state, bytes)
+        self._instance.restore(state)
+
+    def close(self) -> None:
+        """Nothing to free."""
+
+    def _start(self) -> None:
+        try:
+            self._instance.start(self._start_time)
+        except ModelError as error:
+            raise TouchdownError(f"component {self.name}: {error}") from None
