@@ -89,8 +89,7 @@ def observe(t, y, m):
 def report(y, m):
     """Work supplied, and whether it is over: no load left in the last macro step, nor to come."""
     m.o.supplied = y[SUPPLIED]
-    if m.s.span < 0.0:
-        m.o.active = 0
+    m.o.active = 0 if m.s.span < 0.0 else 1
 
 
 @kernel
@@ -102,7 +101,14 @@ def start(memory):
     if j.inv_m > 0.0:
         m.o.load_x = -j.ax_free / j.inv_m
         m.o.load_y = -j.ay_free / j.inv_m
-    m.o.active = 1
+    seat.begin(react, report, m)
+
+
+@kernel
+def instant(t, y, dy, m):
+    """Derivative and load under the motion m.u at time t (s)."""
+    m.s.span = 1.0 if t < m.p.shutdown_time else -1.0
+    seat.instant(react, 0.0, y, dy, m)
 
 
 @kernel
@@ -132,7 +138,7 @@ MODEL = Model(
     start=start,
     advance=advance,
     weights=weights,
-    react=react,
+    instant=instant,
     starts_from={
         "load_x": ("journal.ax_free", "journal.inv_m"),
         "load_y": ("journal.ay_free", "journal.inv_m"),

@@ -101,6 +101,13 @@ def start(memory):
     """Nothing inside."""
     m = memory[0]
     seat.take_inputs(m.y, m)
+    seat.begin(react, report, m)
+
+
+@kernel
+def instant(t, y, dy, m):
+    """Derivative and load under the motion m.u."""
+    seat.instant(react, t, y, dy, m)
 
 
 @kernel
@@ -133,5 +140,5 @@ MODEL = Model(
     advance=advance,
     weights=weights,
     derive=derive,
-    react=react,
+    instant=instant,
 )

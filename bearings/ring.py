@@ -30,7 +30,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class RingReport:
-    """Motion of the inner ring and circumferential speeds (the source's Figs 25 and 26)."""
+    """Motion of the inner ring, and how fast its bore and the journal's surface move."""
 
     x: float = real(0.0, "m", "horizontal position", local=True)
     y: float = real(0.0, "m", "vertical position", local=True)
@@ -39,10 +39,17 @@ class RingReport:
     omega: float = real(0.0, "rad/s", "spin speed", local=True)
     surface_speed: float = real(0.0, "m/s", "circumferential speed of the bore", local=True)
     journal_speed: float = real(0.0, "m/s", "circumferential speed of the journal", local=True)
-    race_speed: float = real(0.0, "m/s", "circumferential speed of the inner race", local=True)
     sync_time: float = real(
         -1.0, "s", "time when the bore first reached 99 % of the journal's speed; -1: not yet", local=True
     )
+
+
+@dataclass(frozen=True)
+class RaceSpeeds:
+    """Half the circumferential speed of the inner race: as it is, and as it were without slip in the bore."""
+
+    rotor: float = real(0.0, "m/s", "half the race's speed if the bore rolled on the journal", local=True)
+    ring: float = real(0.0, "m/s", "half the circumferential speed of the inner race", local=True)
 
 
 @dataclass(frozen=True)
@@ -102,7 +109,8 @@ def report(y, m, race_radius):
     o.x, o.y, o.vx, o.vy, o.omega = y[RX], y[RY], y[RVX], y[RVY], y[RW]
     o.surface_speed = y[RW] * (p.journal_radius + p.clearance)
     o.journal_speed = y[seat.JW] * p.journal_radius
-    o.race_speed = y[RW] * race_radius
+    m.o.speed.ring = 0.5 * y[RW] * race_radius
+    m.o.speed.rotor = 0.5 * o.journal_speed * race_radius / (p.journal_radius + p.clearance)
     c = m.o.contact
     c.force, c.indentation = m.s.ring.normal, m.s.ring.indentation
     c.sliding = o.journal_speed - o.surface_speed

@@ -195,6 +195,27 @@ def remember(m, load):
 
 
 @inlined
+def begin(react, report, m):
+    """First outputs, from the state and the inputs; the load now is what the first restart compares with."""
+    load = react(0.0, m.y, np.zeros(m.n), m)
+    remember(m, load)
+    report(m.y, m)
+
+
+@inlined
+def instant(react, t, y, dy, m):
+    """Derivative of what is inside and the load now, for a solver that holds all bodies itself.
+
+    The motion comes from m.u; the load goes out as the mean in m.o, its slope zero.
+    """
+    take_inputs(y, m)
+    load = react(t, y, dy, m)
+    j, h = m.o.journal, m.o.housing
+    j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load.jx, load.jy, load.jm, 0.0, 0.0, 0.0
+    h.fx, h.fy, h.dfx, h.dfy = load.hx, load.hy, 0.0, 0.0
+
+
+@inlined
 def advance(react, rhs, observe, report, memory, work, time, step, span):
     """One macro step of a bearing.
 

@@ -67,11 +67,11 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class Speeds:
-    """What follows the ring."""
+class Speeds(ring.RaceSpeeds):
+    """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
 
-    cage: float = real(0.0, "rad/s", "spin speed of the cage", local=True)
-    ball: float = real(0.0, "rad/s", "spin speed of the balls", local=True)
+    cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
+    ball: float = real(0.0, "m/s", "circumferential speed of the balls by their spin", local=True)
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Outputs:
     contact: ContactReport = group(ContactReport)
     ring: ring.RingReport = group(ring.RingReport)
     balls: BallReport = group(BallReport)
-    spin: Speeds = group(Speeds)
+    speed: Speeds = group(Speeds)
     energy: Energy = group(Energy)
     stiffness: RaceStiffness = group(RaceStiffness)
 
@@ -209,8 +209,8 @@ def report(y, m):
     ring.report(y, m, d.inner_radius)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force, s.indentation
-    o.spin.cage = d.cage_ratio * y[ring.RW]
-    o.spin.ball = d.ball_ratio * y[ring.RW]
+    o.speed.cage = d.cage_ratio * y[ring.RW] * 0.5 * p.balls.pitch_diameter
+    o.speed.ball = abs(d.ball_ratio * y[ring.RW]) * 0.5 * p.balls.diameter
     speed2 = y[ring.RVX] ** 2 + y[ring.RVY] ** 2
     o.energy.kinetic = 0.5 * p.ring.mass * speed2 + 0.5 * d.inertia * y[ring.RW] ** 2
     stored = s.energy + elastic_energy(m.s.ring.indentation, p.contact)
@@ -227,7 +227,13 @@ def start(memory):
     ring.place(y, d.rest_x, d.rest_y)
     o = m.o.stiffness
     o.inner, o.outer, o.series = d.inner, d.outer, d.race.stiffness
-    m.o.energy.potential = m.p.ring.mass * m.p.gravity * y[ring.RY]
+    seat.begin(react, report, m)
+
+
+@kernel
+def instant(t, y, dy, m):
+    """Derivative and load under the motion m.u."""
+    seat.instant(react, t, y, dy, m)
 
 
 @kernel
@@ -290,11 +296,10 @@ MODEL = Model(
     weights=weights,
     derive=derive,
     check=check,
-    react=react,
+    instant=instant,
     starts_from={
         "stiffness.inner": _GEOMETRY,
         "stiffness.outer": _GEOMETRY,
         "stiffness.series": _GEOMETRY,
-        "energy.potential": ("ring.mass", "gravity", "housing.y"),
     },
 )

@@ -75,11 +75,11 @@ class Neighbours:
 
 
 @dataclass(frozen=True)
-class Speeds:
-    """How the balls move."""
+class Speeds(ring.RaceSpeeds):
+    """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
 
-    orbit: float = real(0.0, "rad/s", "mean speed of the balls around the bearing", local=True)
-    ball: float = real(0.0, "rad/s", "mean spin speed of the balls", local=True)
+    orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
+    ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class Outputs:
     ring: ring.RingReport = group(ring.RingReport)
     balls: BallReport = group(BallReport)
     neighbours: Neighbours = group(Neighbours)
-    spin: Speeds = group(Speeds)
+    speed: Speeds = group(Speeds)
     energy: Energy = group(Energy)
     stiffness: RaceStiffness = group(RaceStiffness)
 
@@ -275,8 +275,9 @@ def report(y, m):
         kinetic += 0.5 * moving * y[i + 1] ** 2 + 0.5 * d.inertia * y[i + 2] ** 2
         height += d.pitch_radius * math.sin(y[i])
         orbit += y[i + 1]
-        spin += y[i + 2]
-    o.spin.orbit, o.spin.ball = orbit / p.balls.count, spin / p.balls.count
+        spin += abs(y[i + 2])
+    o.speed.orbit = orbit / p.balls.count * d.pitch_radius
+    o.speed.ball = spin / p.balls.count * d.ball_radius
     speed2 = y[ring.RVX] ** 2 + y[ring.RVY] ** 2
     o.energy.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * p.ring.inertia * y[ring.RW] ** 2
     stored = s.energy + elastic_energy(m.s.ring.indentation, p.contact)
@@ -297,6 +298,13 @@ def start(memory):
         y[BALLS + 3 * b + 2] = 0.0
     o = m.o.stiffness
     o.inner, o.outer, o.series = d.inner, d.outer, d.race.stiffness
+    seat.begin(react, report, m)
+
+
+@kernel
+def instant(t, y, dy, m):
+    """Derivative and load under the motion m.u."""
+    seat.instant(react, t, y, dy, m)
 
 
 @kernel
@@ -356,7 +364,7 @@ MODEL = Model(
     weights=weights,
     derive=derive,
     check=check,
-    react=react,
+    instant=instant,
     starts_from={
         "stiffness.inner": _GEOMETRY,
         "stiffness.outer": _GEOMETRY,

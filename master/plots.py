@@ -18,6 +18,8 @@ from master.summary import energy_total, touchdown_seats
 from master.system import Attachment, System
 
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#666666"
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
+STYLES = ("-", "--", ":", "-.")  # one per component
 MOST_POINTS = 20_000  # drawn per line; peaks are kept
 UM = 1e6
 
@@ -30,8 +32,8 @@ def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
         made.append(_save(orbit(scene, system, recording, a), folder / f"orbit{tail}.png"))
         made.append(_save(forces(scene, system, recording, a), folder / f"force{tail}.png"))
-        if f"{a.bearing}.ring.surface_speed" in recording:
-            made.append(_save(speeds(scene, recording, a), folder / f"speeds{tail}.png"))
+        if f"{a.bearing}.speed.ring" in recording:
+            made.append(_save(speeds(scene, system, recording, a), folder / f"speeds{tail}.png"))
     if energy_total(system, recording) is not None:
         made.append(_save(energy(scene, system, recording), folder / "energy.png"))
     return made
@@ -57,7 +59,7 @@ def orbit(scene: Scene, system: System, recording: Recording, a: Attachment) -> 
     if f"{a.bearing}.ring.x" in recording:
         ring_x, ring_y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
         inner.plot(ring_x, ring_y, color=ORANGE, lw=0.5, label="inner ring")
-    if f"{a.bearing}.housing.x" in system.components[a.bearing].variables:
+    if "housing.x" in system.components[a.bearing].variables:
         source = next((c for c in system.connections if (c.target, c.input) == (a.bearing, "housing.x")), None)
         if source is not None:
             port = source.output.rpartition(".")[0]
@@ -74,19 +76,29 @@ def orbit(scene: Scene, system: System, recording: Recording, a: Attachment) -> 
     return figure
 
 
-def speeds(scene: Scene, recording: Recording, a: Attachment) -> Figure:
+def speeds(scene: Scene, system: System, recording: Recording, a: Attachment) -> Figure:
     """Circumferential speeds while the ring is spun up, and from its synchronism on (Figs 25, 26)."""
     figure = Figure(figsize=(13, 5), layout="constrained")
     first, rest = figure.subplots(1, 2)
     time = recording.time
-    journal = 0.5 * recording[f"{a.bearing}.ring.journal_speed"]
-    ring = 0.5 * recording[f"{a.bearing}.ring.surface_speed"]
-    lines = [("rotor / 2", journal, BLUE), ("inner ring bore / 2", ring, ORANGE)]
-    lines.append(("inner race / 2", 0.5 * recording[f"{a.bearing}.ring.race_speed"], GREEN))
-    caught = ring >= 0.99 * journal
-    sync = float(time[np.argmax(caught)]) if caught.any() else float(time[-1])
-    for axes, part in ((first, time <= 1.5 * sync), (rest, time >= min(1.2 * sync, 0.5 * time[-1]))):
-        for label, values, colour in lines:
+    labels = {
+        "rotor": "rotor / 2, at the race",
+        "ring": "inner race / 2",
+        "cage": "cage",
+        "orbit": "balls, mean orbit",
+        "ball": "balls, mean spin",
+    }
+    lines = [
+        (label, recording[f"{a.bearing}.speed.{name}"])
+        for name, label in labels.items()
+        if f"{a.bearing}.speed.{name}" in recording
+    ]
+    zero = system.value(scene.zero) if scene.zero else 0.0
+    sync = max(system.value(f"{a.bearing}.ring.sync_time") - zero, 0.0) or float(time[-1])
+    spin_up = (time >= 0.0) & (time <= 1.5 * sync)
+    afterwards = time >= min(1.2 * sync, 0.5 * time[-1])
+    for axes, part in ((first, spin_up), (rest, afterwards)):
+        for (label, values), colour in zip(lines, COLOURS, strict=False):
             _line(axes, time[part], values[part], colour, label)
         axes.set_xlabel("time from the shutdown [s]")
         axes.set_ylabel("circumferential speed [m/s]")
@@ -123,21 +135,20 @@ def energy(scene: Scene, system: System, recording: Recording) -> Figure:
     figure = Figure(figsize=(13, 5), layout="constrained")
     flows, check = figure.subplots(1, 2)
     time = recording.time
-    colours = iter((BLUE, ORANGE, GREEN, PURPLE, GREY) * 4)
-    for name in system.components:
-        for variable in ("energy.kinetic", "energy.potential", "energy.dissipated"):
+    for name, style in zip(system.components, STYLES * 4, strict=False):
+        variables = ("energy.kinetic", "energy.potential", "energy.dissipated")
+        for variable, colour in zip(variables, COLOURS, strict=False):
             if f"{name}.{variable}" in recording:
                 values = recording[f"{name}.{variable}"]
                 change = values - values[0]
                 if np.any(change):
                     label = f"{name} {variable.partition('.')[2]}"
-                    _line(flows, time, change, next(colours), label)
+                    _line(flows, time, change, colour, label, style)
     flows.set_ylabel("change since the start [J]")
     flows.legend(fontsize="small")
     total = energy_total(system, recording)
     assert total is not None
-    if len(total) > 1:
-        _line(check, time[1:], total[1:] - total[1], BLUE, "sum of all")
+    _line(check, time, total - total[0], BLUE, "sum of all")
     check.set_ylabel("energy balance [J]")
     check.set_title("sum of all energies: zero where nothing is lost or made")
     for axes in (flows, check):
@@ -146,7 +157,7 @@ def energy(scene: Scene, system: System, recording: Recording) -> Figure:
     return figure
 
 
-def _line(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str, label: str) -> None:
+def _line(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str, label: str, style: str = "-") -> None:
     """A line of at most MOST_POINTS points that keeps each stretch's smallest and largest value."""
     if len(x) > MOST_POINTS:
         size = -(-len(x) // (MOST_POINTS // 2))
@@ -155,7 +166,7 @@ def _line(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str, label: str) -> 
         index = np.sort(np.stack([blocks.argmin(1), blocks.argmax(1)], 1), axis=1)
         index = (index + np.arange(count)[:, None] * size).ravel()
         x, y = x[index], y[index]
-    axes.plot(x, y, color=colour, lw=0.7, label=label)
+    axes.plot(x, y, style, color=colour, lw=0.8, label=label)
 
 
 def _save(figure: Figure, path: Path) -> Path:

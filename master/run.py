@@ -82,16 +82,13 @@ def _make_writable(folder: Path) -> None:
 
 
 class _Bar:
-    """Progress bar over simulated time, with speed and ledger residual."""
+    """Progress over simulated time, with the run's speed and the ledger's residual."""
 
     def __init__(self, scene: Scene, shown: bool) -> None:
-        self._scene = scene
         self._bar = tqdm(
             total=scene.run.duration,
             disable=not shown,
-            unit="s",
-            bar_format="{desc} {percentage:3.0f}%|{bar:30}| {n:.3f}/{total:.3f} s simulated, "
-            "{rate_inv_fmt} left {remaining} {postfix}",
+            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s, {postfix} left {remaining}",
             desc=scene.name,
             mininterval=0.2,
         )
@@ -99,8 +96,10 @@ class _Bar:
     def __enter__(self) -> Callable[[float, float], None]:
         def show(time: float, residual: float) -> None:
             if time > self._bar.n:
+                speed = self._bar.format_dict["elapsed"] / time
+                text = f"{speed:.2f} s per simulated s, ledger {residual:.1e},"
+                self._bar.set_postfix_str(text, refresh=False)
                 self._bar.update(time - self._bar.n)
-                self._bar.set_postfix_str(f"ledger {residual:.1e}", refresh=False)
 
         return show
 

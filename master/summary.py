@@ -141,8 +141,8 @@ def _run_figures(
     scale = energy_scale(scene, system)
     total = energy_total(system, recording)
     balance = None
-    if total is not None and scale > 0.0 and len(total) > 1:
-        balance = float(np.max(np.abs(total[1:] - total[1])) / scale)
+    if total is not None and scale > 0.0:
+        balance = float(np.max(np.abs(total - total[0])) / scale)
     simulated = outcome.end
     return {
         "energy_residual_relative": outcome.residual if scale > 0.0 else None,

@@ -47,10 +47,10 @@ class TwinComponent(Component):
     """A model of the project, stepped without the FMI in between."""
 
     def __init__(self, name: str, fmu: str) -> None:
-        self._instance = Instance(model_of(fmu))
-        variables = [_variable(slot) for slot in self._instance.slots]
+        self.instance = Instance(model_of(fmu))
+        variables = [_variable(slot) for slot in self.instance.slots]
         super().__init__(name, f"{fmu}, in process", {v.name: v for v in variables})
-        self._words = self._instance.memory.view("f8")
+        self._words = self.instance.memory.view("f8")
         self._initialising = False
         self._start_time = 0.0
 
@@ -58,9 +58,9 @@ class TwinComponent(Component):
         for name, value in values.items():
             v = self.variable(name)
             if v.kind == "Real":
-                self._instance.reals[v.reference] = value
+                self.instance.reals[v.reference] = value
             else:
-                self._instance.integers[v.reference] = int(value)
+                self.instance.integers[v.reference] = int(value)
 
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
         self.inputs = np.zeros(len(inputs))
@@ -86,7 +86,7 @@ class TwinComponent(Component):
 
     def step(self, time: float, step: float) -> None:
         try:
-            self._instance.step(time, step)
+            self.instance.step(time, step)
         except ModelError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None
 
@@ -95,22 +95,22 @@ class TwinComponent(Component):
             self._start()
         variables = [self.variable(n) for n in names]
         return [
-            self._instance.reals[v.reference] if v.kind == "Real" else self._instance.integers[v.reference]
+            self.instance.reals[v.reference] if v.kind == "Real" else self.instance.integers[v.reference]
             for v in variables
         ]
 
     def save(self) -> object:
-        return self._instance.save()
+        return self.instance.save()
 
     def restore(self, state: object) -> None:
         assert isinstance(state, bytes)
-        self._instance.restore(state)
+        self.instance.restore(state)
 
     def close(self) -> None:
         """Nothing to free."""
 
     def _start(self) -> None:
         try:
-            self._instance.start(self._start_time)
+            self.instance.start(self._start_time)
         except ModelError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None

@@ -39,7 +39,8 @@ class Model:
     advance(memory, work, t, H)  one macro step; returns one of OK, BAD_INPUT, STIFF, BUSY
     rhs(t, y, dy, m)             bodies: time derivative under the loads m.u
     publish(y, m)                bodies: outputs from the state
-    react(t, y, dy, m)           bearings: derivative of what is inside, and the `Load` given
+    instant(t, y, dy, m)         bearings: derivative of what is inside and, as mean of m.o's loads, the
+                                 load at this instant under the motion m.u (for monolithic solutions)
     """
 
     name: str
@@ -58,7 +59,7 @@ class Model:
     check: Callable[[Any], str | None] = no_check  # parameters -> what is wrong between them
     rhs: Callable[..., Any] | None = None
     publish: Callable[..., Any] | None = None
-    react: Callable[..., Any] | None = None
+    instant: Callable[..., Any] | None = None
     starts_from: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
     Names or prefixes ending in a dot; an output that is not listed starts at zero whatever is set."""

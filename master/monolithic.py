@@ -1,0 +1,145 @@
+"""The monolithic reference: the same kernels as one ordinary differential equation.
+
+No macro steps and no interface: bodies and what is inside the bearings form one state, solved by scipy
+at a tight tolerance. Two solvers of different kind should agree; where they part, nothing can be
+compared any more (impacts amplify every difference).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from master.scene import Scene
+from master.simulation import open_system
+from master.twin import TwinComponent
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Motion at the asked times: series by COMPONENT.VARIABLE, and what it cost."""
+
+    time: np.ndarray  # s, from the scene's zero
+    series: dict[str, np.ndarray]
+    evaluations: int
+
+
+class Monolith:
+    """All components of a scene as one system of equations."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        system = open_system(scene, in_process=True)
+        self._twins: dict[str, TwinComponent] = {}
+        for name, component in system.components.items():
+            if not isinstance(component, TwinComponent):
+                raise TypeError(f"{name} is an FMU; only the project's own models have equations to join")
+            self._twins[name] = component
+        self.zero = system.value(scene.zero) if scene.zero else 0.0
+        system.initialise()
+        bearings = {a.bearing for a in system.attachments}
+        self._bodies = [n for n in self._twins if n not in bearings]
+        self._bearings = [n for n in self._twins if n in bearings]
+        self._parts: dict[str, slice] = {}
+        start = 0
+        for name in (*self._bodies, *self._bearings):
+            count = int(self._twins[name].instance.record["n"])
+            self._parts[name] = slice(start, start + count)
+            start += count
+        self._size = start
+        self._motion = self._copies(system, self._bodies)
+        self._loads = self._copies(system, self._bearings)
+        for name in self._bodies:
+            self._twins[name].instance.memory["half"] = 0.0
+        self.evaluations = 0
+
+    def _copies(self, system, sources) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:  # noqa: ANN001
+        """For each pair of components: (source words, where from, target words, where to)."""
+        pairs: dict[tuple[str, str], list[tuple[int, int]]] = {}
+        for c in system.connections:
+            if c.source in sources:
+                places = (
+                    self._twins[c.source].variable(c.output).reference,
+                    self._twins[c.target].variable(c.input).reference,
+                )
+                pairs.setdefault((c.source, c.target), []).append(places)
+        return [
+            (
+                self._twins[source].instance.memory.view("f8"),
+                np.array([p[0] for p in places]),
+                self._twins[target].instance.memory.view("f8"),
+                np.array([p[1] for p in places]),
+            )
+            for (source, target), places in pairs.items()
+        ]
+
+    def initial(self) -> np.ndarray:
+        """State at the start."""
+        parts = [self._twins[n].instance.record["y"][: p.stop - p.start] for n, p in self._parts.items()]
+        return np.concatenate(parts)
+
+    def rhs(self, t: float, state: np.ndarray) -> np.ndarray:
+        """Derivative of the whole state."""
+        self.evaluations += 1
+        derivative = np.zeros(self._size)
+        self._publish(state)
+        for source, out, target, into in self._motion:
+            target[into] = source[out]
+        for name in self._bearings:
+            instance, part = self._twins[name].instance, self._parts[name]
+            instance.model.instant(t, state[part].copy(), derivative[part], instance.record)  # type: ignore[misc]
+        for source, out, target, into in self._loads:
+            target[into] = source[out]
+        for name in self._bodies:
+            instance, part = self._twins[name].instance, self._parts[name]
+            instance.model.rhs(0.0, state[part], derivative[part], instance.record)  # type: ignore[misc]
+        return derivative
+
+    def _publish(self, state: np.ndarray) -> None:
+        for name in self._bodies:
+            instance = self._twins[name].instance
+            instance.model.publish(state[self._parts[name]], instance.record)  # type: ignore[misc]
+
+    def solve(self, times: np.ndarray, watched: list[str], tolerance: float, method: str) -> Solution:
+        """Motion of `watched` (outputs of bodies) at `times` (s from zero), by a scipy `method`.
+
+        `tolerance` is the error over the models' own scales, as in the FMUs' micro-steps.
+        """
+        weight = np.concatenate(
+            [self._twins[n].instance.record["weight"][: p.stop - p.start] for n, p in self._parts.items()]
+        )
+        atol = tolerance / np.where(weight > 0.0, weight, np.inf)
+        atol[weight == 0.0] = 1e3  # quadratures: nothing depends on them
+        state, now = self.initial(), 0.0
+        self.evaluations = 0
+        found: list[np.ndarray] = []
+        clock = np.asarray(times) + self.zero
+        for end in (*([self.zero] if self.zero > 0.0 else []), float(clock[-1])):
+            asked = clock[(clock > now) & (clock <= end)]
+            middle = 0.5 * (now + end)  # components switch at the scene's zero, not within a stretch
+            solution = solve_ivp(
+                lambda _, y, at=middle: self.rhs(at, y),
+                (now, end),
+                state,
+                method=method,
+                t_eval=np.append(asked[asked < end], end),
+                rtol=3e-14,
+                atol=atol,
+                first_step=1e-6,
+            )
+            if not solution.success:
+                raise RuntimeError(f"{method}: {solution.message}")
+            found += list(solution.y.T[: len(asked)])
+            state, now = solution.y[:, -1], end
+        return self._series(np.asarray(times), found, watched)
+
+    def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> Solution:
+        series: dict[str, list[float]] = {name: [] for name in watched}
+        for state in states:
+            self._publish(state)
+            for name in watched:
+                component, _, variable = name.partition(".")
+                series[name].append(self._twins[component].read([variable])[0])
+        return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations)
