@@ -15,7 +15,7 @@ import numpy as np
 
 from bearings import seat
 from modelkit.kernel import kernel
-from modelkit.model import Model
+from modelkit.model import Model, memory_layout
 from modelkit.ports import Interface, Load, MountReaction, SeatReaction
 from modelkit.variables import group, integer, real
 
@@ -52,6 +52,9 @@ class Hidden:
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
     span: float = real(0.0, "s", "how long it still acts in this macro step; negative: not at all")
+
+
+MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, SUPPLIED + 1, hidden=Hidden)
 
 
 @kernel
@@ -93,9 +96,9 @@ def report(y, m):
 
 
 @kernel
-def start(memory):
+def start(words):
     """Find the static load that the seat reports."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     seat.take_inputs(m.y, m)
     j = m.u.journal
     if j.inv_m > 0.0:
@@ -112,13 +115,13 @@ def instant(t, y, dy, m):
 
 
 @kernel
-def advance(memory, work, time, step):
+def advance(words, work, time, step):
     """One macro step, or what the shutdown leaves of it."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     left = m.p.shutdown_time - time
     m.s.span = -1.0 if left <= ROUNDING else min(left, step)
     span = max(m.s.span, 0.0)
-    return seat.advance(react, rhs, observe, report, memory, work, time, step, span)
+    return seat.advance(react, rhs, observe, report, m, work, time, step, span)
 
 
 def weights(p: Parameters) -> np.ndarray:
@@ -134,7 +137,7 @@ MODEL = Model(
     inputs=seat.BearingInputs,
     outputs=Outputs,
     hidden=Hidden,
-    state_size=SUPPLIED + 1,
+    memory=MEMORY,
     start=start,
     advance=advance,
     weights=weights,

@@ -15,7 +15,7 @@ from bearings.contact import ContactLaw, elastic_energy
 from bearings.friction import FrictionLaw, prepared
 from bearings.journal_contact import ContactMemory, ContactReport, touch, watch_contact
 from modelkit.kernel import kernel
-from modelkit.model import Model
+from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
 from modelkit.variables import group, real
 
@@ -61,6 +61,9 @@ class Hidden:
     rate: float = real(0.0, "m/s", "its rate")
 
 
+MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
+
+
 @kernel
 def react(t, y, dy, m):
     """Load on journal and housing; inside there is only the heat."""
@@ -97,9 +100,9 @@ def report(y, m):
 
 
 @kernel
-def start(memory):
+def start(words):
     """Nothing inside."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     seat.take_inputs(m.y, m)
     seat.begin(react, report, m)
 
@@ -111,9 +114,9 @@ def instant(t, y, dy, m):
 
 
 @kernel
-def advance(memory, work, time, step):
+def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, rhs, observe, report, memory, work, time, step, step)
+    return seat.advance(react, rhs, observe, report, words.view(MEMORY)[0], work, time, step, step)
 
 
 def derive(p: Parameters) -> Derived:
@@ -135,7 +138,7 @@ MODEL = Model(
     outputs=Outputs,
     derived=Derived,
     hidden=Hidden,
-    state_size=LOSS + 1,
+    memory=MEMORY,
     start=start,
     advance=advance,
     weights=weights,

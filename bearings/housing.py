@@ -13,7 +13,7 @@ import numpy as np
 
 from modelkit import dopri
 from modelkit.kernel import kernel
-from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model
+from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model, memory_layout
 from modelkit.ports import Energy, MountLoad, MountState
 from modelkit.variables import group, real
 
@@ -47,6 +47,9 @@ class Outputs:
 
     seat: MountState = group(MountState)
     energy: Energy = group(Energy)
+
+
+MEMORY = memory_layout(Parameters, Inputs, Outputs, 6)
 
 
 @kernel
@@ -83,9 +86,9 @@ def publish(y, m):
 
 
 @kernel
-def start(memory):
+def start(words):
     """At rest, sagged under its own weight."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     p = m.p
     sag = (p.mass + p.outer_ring) * p.gravity / p.stiffness if p.stiffness > 0.0 else 0.0
     m.y[X], m.y[Y] = p.x0, p.y0 - sag
@@ -98,9 +101,9 @@ def _ignore(t, y, m):
 
 
 @kernel
-def advance(memory, work, time, step):
+def advance(words, work, time, step):
     """One macro step under the given force."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     u = m.u.seat
     if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
         return BAD_INPUT
@@ -133,7 +136,7 @@ MODEL = Model(
     parameters=Parameters,
     inputs=Inputs,
     outputs=Outputs,
-    state_size=6,
+    memory=MEMORY,
     start=start,
     advance=advance,
     weights=weights,

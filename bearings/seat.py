@@ -216,7 +216,7 @@ def instant(react, t, y, dy, m):
 
 
 @inlined
-def advance(react, rhs, observe, report, memory, work, time, step, span):
+def advance(react, rhs, observe, report, m, work, time, step, span):
     """One macro step of a bearing.
 
     react(t, y, dy, m) gives the `Load` and the derivative of what is inside; rhs is
@@ -224,7 +224,6 @@ def advance(react, rhs, observe, report, memory, work, time, step, span):
     report(y, m) fills the outputs that are wanted once per macro step. The load acts for `span` (s)
     of the macro step, which is all of it but where a magnetic bearing is shut down.
     """
-    m = memory[0]
     status = BAD_INPUT
     if finite_inputs(m):
         y = m.y

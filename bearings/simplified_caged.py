@@ -26,7 +26,7 @@ from bearings.contact import ContactLaw, elastic_energy
 from bearings.friction import FrictionLaw, prepared
 from bearings.journal_contact import ContactMemory, ContactReport
 from modelkit.kernel import kernel
-from modelkit.model import Model
+from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
 from modelkit.variables import array, group, real
 
@@ -126,6 +126,9 @@ class Hidden:
     balls: BallMemory = group(BallMemory)
 
 
+MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, ring.NEXT, derived=Derived, hidden=Hidden)
+
+
 @kernel
 def _ball_forces(ex, ey, ux, uy, cage_angle, m):
     """Force on the ring (N) and moment about the cage (N m) by the balls; heat in W.
@@ -219,9 +222,9 @@ def report(y, m):
 
 
 @kernel
-def start(memory):
+def start(words):
     """The ring at rest on the balls, the first of them at its angle."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     y, d = m.y, m.d
     seat.take_inputs(y, m)
     ring.place(y, d.rest_x, d.rest_y)
@@ -237,9 +240,9 @@ def instant(t, y, dy, m):
 
 
 @kernel
-def advance(memory, work, time, step):
+def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, rhs, observe, report, memory, work, time, step, step)
+    return seat.advance(react, rhs, observe, report, words.view(MEMORY)[0], work, time, step, step)
 
 
 def derive(p: Parameters) -> Derived:
@@ -290,7 +293,7 @@ MODEL = Model(
     outputs=Outputs,
     derived=Derived,
     hidden=Hidden,
-    state_size=ring.NEXT,
+    memory=MEMORY,
     start=start,
     advance=advance,
     weights=weights,

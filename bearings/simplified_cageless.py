@@ -33,7 +33,7 @@ from bearings.contact import ContactLaw, elastic_energy, normal_force
 from bearings.friction import FrictionLaw, coefficient, prepared
 from bearings.journal_contact import ContactMemory, ContactReport
 from modelkit.kernel import kernel
-from modelkit.model import Model
+from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
 from modelkit.variables import array, group, integer, real
 
@@ -138,6 +138,9 @@ class Hidden:
     ring: ring.RingMemory = group(ring.RingMemory)
     contact: ContactMemory = group(ContactMemory)
     balls: BallMemory = group(BallMemory)
+
+
+MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, BALLS + 3 * MOST_BALLS, derived=Derived, hidden=Hidden)
 
 
 @kernel
@@ -286,9 +289,9 @@ def report(y, m):
 
 
 @kernel
-def start(memory):
+def start(words):
     """Ring and balls at rest, the first ball at its angle."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     y, d = m.y, m.d
     seat.take_inputs(y, m)
     ring.place(y, d.rest_x, d.rest_y)
@@ -308,9 +311,9 @@ def instant(t, y, dy, m):
 
 
 @kernel
-def advance(memory, work, time, step):
+def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, rhs, observe, report, memory, work, time, step, step)
+    return seat.advance(react, rhs, observe, report, words.view(MEMORY)[0], work, time, step, step)
 
 
 def derive(p: Parameters) -> Derived:
@@ -358,7 +361,7 @@ MODEL = Model(
     outputs=Outputs,
     derived=Derived,
     hidden=Hidden,
-    state_size=BALLS + 3 * MOST_BALLS,
+    memory=MEMORY,
     start=start,
     advance=advance,
     weights=weights,

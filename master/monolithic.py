@@ -67,9 +67,9 @@ class Monolith:
                 pairs.setdefault((c.source, c.target), []).append(places)
         return [
             (
-                self._twins[source].instance.memory.view("f8"),
+                self._twins[source].instance.words,
                 np.array([p[0] for p in places]),
-                self._twins[target].instance.memory.view("f8"),
+                self._twins[target].instance.words,
                 np.array([p[1] for p in places]),
             )
             for (source, target), places in pairs.items()

@@ -50,7 +50,7 @@ class TwinComponent(Component):
         self.instance = Instance(model_of(fmu))
         variables = [_variable(slot) for slot in self.instance.slots]
         super().__init__(name, f"{fmu}, in process", {v.name: v for v in variables})
-        self._words = self.instance.memory.view("f8")
+        self._words = self.instance.words
         self._initialising = False
         self._start_time = 0.0
 

@@ -27,6 +27,33 @@ def no_check(parameters: Any) -> str | None:
     return None
 
 
+def memory_layout(
+    parameters: type,
+    inputs: type,
+    outputs: type,
+    state_size: int,
+    derived: type = Nothing,
+    hidden: type = Nothing,
+) -> np.dtype:
+    """Everything an instance is, as one record of 8-byte words: saving it is copying its bytes."""
+    return np.dtype(
+        [
+            ("time", "f8"),
+            ("half", "f8"),
+            ("h", "f8"),
+            ("n", "i8"),
+            ("evaluations", "i8"),
+            ("p", layout(parameters)),
+            ("u", layout(inputs)),
+            ("o", layout(outputs)),
+            ("d", layout(derived)),
+            ("s", layout(hidden)),
+            ("y", "f8", (state_size,)),
+            ("weight", "f8", (state_size,)),
+        ]
+    )
+
+
 @dataclass(frozen=True)
 class Model:
     """A component: its declarations and its kernels.
@@ -35,8 +62,11 @@ class Model:
     memory m.s, the state m.y with m.n components in use, m.weight (error weights), m.time (s) at the
     beginning of the macro step, m.half (s) half its length, m.h (s) the micro-step to try next.
 
-    start(m)                     sets the state and the outputs from parameters and inputs
-    advance(memory, work, t, H)  one macro step; returns one of OK, BAD_INPUT, STIFF, BUSY
+    What Python calls at every step takes the memory as plain words and views them as that record
+    itself; handing a record over costs numba several microseconds.
+
+    start(words)                 sets the state and the outputs from parameters and inputs
+    advance(words, work, t, H)   one macro step; returns one of OK, BAD_INPUT, STIFF, BUSY
     rhs(t, y, dy, m)             bodies: time derivative under the loads m.u
     publish(y, m)                bodies: outputs from the state
     instant(t, y, dy, m)         bearings: derivative of what is inside and, as mean of m.o's loads, the
@@ -49,7 +79,7 @@ class Model:
     parameters: type
     inputs: type
     outputs: type
-    state_size: int
+    memory: np.dtype
     start: Callable[[Any], None]
     advance: Callable[[Any, Any, float, float], int]
     weights: Callable[[Any], np.ndarray]
@@ -64,25 +94,6 @@ class Model:
     """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
     Names or prefixes ending in a dot; an output that is not listed starts at zero whatever is set."""
 
-    def memory_layout(self) -> np.dtype:
-        """Everything an instance is, as one record: saving it is copying its bytes."""
-        return np.dtype(
-            [
-                ("time", "f8"),
-                ("half", "f8"),
-                ("h", "f8"),
-                ("n", "i8"),
-                ("evaluations", "i8"),
-                ("p", layout(self.parameters)),
-                ("u", layout(self.inputs)),
-                ("o", layout(self.outputs)),
-                ("d", layout(self.derived)),
-                ("s", layout(self.hidden)),
-                ("y", "f8", (self.state_size,)),
-                ("weight", "f8", (self.state_size,)),
-            ]
-        )
-
 
 @dataclass(frozen=True)
 class Slot:
@@ -95,14 +106,13 @@ class Slot:
 
 def slots(model: Model) -> list[Slot]:
     """All exposed variables of `model`: parameters, inputs, outputs, in memory order."""
-    memory = model.memory_layout()
     found: list[Slot] = []
     for part, kind, causality in (
         ("p", model.parameters, "parameter"),
         ("u", model.inputs, "input"),
         ("o", model.outputs, "output"),
     ):
-        fields = memory.fields
+        fields = model.memory.fields
         assert fields is not None
         offset = fields[part][1] // 8
         found += [
@@ -116,13 +126,14 @@ class Instance:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.memory = np.zeros(1, model.memory_layout())
+        self.memory = np.zeros(1, model.memory)
+        self.words = self.memory.view("f8")
         self.memory["p"] = np.array([as_tuple(model.parameters())], layout(model.parameters))
         self.memory["u"] = np.array([as_tuple(model.inputs())], layout(model.inputs))
         raw = self.memory.view("u1").data
         self.reals = raw.cast("d")
         self.integers = raw.cast("q")
-        self.work = dopri.scratch(model.state_size)
+        self.work = dopri.scratch(len(self.memory["y"][0]))
         self.slots = slots(model)
         self._bytes = raw
 
@@ -154,13 +165,13 @@ class Instance:
         self.memory["time"] = time
         self.memory["h"] = 1e-6
         self.memory["evaluations"] = 0
-        model.start(self.memory)
+        model.start(self.words)
 
     def step(self, time: float, step: float) -> None:
         """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
             raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
-        status = self.model.advance(self.memory, self.work, time, step)
+        status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
             raise ModelError(self._why(status, time, step))
 

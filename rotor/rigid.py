@@ -18,7 +18,7 @@ import numpy as np
 
 from modelkit import dopri
 from modelkit.kernel import kernel
-from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model
+from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model, memory_layout
 from modelkit.ports import Energy, SeatLoad, SeatState
 from modelkit.variables import group, real
 
@@ -61,6 +61,9 @@ class Outputs:
     A: SeatState = group(SeatState)
     amb: SeatState = group(SeatState)
     energy: Energy = group(Energy)
+
+
+MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 
 @kernel
@@ -128,9 +131,9 @@ def _publish_seat(y, p, seat, other, half):
 
 
 @kernel
-def start(memory):
+def start(words):
     """State and outputs from the parameters."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     p, y = m.p, m.y
     y[X], y[Y], y[VX], y[VY] = p.x, p.y, p.vx, p.vy
     y[SPIN] = p.speed
@@ -149,9 +152,9 @@ def _ignore(t, y, m):
 
 
 @kernel
-def advance(memory, work, time, step):
+def advance(words, work, time, step):
     """One macro step under the given loads."""
-    m = memory[0]
+    m = words.view(MEMORY)[0]
     if not (_finite(m.u.A) and _finite(m.u.amb)):
         return BAD_INPUT
     m.time = time
@@ -206,7 +209,7 @@ MODEL = Model(
     parameters=Parameters,
     inputs=Inputs,
     outputs=Outputs,
-    state_size=SIZE,
+    memory=MEMORY,
     start=start,
     advance=advance,
     weights=weights,
