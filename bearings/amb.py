@@ -8,7 +8,6 @@ shutdown on, also within a macro step, there is none.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np

@@ -89,8 +89,11 @@ class BallSet:
     def resting_place(self, weight: float) -> tuple[float, float]:
         """Where a ring of `weight` (N, downwards) rests on evenly spaced balls, from the centre (m).
 
-        With a ball exactly below it is held sideways by nothing within the play, and rests in the middle.
+        With a ball exactly below it is held sideways by nothing within the play, and rests in the middle;
+        without weight it floats there.
         """
+        if weight == 0.0:
+            return 0.0, 0.0
         angles = np.array(self.angles())
         nx, ny = np.cos(angles), np.sin(angles)
         stiffness = self.series_stiffness()
@@ -100,7 +103,7 @@ class BallSet:
         def imbalance(place: np.ndarray) -> np.ndarray:
             indentation = np.maximum((place[0] * nx + place[1] * ny) * scale - self.play, 0.0)
             force = stiffness * indentation**1.5
-            return np.array([np.sum(force * nx), np.sum(force * ny) + weight]) / max(weight, 1e-12)
+            return np.array([np.sum(force * nx), np.sum(force * ny) + weight]) / weight
 
         lowest = max(float(np.max(-ny)), 0.5)
         guess = [0.0, -(max(self.play, 0.0) / lowest + sunk) / scale]
@@ -121,7 +124,10 @@ class BallSet:
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"
             )
         if -self.play >= self.diameter:
-            return f"balls.play = {self.play:g} m presses the balls flat; it must be above {-self.diameter:g} m"
+            return (
+                f"balls.play = {self.play:g} m presses the balls flat; "
+                f"it must be above {-self.diameter:g} m"
+            )
         return None
 
 

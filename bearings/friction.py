@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import cast
 
 from scipy.optimize import brentq, minimize_scalar
 
@@ -58,9 +59,7 @@ def coefficient(speed, law):
 
 
 @cache
-def makkar_amplitude(
-    static: float, dynamic: float, g2: float, g3: float, slope: float, g6: float
-) -> float:
+def makkar_amplitude(static: float, dynamic: float, g2: float, g3: float, slope: float, g6: float) -> float:
     """The g1 with which Makkar's curve peaks at `static`; 0 where the curve already reaches it."""
 
     def peak(g1: float) -> float:
@@ -68,11 +67,14 @@ def makkar_amplitude(
             rise = g1 * (math.tanh(g2 * v) - math.tanh(g3 * v))
             return -(rise + dynamic * math.tanh(slope * v) + g6 * v)
 
-        return -minimize_scalar(negative, bounds=(0.0, 3.0 / g3), method="bounded", options={"xatol": 1e-12}).fun
+        return -minimize_scalar(
+            negative, bounds=(0.0, 3.0 / g3), method="bounded", options={"xatol": 1e-12}
+        ).fun
 
     if static <= peak(0.0):
         return 0.0
-    return float(brentq(lambda g1: peak(g1) - static, 0.0, 100.0 * static, xtol=1e-14))
+    root = brentq(lambda g1: peak(g1) - static, 0.0, 100.0 * static, xtol=1e-14)
+    return float(cast(float, root))
 
 
 def prepared(law: FrictionLaw) -> FrictionLaw:

@@ -52,8 +52,10 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
     lever = distance + journal_radius
     sliding = uy * nx - ux * ny + journal.spin * journal_radius - ring.spin * lever
     normal = normal_force(indentation, rate, law)
-    elastic = law.stiffness * indentation**law.exponent if law.exponent != 1.5 else (
-        law.stiffness * indentation * math.sqrt(indentation)
+    elastic = (
+        law.stiffness * indentation**law.exponent
+        if law.exponent != 1.5
+        else (law.stiffness * indentation * math.sqrt(indentation))
     )
     tangential = -coefficient(sliding, friction) * normal
     loss = (normal - elastic) * rate - tangential * sliding

@@ -46,7 +46,7 @@ class RingReport:
 
 @dataclass(frozen=True)
 class RaceSpeeds:
-    """Half the circumferential speed of the inner race: as it is, and as it were without slip in the bore."""
+    """Half the circumferential speed of the inner race, as it is and as without slip in the bore."""
 
     rotor: float = real(0.0, "m/s", "half the race's speed if the bore rolled on the journal", local=True)
     ring: float = real(0.0, "m/s", "half the circumferential speed of the inner race", local=True)
@@ -91,9 +91,7 @@ def watch(t, y, m):
     """First contact, peaks and the time of synchronism, after an accepted micro-step."""
     r = m.s.ring
     time = m.time + t
-    watch_contact(
-        time, seat.journal_motion(y), (r.normal, r.indentation, r.rate), m.o.contact, m.s.contact
-    )
+    watch_contact(time, seat.journal_motion(y), (r.normal, r.indentation, r.rate), m.o.contact, m.s.contact)
     o = m.o.ring
     if o.sync_time < 0.0 and m.o.contact.first_time >= 0.0:
         bore = m.p.journal_radius + m.p.clearance

@@ -26,7 +26,7 @@ import numpy as np
 from modelkit import dopri
 from modelkit.kernel import inlined, kernel
 from modelkit.model import BAD_INPUT, BUSY, OK, STIFF
-from modelkit.ports import Load, Motion, MountMotion, SeatMotion
+from modelkit.ports import ACCELERATION, VELOCITY, Load, Motion, MountMotion, SeatMotion
 from modelkit.variables import group, real
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
@@ -52,10 +52,11 @@ class BearingInputs:
 
 @dataclass(frozen=True)
 class SeatMemory:
-    """Load at the end of the last macro step."""
+    """The bearing's last known load: at the end of the last macro step, then at the restart."""
 
     jx: float = real(0.0, "N", "on the journal")
     jy: float = real(0.0, "N", "on the journal")
+    jm: float = real(0.0, "N.m", "on the journal")
     hx: float = real(0.0, "N", "on the housing")
     hy: float = real(0.0, "N", "on the housing")
 
@@ -109,16 +110,18 @@ def finite_inputs(m):
 def copy_rates(t, y, dy, m, half, load):
     """Derivatives of the copies and the quadratures under `load`; `half` is half the macro step (s)."""
     order = m.p.interface.order
-    moves = 1.0 if order >= 1 else 0.0
-    speeds_up = 1.0 if order >= 2 else 0.0
-    own = 1.0 if order >= 3 else 0.0
+    moves = 1.0 if order >= VELOCITY else 0.0
+    speeds_up = 1.0 if order >= ACCELERATION else 0.0
+    own = load
+    if order == ACCELERATION:  # the bearing's own part, as it was at the restart
+        own = Load(m.s.seat.jx, m.s.seat.jy, m.s.seat.jm, m.s.seat.hx, m.s.seat.hy)
     s = t - half
     j = m.u.journal
     dy[JX] = moves * y[JVX]
     dy[JY] = moves * y[JVY]
-    dy[JVX] = speeds_up * j.ax_free + own * j.inv_m * load.jx
-    dy[JVY] = speeds_up * j.ay_free + own * j.inv_m * load.jy
-    dy[JW] = speeds_up * j.alpha_free + own * j.inv_I * load.jm
+    dy[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx)
+    dy[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy)
+    dy[JW] = speeds_up * (j.alpha_free + j.inv_I * own.jm)
     dy[JPX] = load.jx
     dy[JPY] = load.jy
     dy[JPM] = load.jm
@@ -131,8 +134,8 @@ def copy_rates(t, y, dy, m, half, load):
     dy[HY] = moves * y[HVY]
     spring_x = h.k_over_m * (y[HX] - h.x) + h.c_over_m * (y[HVX] - h.vx)
     spring_y = h.k_over_m * (y[HY] - h.y) + h.c_over_m * (y[HVY] - h.vy)
-    dy[HVX] = speeds_up * h.ax_free + own * (h.inv_m * load.hx - spring_x)
-    dy[HVY] = speeds_up * h.ay_free + own * (h.inv_m * load.hy - spring_y)
+    dy[HVX] = speeds_up * (h.ax_free + h.inv_m * own.hx - spring_x)
+    dy[HVY] = speeds_up * (h.ay_free + h.inv_m * own.hy - spring_y)
     dy[HFX] = y[HFVX]
     dy[HFY] = y[HFVY]
     dy[HFVX] = load.hx - h.k_over_m * y[HFX] - h.c_over_m * y[HFVX]
@@ -189,14 +192,14 @@ def account_jump(m, load, djx, djy, dhx, dhy):
 
 @kernel
 def remember(m, load):
-    """Keep the load at the end of the macro step."""
+    """Keep `load` as the last known one."""
     s = m.s.seat
-    s.jx, s.jy, s.hx, s.hy = load.jx, load.jy, load.hx, load.hy
+    s.jx, s.jy, s.jm, s.hx, s.hy = load.jx, load.jy, load.jm, load.hx, load.hy
 
 
 @inlined
 def begin(react, report, m):
-    """First outputs, from the state and the inputs; the load now is what the first restart compares with."""
+    """First outputs, from state and inputs; the first restart compares with the load now."""
     load = react(0.0, m.y, np.zeros(m.n), m)
     remember(m, load)
     report(m.y, m)
@@ -233,6 +236,7 @@ def advance(react, rhs, observe, report, m, work, time, step, span):
         m.half = 0.5 * step
         before = react(0.0, y, work[0], m)
         account_jump(m, before, y[JX] - jx, y[JY] - jy, y[HX] - hx, y[HY] - hy)
+        remember(m, before)
         m.h, failure, evaluations = dopri.integrate(
             rhs, observe, m, y, m.n, m.weight, work, span, m.h, m.p.interface.tolerance
         )

@@ -140,7 +140,9 @@ class Hidden:
     balls: BallMemory = group(BallMemory)
 
 
-MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, BALLS + 3 * MOST_BALLS, derived=Derived, hidden=Hidden)
+MEMORY = memory_layout(
+    Parameters, seat.BearingInputs, Outputs, BALLS + 3 * MOST_BALLS, derived=Derived, hidden=Hidden
+)
 
 
 @kernel
@@ -167,12 +169,13 @@ def _race_forces(y, dy, m):
                 rate = ux * c + uy * sn
                 elastic = law.stiffness * indentation * math.sqrt(indentation)
                 force = max(elastic + law.damping * indentation * rate, 0.0)
-                sliding = y[ring.RW] * ri + uy * c - ux * sn - v + rb * spin
+                lever = ri - ex * c - ey * sn  # from the ring's centre, which stands off by e
+                sliding = y[ring.RW] * lever + uy * c - ux * sn - v + rb * spin
                 inner = coefficient(sliding, d.race_friction) * force
                 wedge = elastic * (ey * c - ex * sn) / rm
                 fx -= force * c - inner * sn
                 fy -= force * sn + inner * c
-                moment -= inner * ri
+                moment -= inner * lever
                 heat += inner * sliding + (force - elastic) * rate
                 s.loaded += 1.0
                 s.energy += 0.4 * elastic * indentation
@@ -346,7 +349,11 @@ def check(p: Parameters) -> str | None:
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    ball = [ORBIT_SCALE / seat.VELOCITY_SCALE * p.balls.pitch_radius, 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE]
+    ball = [
+        ORBIT_SCALE / seat.VELOCITY_SCALE * p.balls.pitch_radius,
+        1.0 / ORBIT_SCALE,
+        1.0 / BALL_SPIN_SCALE,
+    ]
     return seat.weights(ring.error_weights() + ball * p.balls.count)
 
 
@@ -355,7 +362,8 @@ _GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "ball
 MODEL = Model(
     name="simplified_cageless",
     title="Simplified cageless touchdown bearing",
-    about="Full-complement ball bearing: one ring on springs at the balls, each ball with its angle and spin",
+    about="Full-complement ball bearing: one ring on springs at the balls, each of them with its "
+    "angle and spin",
     parameters=Parameters,
     inputs=seat.BearingInputs,
     outputs=Outputs,

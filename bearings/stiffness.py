@@ -52,7 +52,7 @@ def in_series(inner: float, outer: float) -> float:
 
 
 def damping_from_ratio(stiffness: float, mass: float, ratio: float, indentation: float = 1.0) -> float:
-    """Damping coefficient from a damping ratio (2.47): 2 sqrt(k m) ratio, over the expected peak indentation.
+    """Damping coefficient from a damping ratio (2.47): 2 sqrt(k m) ratio over the peak indentation.
 
     For the indentation-proportional law (2.38) pass the expected peak `indentation` (m); the result is
     then in N s/m^2 when `stiffness` is the slope of the force at that indentation (N/m).

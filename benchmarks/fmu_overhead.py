@@ -26,7 +26,7 @@ def kernel_times(scene: Scene) -> dict[str, float]:
         assert isinstance(component, TwinComponent)
         instance = component.instance
 
-        def step(time: float, size: float, instance=instance, name=name) -> None:  # noqa: ANN001
+        def step(time: float, size: float, instance=instance, name=name) -> None:
             began = clock.perf_counter()
             instance.model.advance(instance.words, instance.work, time, size)
             spent[name] += clock.perf_counter() - began

@@ -167,7 +167,9 @@ def _structure(root: Element, model: Model, exposed: list[Slot]) -> None:
             SubElement(outputs, "Unknown", {"index": index, "dependencies": ""})
         if role in ("output", "calculatedParameter"):
             known = [str(position[source]) for source in model.starts_from.get(name, ())]
-            SubElement(initial, "Unknown", {"index": index, "dependencies": " ".join(sorted(known, key=int))})
+            SubElement(
+                initial, "Unknown", {"index": index, "dependencies": " ".join(sorted(known, key=int))}
+            )
 
 
 def as_text(element: Element) -> str:

@@ -6,6 +6,7 @@ there, and everyone after it starts with the machine code in the cache. Where th
 written they are run from where they are.
 """
 
+import contextlib
 import filecmp
 import os
 import shutil
@@ -36,10 +37,8 @@ def _resident() -> Path:
             there.parent.mkdir(parents=True, exist_ok=True)
             fresh = Path(tempfile.mkdtemp(dir=there.parent))
             shutil.copytree(here, fresh / here.name, ignore=shutil.ignore_patterns("__pycache__"))
-            try:
+            with contextlib.suppress(OSError):  # another process may be first
                 (fresh / here.name).rename(there)
-            except OSError:  # another process was first
-                pass
             shutil.rmtree(fresh, ignore_errors=True)
         return there if _same(here, there) else here
     except OSError:

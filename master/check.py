@@ -101,7 +101,9 @@ def _check_ports(component: Component, report: Report) -> None:
 def _dry_run(component: Component, report: Report) -> None:
     """A few steps from the defaults: outputs must be finite numbers."""
     outputs = [
-        v.name for v in component.variables.values() if v.causality == "output" and v.kind in ("Real", "Integer")
+        v.name
+        for v in component.variables.values()
+        if v.causality == "output" and v.kind in ("Real", "Integer")
     ]
     try:
         component.enter(0.0)

@@ -84,7 +84,8 @@ def _scenes(options: argparse.Namespace) -> int:
     )
     for name, spec in chosen.components.items():
         settings = "".join(f"\n      {key} = {value}" for key, value in spec.set.items())
-        print(f"  {name}: {spec.fmu}{settings}")
+        kind = f" ({spec.preset})" if spec.preset else ""
+        print(f"  {name}: {spec.fmu}{kind}{settings}")
     for bearing, body in chosen.attach:
         print(f"  {bearing} on {body}")
     return 0

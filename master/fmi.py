@@ -42,7 +42,9 @@ def unpack(path: Path, cache: Path) -> Path:
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise TouchdownError(f"there is no FMU at {path}; `touchdown build` makes the project's own") from None
+        raise TouchdownError(
+            f"there is no FMU at {path}; `touchdown build` makes the project's own"
+        ) from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     folder = cache / "unpacked" / hashlib.sha256(content).hexdigest()[:24]
@@ -55,7 +57,9 @@ def unpack(path: Path, cache: Path) -> Path:
             for name in archive.namelist():
                 parts = PurePosixPath(name).parts
                 if name.startswith("/") or ".." in parts or ":" in name or "\\" in name:
-                    raise TouchdownError(f"{path} holds an entry {name!r} that leads out of its folder; refused")
+                    raise TouchdownError(
+                        f"{path} holds an entry {name!r} that leads out of its folder; refused"
+                    )
             if "modelDescription.xml" not in archive.namelist():
                 raise TouchdownError(f"{path} is no FMU: it has no modelDescription.xml")
             archive.extractall(fresh)
@@ -181,7 +185,8 @@ class FmuComponent(Component):
                 references = self._references(names)
                 data = np.array([values[n] for n in names]).astype(dtype)
                 self._check(
-                    call(self._component, references.ctypes.data, len(names), data.ctypes.data), "setting values"
+                    call(self._component, references.ctypes.data, len(names), data.ctypes.data),
+                    "setting values",
                 )
 
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
@@ -230,10 +235,13 @@ class FmuComponent(Component):
 
     def save(self) -> object:
         state = ctypes.c_void_p()
-        self._guard("saving its state", lambda: self._fmu.fmi2GetFMUstate(self._component, ctypes.byref(state)))
+        self._guard(
+            "saving its state", lambda: self._fmu.fmi2GetFMUstate(self._component, ctypes.byref(state))
+        )
         return state
 
     def restore(self, state: object) -> None:
+        assert isinstance(state, ctypes.c_void_p)
         self._guard("restoring its state", lambda: self._fmu.fmi2SetFMUstate(self._component, state))
 
     def close(self) -> None:
@@ -249,7 +257,9 @@ class FmuComponent(Component):
         except TouchdownError:
             raise
         except Exception as error:
-            raise TouchdownError(f"component {self.name}: {self._reason(str(error))} (while {doing})") from None
+            raise TouchdownError(
+                f"component {self.name}: {self._reason(str(error))} (while {doing})"
+            ) from None
 
     def _check(self, status: int, doing: str) -> None:
         if status > WARNING:
@@ -271,4 +281,6 @@ def find(name: str, folder: Path, known: Sequence[str]) -> Path | None:
         return path if path.is_absolute() else folder / path
     if name in known:
         return None
-    raise TouchdownError(f"there is no FMU called {name}; {one_of(name, known)}, or give the path of an .fmu")
+    raise TouchdownError(
+        f"there is no FMU called {name}; {one_of(name, known)}, or give the path of an .fmu"
+    )

@@ -47,7 +47,8 @@ class Ledger:
                 (a.body, f"{a.body_port}.work"),
             )
             if all(key in system.position for key in keys):
-                self.entries.append(Entry(a, *(system.position[key] for key in keys)))
+                bearing, jump, body = (system.position[key] for key in keys)
+                self.entries.append(Entry(a, bearing, jump, body))
         self._index = np.array(
             [i for e in self.entries for i in (e.bearing_work, e.jump, e.body_work)], dtype=np.intp
         )

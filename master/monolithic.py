@@ -55,7 +55,7 @@ class Monolith:
             self._twins[name].instance.memory["half"] = 0.0
         self.evaluations = 0
 
-    def _copies(self, system, sources) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:  # noqa: ANN001
+    def _copies(self, system, sources) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
         """For each pair of components: (source words, where from, target words, where to)."""
         pairs: dict[tuple[str, str], list[tuple[int, int]]] = {}
         for c in system.connections:

@@ -48,7 +48,9 @@ def orbit(scene: Scene, system: System, recording: Recording, a: Attachment) -> 
         if "clearance" in system.components[a.bearing].variables:
             radius = UM * system.value(f"{a.bearing}.clearance")
             angle = np.linspace(0.0, 2.0 * np.pi, 721)
-            axes.plot(radius * np.cos(angle), radius * np.sin(angle), "--", color=GREY, lw=1, label="clearance")
+            axes.plot(
+                radius * np.cos(angle), radius * np.sin(angle), "--", color=GREY, lw=1, label="clearance"
+            )
         axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
     whole.set_title("rotor")
     whole.legend(loc="upper right")
@@ -60,7 +62,9 @@ def orbit(scene: Scene, system: System, recording: Recording, a: Attachment) -> 
         ring_x, ring_y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
         inner.plot(ring_x, ring_y, color=ORANGE, lw=0.5, label="inner ring")
     if "housing.x" in system.components[a.bearing].variables:
-        source = next((c for c in system.connections if (c.target, c.input) == (a.bearing, "housing.x")), None)
+        source = next(
+            (c for c in system.connections if (c.target, c.input) == (a.bearing, "housing.x")), None
+        )
         if source is not None:
             port = source.output.rpartition(".")[0]
             hx, hy = (UM * recording[f"{source.source}.{port}.{axis}"] for axis in "xy")

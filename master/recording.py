@@ -51,7 +51,13 @@ class Recorder:
 
     def _dataset(self, name: str, unit: str, description: str) -> h5py.Dataset:
         dataset = self._file.create_dataset(
-            name, (0,), maxshape=(None,), chunks=(BLOCK,), dtype="f8", compression="gzip", compression_opts=1
+            name,
+            (0,),
+            maxshape=(None,),
+            chunks=(BLOCK,),
+            dtype="f8",
+            compression="gzip",
+            compression_opts=1,
         )
         dataset.attrs["unit"] = unit
         dataset.attrs["description"] = description

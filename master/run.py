@@ -88,7 +88,8 @@ class _Bar:
         self._bar = tqdm(
             total=scene.run.duration,
             disable=not shown,
-            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s, {postfix} left {remaining}",
+            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s, "
+            "{postfix} left {remaining}",
             desc=scene.name,
             mininterval=0.2,
         )

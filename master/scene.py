@@ -1,20 +1,21 @@
 """A scene: components, how they are attached, and how to run them; read from TOML.
 
-    title = "..."
-    about = "..."
-    zero = "amb.shutdown_time"                     # times and the duration count from here
-    energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
-    attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
-    connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target
+title = "..."
+about = "..."
+zero = "amb.shutdown_time"                     # times and the duration count from here
+energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
+attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
+connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target
 
-    [run]
-    duration = 5.0        # s
-    macro_step = 2e-5     # s
+[run]
+duration = 5.0        # s
+macro_step = 2e-5     # s
 
-    [components.rotor]
-    fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
-    [components.rotor.set]
-    mass = "1.65 kg"      # a number in SI, or text with a unit
+[components.rotor]
+fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
+preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
+[components.rotor.set]
+mass = "1.65 kg"      # a number in SI, or text with a unit
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from fmus.presets import presets
 from master import schemes
 from master.errors import TouchdownError, one_of
 from master.units import to_si
@@ -39,6 +41,7 @@ class ComponentSpec:
 
     fmu: str
     set: Mapping[str, object] = field(default_factory=dict)
+    preset: str | None = None  # a named set of parameters, applied before `set`
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,13 @@ class RunSpec:
     stop_residual: float = 0.1  # ledger over energy scale: stop
 
 
-RUN_UNITS = {"duration": "s", "macro_step": "s", "record_every": "1", "warn_residual": "1", "stop_residual": "1"}
+RUN_UNITS = {
+    "duration": "s",
+    "macro_step": "s",
+    "record_every": "1",
+    "warn_residual": "1",
+    "stop_residual": "1",
+}
 
 
 @dataclass(frozen=True)
@@ -79,7 +88,10 @@ class Scene:
         if head == "run":
             return replace(self, run=_run({tail: value}, self.run))
         spec = self._component(head)
-        changed = replace(spec, set={**spec.set, tail: value})
+        if tail == "preset":
+            changed = replace(spec, preset=_preset(value, head))
+        else:
+            changed = replace(spec, set={**spec.set, tail: value})
         return replace(self, components={**self.components, head: changed})
 
     def with_swap(self, name: str, fmu: str) -> Scene:
@@ -127,12 +139,13 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     for key, table in _table(data.get("components"), f"scene {name}: [components]").items():
         where = f"scene {name}: [components.{key}]"
         table = _table(table, where)
-        _refuse_unknown(table, ("fmu", "set"), where)
+        _refuse_unknown(table, ("fmu", "preset", "set"), where)
         if not isinstance(table.get("fmu"), str):
-            raise TouchdownError(f"{where} needs fmu = \"NAME\" or the path of an .fmu")
-        components[key] = ComponentSpec(table["fmu"], _flat(_table(table.get("set", {}), where)))
+            raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
+        settings = _flat(_table(table.get("set", {}), where))
+        components[key] = ComponentSpec(table["fmu"], settings, _preset(table.get("preset"), where))
     if not components:
-        raise TouchdownError(f"scene {name} has no components; add [components.NAME] with fmu = \"...\"")
+        raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
     return Scene(
         name=name,
         title=str(data.get("title", name)),
@@ -165,6 +178,12 @@ def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
     return replace(run, **values)
 
 
+def _preset(name: object, where: str) -> str | None:
+    if name is not None and name not in presets():
+        raise TouchdownError(f"{where}: there is no preset {name}; {one_of(str(name), presets())}")
+    return None if name is None else str(name)
+
+
 def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
     """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
     found: dict[str, object] = {}
@@ -184,7 +203,8 @@ def _table(value: object, where: str) -> Mapping[str, Any]:
 
 def _pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
     if not isinstance(value, list) or not all(
-        isinstance(p, list) and len(p) == 2 and all(isinstance(s, str) and "." in s for s in p) for p in value
+        isinstance(p, list) and len(p) == 2 and all(isinstance(s, str) and "." in s for s in p)
+        for p in value
     ):
         raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
     return tuple((p[0], p[1]) for p in value)

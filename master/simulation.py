@@ -174,7 +174,7 @@ def _judge(scene: Scene, ledger: Ledger, outcome: Outcome) -> None:
         worst = ledger.worst()
         assert worst is not None
         raise TouchdownError(
-            f"the energy ledger of {worst.attachment.title} is off by {ledger.residual:.2g} of the energy "
-            f"lost by falling at t = {time:.6g} s; the macro step of {scene.run.macro_step:g} s is too long "
-            f"for scheme {scene.run.scheme}, try --macro-step {scene.run.macro_step / 5:g}"
+            f"the energy ledger of {worst.attachment.title} is off by {ledger.residual:.2g} of the "
+            f"energy lost by falling at t = {time:.6g} s; the macro step of {scene.run.macro_step:g} s is "
+            f"too long for scheme {scene.run.scheme}, try --macro-step {scene.run.macro_step / 5:g}"
         )

@@ -40,10 +40,22 @@ FIGURES = (
 )
 
 
+ENERGIES = (
+    ("energy.kinetic", 1.0),
+    ("energy.potential", 1.0),
+    ("energy.dissipated", 1.0),
+    ("supplied", -1.0),
+)
+
+
 def touchdown_seats(system: System) -> list[Attachment]:
     """Attachments at which a journal can touch down, with the name of the bearing's report."""
-    return [a for a in system.attachments if "contact.first_time" in system.components[a.bearing].variables
-            and f"{a.bearing_port}.omega" in system.components[a.bearing].variables]
+    return [
+        a
+        for a in system.attachments
+        if "contact.first_time" in system.components[a.bearing].variables
+        and f"{a.bearing_port}.omega" in system.components[a.bearing].variables
+    ]
 
 
 def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
@@ -127,17 +139,13 @@ def energy_total(system: System, recording: Recording) -> np.ndarray | None:
     """Sum of all stated energies minus what was supplied (J); constant where nothing is lost."""
     parts = []
     for name, component in system.components.items():
-        for variable, sign in (
-            ("energy.kinetic", 1.0), ("energy.potential", 1.0), ("energy.dissipated", 1.0), ("supplied", -1.0),
-        ):  # fmt: skip
+        for variable, sign in ENERGIES:
             if variable in component.variables:
                 parts.append(sign * recording[f"{name}.{variable}"])
     return np.sum(parts, axis=0) if parts else None
 
 
-def _run_figures(
-    scene: Scene, system: System, outcome: Outcome, recording: Recording
-) -> dict[str, object]:
+def _run_figures(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
     scale = energy_scale(scene, system)
     total = energy_total(system, recording)
     balance = None

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fmus.presets import preset
 from master.component import Component, Variable, check_value
 from master.errors import TouchdownError, one_of
 from master.scene import Scene
@@ -122,9 +123,9 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
             components[name] = load(name, spec.fmu)
         settings = _apply_settings(scene, scheme, components)
         attachments = [_attachment(pair, components) for pair in scene.attach]
-        connections = [
-            c for a in attachments for c in _port_connections(a, components, scheme.slopes)
-        ] + [_connection(pair, components) for pair in scene.connect]
+        connections = [c for a in attachments for c in _port_connections(a, components, scheme.slopes)] + [
+            _connection(pair, components) for pair in scene.connect
+        ]
         _check_connections(connections, components)
         return _wire(components, attachments, connections, settings)
     except BaseException:
@@ -138,10 +139,15 @@ def _apply_settings(
 ) -> dict[tuple[str, str], float]:
     applied: dict[tuple[str, str], float] = {}
     for name, component in components.items():
-        values: dict[str, float] = {}
+        spec = scene.components[name]
+        values = {
+            key: value
+            for key, value in (preset(spec.preset) if spec.preset else {}).items()
+            if key in component.variables
+        }
         if "interface.order" in component.variables:
             values["interface.order"] = scheme.order
-        for key, given in scene.components[name].set.items():
+        for key, given in spec.set.items():
             variable = component.variable(key)
             if not variable.settable:
                 raise TouchdownError(f"{name}.{key} is a {variable.causality} and cannot be set")
@@ -158,7 +164,7 @@ def _attachment(pair: tuple[str, str], components: dict[str, Component]) -> Atta
     for end in pair:
         head, _, port = end.partition(".")
         if head not in components:
-                raise TouchdownError(f"attach {end}: there is no component {head}; {one_of(head, components)}")
+            raise TouchdownError(f"attach {end}: there is no component {head}; {one_of(head, components)}")
         parts += [head, port]
     return Attachment(*parts)
 

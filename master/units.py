@@ -41,7 +41,9 @@ def to_si(value: object, unit: str | None, name: str) -> float:
     if written and written != unit:
         factor, si = SCALES.get(written, (1.0, written))
         if si != unit:
-            raise TouchdownError(f"{name} = {value!r} has the unit {written}; it is measured in {unit or '1'}")
+            raise TouchdownError(
+                f"{name} = {value!r} has the unit {written}; it is measured in {unit or '1'}"
+            )
         number *= factor
     if not math.isfinite(number):
         raise TouchdownError(f"{name} = {value!r} is not a finite number")

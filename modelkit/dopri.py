@@ -38,7 +38,7 @@ def scratch(size: int) -> np.ndarray:
 
 
 @inlined
-def integrate(rhs, observe, m, y, n, weight, k, span, h, tolerance):  # noqa: ANN001, ANN201
+def integrate(rhs, observe, m, y, n, weight, k, span, h, tolerance):
     """Advance y[:n] over `span` seconds in place.
 
     rhs(t, y, dy, m) fills dy; t counts from the start of the span. observe(t, y, m) sees the state
@@ -76,9 +76,7 @@ def integrate(rhs, observe, m, y, n, weight, k, span, h, tolerance):  # noqa: AN
             )
         rhs(t + step, w, k[5], m)
         for i in range(n):
-            w[i] = y[i] + step * (
-                B1 * k[0, i] + B3 * k[2, i] + B4 * k[3, i] + B5 * k[4, i] + B6 * k[5, i]
-            )
+            w[i] = y[i] + step * (B1 * k[0, i] + B3 * k[2, i] + B4 * k[3, i] + B5 * k[4, i] + B6 * k[5, i])
         rhs(t + step, w, k[6], m)
         evaluations += 6
         error = 0.0

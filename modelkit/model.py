@@ -112,12 +112,9 @@ def slots(model: Model) -> list[Slot]:
         ("u", model.inputs, "input"),
         ("o", model.outputs, "output"),
     ):
-        fields = model.memory.fields
-        assert fields is not None
+        fields: Any = model.memory.fields
         offset = fields[part][1] // 8
-        found += [
-            Slot(v, causality, offset + i) for i, v in enumerate(flatten(kind())) if v.name
-        ]
+        found += [Slot(v, causality, offset + i) for i, v in enumerate(flatten(kind())) if v.name]
     return found
 
 

@@ -26,12 +26,8 @@ class BodyMotion:
     y: float = real(0.0, "m", "vertical position", nominal=1e-4)
     vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
     vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
-    ax_free: float = real(
-        0.0, "m/s2", "horizontal acceleration from everything but this bearing's force"
-    )
-    ay_free: float = real(
-        0.0, "m/s2", "vertical acceleration from everything but this bearing's force"
-    )
+    ax_free: float = real(0.0, "m/s2", "horizontal acceleration from everything but this bearing's force")
+    ay_free: float = real(0.0, "m/s2", "vertical acceleration from everything but this bearing's force")
     inv_m: float = real(
         0.0, "1/kg", "acceleration per force of this bearing; 0: motion is prescribed", constant=True
     )
@@ -58,9 +54,7 @@ class SeatMotion(BodyMotion):
     """Motion of a journal at the beginning of the macro step."""
 
     omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise", nominal=1000.0)
-    alpha_free: float = real(
-        0.0, "rad/s2", "spin acceleration from everything but this bearing's moment"
-    )
+    alpha_free: float = real(0.0, "rad/s2", "spin acceleration from everything but this bearing's moment")
     inv_I: float = real(
         0.0, "1/(kg.m2)", "spin acceleration per moment; 0: spin is prescribed", constant=True
     )
@@ -93,9 +87,7 @@ class Account:
     """What one side of a connection states of the energy that crossed it, since the start."""
 
     work: float = real(0.0, "J", "work of the load on the body's motion as this side knows it", local=True)
-    jump: float = real(
-        0.0, "J", "mean load times the jump of that motion at each restart", local=True
-    )
+    jump: float = real(0.0, "J", "mean load times the jump of that motion at each restart", local=True)
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,9 @@ class Parameters:
     inertia: float = real(0.5e-3, "kg.m2", "polar moment of inertia", above=0.0)
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     speed: float = real(942.477796076938, "rad/s", "spin speed at the start")
-    eccentricity: float = real(0.0, "m", "distance of the centre of mass from the shaft centre", minimum=0.0)
+    eccentricity: float = real(
+        0.0, "m", "distance of the centre of mass from the shaft centre", minimum=0.0
+    )
     unbalance_angle: float = real(0.0, "rad", "angle of the centre of mass at the start")
     drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0)
     viscous_drag: float = real(0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0)
@@ -191,8 +193,13 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         found |= {
             f"{seat}.{name}": (name if name in ("x", "y", "vx", "vy") else source,)
             for name, source in (
-                ("x", ""), ("y", ""), ("vx", ""), ("vy", ""),
-                ("inv_m", "mass"), ("omega", "speed"), ("inv_I", "inertia"),
+                ("x", ""),
+                ("y", ""),
+                ("vx", ""),
+                ("vy", ""),
+                ("inv_m", "mass"),
+                ("omega", "speed"),
+                ("inv_I", "inertia"),
             )
         }
         found[f"{seat}.alpha_free"] = turning

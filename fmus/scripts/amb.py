@@ -1,7 +1,7 @@
 """FMU: active magnetic bearing with shutdown."""
 
-from fmus.slave import ModelSlave
 from bearings.amb import MODEL
+from fmus.slave import ModelSlave
 
 
 class MagneticBearing(ModelSlave):

@@ -1,7 +1,7 @@
 """FMU: plain touchdown bushing."""
 
-from fmus.slave import ModelSlave
 from bearings.bushing import MODEL
+from fmus.slave import ModelSlave
 
 
 class Bushing(ModelSlave):

@@ -1,7 +1,7 @@
 """FMU: simplified touchdown bearing with a cage."""
 
-from fmus.slave import ModelSlave
 from bearings.simplified_caged import MODEL
+from fmus.slave import ModelSlave
 
 
 class SimplifiedCaged(ModelSlave):

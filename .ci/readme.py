@@ -1,0 +1,53 @@
+"""Run the README's own commands, so that what it promises is what is tested.
+
+    python .ci/readme.py run|test|rest [--python python3]
+
+The README's ```sh blocks hold one command a line. The first line of the first block is `run`, the
+second `test`; everything in later blocks is `rest`. Lines run in the repository's root, in one shell
+each, as a reader would type them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def blocks() -> list[list[str]]:
+    """Commands of each ```sh block of the README."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    found = re.findall(r"^```sh\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return [[line for line in block.splitlines() if line and not line.startswith("#")] for block in found]
+
+
+def chosen(part: str) -> list[str]:
+    """The commands of a part of the README."""
+    first, *later = blocks()
+    if len(first) != 2:
+        sys.exit(f"the README's first block must hold two commands, it holds {len(first)}")
+    return {"run": first[:1], "test": first[1:], "rest": [line for block in later for line in block]}[part]
+
+
+def main() -> int:
+    """Run the commands; stops at the first that fails."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("part", choices=("run", "test", "rest"))
+    parser.add_argument("--python", default="python3", help="stands for python3 in the commands")
+    options = parser.parse_args()
+    for command in chosen(options.part):
+        command = re.sub(r"\bpython3\b", options.python, command)
+        print(f"$ {command}", flush=True)
+        status = subprocess.run(["bash", "-c", command], cwd=ROOT, check=False).returncode
+        if status:
+            print(f"exit status {status}: {command}", file=sys.stderr)
+            return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,73 @@
+"""Shared by all tests: the project's FMUs, and processes that run without the project."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+from fmpy import extract
+
+from fmus.build import cached, names
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# Head of every process that must do without the project, which may be installed in the interpreter.
+WALL = """
+import importlib.abc, pathlib, sys
+PROJECT = ("modelkit", "rotor", "bearings", "fmus", "master")
+class Wall(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in PROJECT:
+            raise ModuleNotFoundError("walled off: " + name, name=name)
+sys.meta_path.insert(0, Wall())
+sys.path.append({tests!r})
+def importable():
+    found = []
+    for name in PROJECT:
+        try:
+            __import__(name)
+        except ImportError:
+            continue
+        found.append(name)
+    return found
+def loaded_from_project():
+    files = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
+    inside = [pathlib.Path(f) for f in files if f.startswith({root!r} + "/")]
+    return [str(f) for f in inside if f.parent != pathlib.Path({tests!r})]
+"""
+
+
+@pytest.fixture(scope="session")
+def built() -> Mapping[str, Path]:
+    """The project's FMUs by name, built from the present sources."""
+    return {name: cached(name) for name in names()}
+
+
+@pytest.fixture(scope="session")
+def unpacked(built: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Path]:
+    """Folders of the unpacked FMUs by name."""
+    folder = tmp_path_factory.mktemp("unpacked")
+    return {name: Path(extract(str(path), str(folder / name))) for name, path in built.items()}
+
+
+@pytest.fixture
+def alone(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run a script in a process of its own that cannot import the project; returns what it left."""
+    wall = WALL.format(tests=str(ROOT / "tests"), root=str(ROOT))
+
+    def run(script: str, *arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-I", "-c", f"{wall}\n{script}", *map(str, arguments)],
+            cwd=tmp_path,
+            env={**os.environ, **environment},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+
+    return run
