@@ -41,7 +41,9 @@ class ComponentSpec:
 
     fmu: str
     set: Mapping[str, object] = field(default_factory=dict)
-    preset: str | None = None  # a named set of parameters, applied before `set`
+    preset: str | None = None  # a named set of parameters, applied first
+    inherited: Mapping[str, object] = field(default_factory=dict)
+    """Settings of the component it was swapped for; those it has are applied before `set`."""
 
 
 @dataclass(frozen=True)
@@ -95,11 +97,20 @@ class Scene:
         return replace(self, components={**self.components, head: changed})
 
     def with_swap(self, name: str, fmu: str) -> Scene:
-        """A copy with component `name` made of another FMU, which starts from its own defaults."""
-        self._component(name)
+        """A copy with component `name` made of another FMU.
+
+        It starts from its own defaults and takes over what the scene sets, as far as it has it.
+        """
+        before = self._component(name)
         if fmu.endswith(".fmu"):
             fmu = str(Path(fmu).absolute())
-        return replace(self, components={**self.components, name: ComponentSpec(fmu)})
+        return replace(
+            self,
+            components={
+                **self.components,
+                name: ComponentSpec(fmu, inherited={**before.inherited, **before.set}),
+            },
+        )
 
     def _component(self, name: str) -> ComponentSpec:
         try:

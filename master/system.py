@@ -140,23 +140,24 @@ def _apply_settings(
     applied: dict[tuple[str, str], float] = {}
     for name, component in components.items():
         spec = scene.components[name]
-        values = {
-            key: value
-            for key, value in (preset(spec.preset) if spec.preset else {}).items()
-            if key in component.variables
-        }
+        optional: dict[str, object] = {**(preset(spec.preset) if spec.preset else {}), **spec.inherited}
+        given = {key: value for key, value in optional.items() if key in component.variables}
+        values = {key: _checked(component, key, value) for key, value in {**given, **spec.set}.items()}
         if "interface.order" in component.variables:
-            values["interface.order"] = scheme.order
-        for key, given in spec.set.items():
-            variable = component.variable(key)
-            if not variable.settable:
-                raise TouchdownError(f"{name}.{key} is a {variable.causality} and cannot be set")
-            value = to_si(given, variable.unit, f"{name}.{key}")
-            check_value(component, variable, value)
-            values[key] = value
+            values.setdefault("interface.order", scheme.order)
         component.set(values)
         applied |= {(name, key): value for key, value in values.items()}
     return applied
+
+
+def _checked(component: Component, name: str, given: object) -> float:
+    """A setting's value in SI, if the component can take it."""
+    variable = component.variable(name)
+    if not variable.settable:
+        raise TouchdownError(f"{component.name}.{name} is a {variable.causality} and cannot be set")
+    value = to_si(given, variable.unit, f"{component.name}.{name}")
+    check_value(component, variable, value)
+    return value
 
 
 def _attachment(pair: tuple[str, str], components: dict[str, Component]) -> Attachment:

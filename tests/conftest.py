@@ -54,15 +54,16 @@ def unpacked(built: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory
     return {name: Path(extract(str(path), str(folder / name))) for name, path in built.items()}
 
 
-@pytest.fixture
-def alone(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+@pytest.fixture(scope="session")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run a script in a process of its own that cannot import the project; returns what it left."""
+    folder = tmp_path_factory.mktemp("alone")
     wall = WALL.format(tests=str(ROOT / "tests"), root=str(ROOT))
 
     def run(script: str, *arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [sys.executable, "-I", "-c", f"{wall}\n{script}", *map(str, arguments)],
-            cwd=tmp_path,
+            cwd=folder,
             env={**os.environ, **environment},
             capture_output=True,
             text=True,

@@ -59,11 +59,6 @@ class Slave:
         """Everything it logged."""
         return "\n".join(self.messages)
 
-    @property
-    def bears(self) -> bool:
-        """Whether it is a touchdown bearing: it reports a contact."""
-        return "contact.force" in self.variables
-
     def named(self, *causalities: str) -> list[str]:
         """Names of its variables of these causalities."""
         return [v.name for v in self.variables.values() if v.causality in causalities]

@@ -20,7 +20,9 @@ STIFFNESS = {  # inner, outer, series in 1e10 N/m^1.5, by (2.43)-(2.46) as corre
 @pytest.mark.parametrize("name", sorted(CATALOGUE))
 def test_contact_stiffness(name: str) -> None:
     balls = CATALOGUE[name].balls
-    found = [1e-10 * k for k in (balls.inner_stiffness(), balls.outer_stiffness(), balls.series_stiffness())]
+    found = [
+        1e-10 * k for k in (balls.inner_stiffness(), balls.outer_stiffness(), balls.series_stiffness())
+    ]
     assert found == pytest.approx(STIFFNESS[name], abs=6e-4)
 
 
