@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import seat
+from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Interface, Load, MountReaction, SeatReaction
@@ -107,6 +108,13 @@ def start(words):
 
 
 @kernel
+def integrate(m, work, span):
+    """Advance the state by `span` (s)."""
+    tolerance = m.p.interface.tolerance
+    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+
+
+@kernel
 def instant(t, y, dy, m):
     """Derivative and load under the motion m.u at time t (s)."""
     m.s.span = 1.0 if t < m.p.shutdown_time else -1.0
@@ -120,7 +128,7 @@ def advance(words, work, time, step):
     left = m.p.shutdown_time - time
     m.s.span = -1.0 if left <= ROUNDING else min(left, step)
     span = max(m.s.span, 0.0)
-    return seat.advance(react, rhs, observe, report, m, work, time, step, span)
+    return seat.advance(react, integrate, report, m, work, time, step, span)
 
 
 def weights(p: Parameters) -> np.ndarray:

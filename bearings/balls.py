@@ -105,8 +105,15 @@ class BallSet:
             force = stiffness * indentation**1.5
             return np.array([np.sum(force * nx), np.sum(force * ny) + weight]) / weight
 
-        lowest = max(float(np.max(-ny)), 0.5)
-        guess = [0.0, -(max(self.play, 0.0) / lowest + sunk) / scale]
+        half_gap = math.pi / self.count
+        gaps = (-0.5 * math.pi - self.first_angle) / (2.0 * half_gap)  # to the bottom, from the first ball
+        off = (gaps - math.floor(gaps) - 0.5) * 2.0 * half_gap  # of the bottom from the middle of its gap
+        if abs(abs(off) - half_gap) < 1e-9:  # a ball exactly below: in the middle, on that ball
+            direction, reach = -0.5 * math.pi, max(self.play, 0.0) + sunk
+        else:  # in the corner of the play between the two lowest balls
+            direction = -0.5 * math.pi - off
+            reach = (max(self.play, 0.0) + sunk) / math.cos(half_gap)
+        guess = [reach / scale * math.cos(direction), reach / scale * math.sin(direction)]
         found = least_squares(imbalance, guess, xtol=1e-15, ftol=1e-15, gtol=1e-15)
         return float(found.x[0] * scale), float(found.x[1] * scale)
 
@@ -118,7 +125,8 @@ class BallSet:
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be smaller"
             )
         if self.count * self.touch_angle > 2.0 * math.pi:
-            needed = self.diameter / math.sin(math.pi / self.count)
+            # rounded up, so that the remedy is one
+            needed = math.ceil(1e6 * self.diameter / math.sin(math.pi / self.count)) / 1e6
             return (
                 f"balls.count = {self.count} balls of {self.diameter:g} m do not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"

@@ -12,8 +12,9 @@ import numpy as np
 
 from bearings import seat
 from bearings.contact import ContactLaw, elastic_energy
-from bearings.friction import FrictionLaw, prepared
+from bearings.friction import FrictionLaw, prepared, problem
 from bearings.journal_contact import ContactMemory, ContactReport, touch, watch_contact
+from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
@@ -108,6 +109,13 @@ def start(words):
 
 
 @kernel
+def integrate(m, work, span):
+    """Advance the state by `span` (s)."""
+    tolerance = m.p.interface.tolerance
+    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+
+
+@kernel
 def instant(t, y, dy, m):
     """Derivative and load under the motion m.u."""
     seat.instant(react, t, y, dy, m)
@@ -116,12 +124,17 @@ def instant(t, y, dy, m):
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, rhs, observe, report, words.view(MEMORY)[0], work, time, step, step)
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step, step)
 
 
 def derive(p: Parameters) -> Derived:
     """Fill in what the friction law leaves open."""
     return Derived(friction=prepared(p.friction))
+
+
+def check(p: Parameters) -> str | None:
+    """What is wrong between the parameters."""
+    return problem(p.friction, "friction")
 
 
 def weights(p: Parameters) -> np.ndarray:
@@ -143,5 +156,6 @@ MODEL = Model(
     advance=advance,
     weights=weights,
     derive=derive,
+    check=check,
     instant=instant,
 )

@@ -48,14 +48,30 @@ class FrictionLaw:
 @kernel
 def coefficient(speed, law):
     """Friction coefficient at sliding speed `speed` (m/s), with its sign."""
-    if law.kind == 0:
+    if law.kind == COULOMB:
         return law.dynamic * math.tanh(law.slope * speed)
-    if law.kind == 1:
+    if law.kind == STRIBECK:
         fade = math.exp(-((speed / law.stribeck_speed) ** 2))
         return (law.dynamic + (law.static - law.dynamic) * fade) * math.tanh(law.slope * speed)
     rise = math.tanh(law.g2 * speed)
     plateau = rise if law.slope == law.g2 else math.tanh(law.slope * speed)
     return law.g1 * (rise - math.tanh(law.g3 * speed)) + law.dynamic * plateau + law.g6 * speed
+
+
+@kernel
+def slope(speed, law):
+    """Derivative of the coefficient (s/m), zero where it falls: what a linearly implicit step needs."""
+    if law.kind == MAKKAR:
+        rise, fall = math.tanh(law.g2 * speed), math.tanh(law.g3 * speed)
+        plateau = rise if law.slope == law.g2 else math.tanh(law.slope * speed)
+        found = law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
+        found += law.dynamic * law.slope * (1.0 - plateau * plateau) + law.g6
+        return max(found, 0.0)
+    plateau = math.tanh(law.slope * speed)
+    level = law.dynamic
+    if law.kind == STRIBECK:
+        level += (law.static - law.dynamic) * math.exp(-((speed / law.stribeck_speed) ** 2))
+    return level * law.slope * (1.0 - plateau * plateau)
 
 
 @cache
@@ -75,6 +91,16 @@ def makkar_amplitude(static: float, dynamic: float, g2: float, g3: float, slope:
         return 0.0
     root = brentq(lambda g1: peak(g1) - static, 0.0, 100.0 * static, xtol=1e-14)
     return float(cast(float, root))
+
+
+def problem(law: FrictionLaw, name: str) -> str | None:
+    """Why the law of parameter group `name` has no curve, or None."""
+    if law.kind == MAKKAR and law.g2 <= law.g3:
+        return (
+            f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
+            "the difference of their curves is what rises to the static coefficient"
+        )
+    return None
 
 
 def prepared(law: FrictionLaw) -> FrictionLaw:

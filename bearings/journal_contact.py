@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from bearings.contact import elastic_energy, normal_force
+from bearings.contact import elastic_force, normal_force
 from bearings.friction import coefficient
 from modelkit.kernel import kernel
 from modelkit.variables import real
@@ -52,11 +52,7 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
     lever = distance + journal_radius
     sliding = uy * nx - ux * ny + journal.spin * journal_radius - ring.spin * lever
     normal = normal_force(indentation, rate, law)
-    elastic = (
-        law.stiffness * indentation**law.exponent
-        if law.exponent != 1.5
-        else (law.stiffness * indentation * math.sqrt(indentation))
-    )
+    elastic = elastic_force(indentation, law)
     tangential = -coefficient(sliding, friction) * normal
     loss = (normal - elastic) * rate - tangential * sliding
     return Touch(
@@ -150,9 +146,3 @@ def watch_contact(time, journal, touched, report, memory):
     memory.rate = -rate
     memory.x, memory.y = journal.x, journal.y
     memory.vx, memory.vy = journal.vx, journal.vy
-
-
-@kernel
-def contact_energy(indentation, law):
-    """Energy stored between journal and ring (J)."""
-    return elastic_energy(indentation, law)

@@ -219,13 +219,12 @@ def instant(react, t, y, dy, m):
 
 
 @inlined
-def advance(react, rhs, observe, report, m, work, time, step, span):
+def advance(react, integrate, report, m, work, time, step, span):
     """One macro step of a bearing.
 
-    react(t, y, dy, m) gives the `Load` and the derivative of what is inside; rhs is
-    `copy_rates` closed with it; observe(t, y, m) sees every accepted micro-step;
-    report(y, m) fills the outputs that are wanted once per macro step. The load acts for `span` (s)
-    of the macro step, which is all of it but where a magnetic bearing is shut down.
+    react(t, y, dy, m) gives the `Load` and the derivative of what is inside; integrate(m, work, span)
+    advances the state; report(y, m) fills the outputs that are wanted once per macro step. The load acts
+    for `span` (s) of the macro step, which is all of it but where a magnetic bearing is shut down.
     """
     status = BAD_INPUT
     if finite_inputs(m):
@@ -237,9 +236,7 @@ def advance(react, rhs, observe, report, m, work, time, step, span):
         before = react(0.0, y, work[0], m)
         account_jump(m, before, y[JX] - jx, y[JY] - jy, y[HX] - hx, y[HY] - hy)
         remember(m, before)
-        m.h, failure, evaluations = dopri.integrate(
-            rhs, observe, m, y, m.n, m.weight, work, span, m.h, m.p.interface.tolerance
-        )
+        m.h, failure, evaluations = integrate(m, work, span)
         m.evaluations += evaluations
         hand_over(y, m, step)
         remember(m, react(step, y, work[0], m))

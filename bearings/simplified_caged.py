@@ -22,9 +22,11 @@ import numpy as np
 
 from bearings import ring, seat
 from bearings.balls import MOST_BALLS, BallReport, BallSet, RaceStiffness
-from bearings.contact import ContactLaw, elastic_energy
+from bearings.contact import ContactLaw, elastic_energy, elastic_force
 from bearings.friction import FrictionLaw, prepared
+from bearings.friction import problem as friction_problem
 from bearings.journal_contact import ContactMemory, ContactReport
+from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
@@ -149,7 +151,7 @@ def _ball_forces(ex, ey, ux, uy, cage_angle, m):
         if indentation <= 0.0:
             continue
         rate = ux * nx + uy * ny
-        elastic = law.stiffness * indentation * math.sqrt(indentation)
+        elastic = elastic_force(indentation, law)
         force = max(elastic + law.damping * indentation * rate, 0.0)
         fx -= force * nx
         fy -= force * ny
@@ -234,6 +236,13 @@ def start(words):
 
 
 @kernel
+def integrate(m, work, span):
+    """Advance the state by `span` (s)."""
+    tolerance = m.p.interface.tolerance
+    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+
+
+@kernel
 def instant(t, y, dy, m):
     """Derivative and load under the motion m.u."""
     seat.instant(react, t, y, dy, m)
@@ -242,7 +251,7 @@ def instant(t, y, dy, m):
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, rhs, observe, report, words.view(MEMORY)[0], work, time, step, step)
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step, step)
 
 
 def derive(p: Parameters) -> Derived:
@@ -274,7 +283,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return p.balls.problem()
+    return p.balls.problem() or friction_problem(p.friction, "friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

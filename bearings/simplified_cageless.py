@@ -18,6 +18,9 @@ Deviations from the source, each named where it acts:
 - A ball driven into the narrowing gap resists with -F (e . t)/r_m; without it the model creates energy.
 - Friction on a ball reacts on the rings as a force, too, so that action equals reaction.
 - Neighbours push along the chord between their centres.
+
+Friction on a ball of half a gram is stiff (1e7 per second under load), everything else is not; so the
+state is advanced by a linearly implicit method whose matrix holds the slopes of friction only.
 """
 
 from __future__ import annotations
@@ -29,9 +32,11 @@ import numpy as np
 
 from bearings import ring, seat
 from bearings.balls import MOST_BALLS, BallReport, BallSet, RaceStiffness
-from bearings.contact import ContactLaw, elastic_energy, normal_force
-from bearings.friction import FrictionLaw, coefficient, prepared
+from bearings.contact import ContactLaw, elastic_energy, elastic_force, normal_force
+from bearings.friction import FrictionLaw, coefficient, prepared, slope
+from bearings.friction import problem as friction_problem
 from bearings.journal_contact import ContactMemory, ContactReport
+from modelkit import rosenbrock
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
@@ -52,7 +57,7 @@ class Parameters:
     as_printed: int = integer(
         0, "1: (2.10) with its last friction term as printed, which breaks momentum", minimum=0, maximum=1
     )
-    interface: Interface = group(Interface)
+    interface: Interface = group(Interface, tolerance=1e-4)
     contact: ContactLaw = group(ContactLaw, damping=1e7)
     friction: FrictionLaw = group(FrictionLaw)
     balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
@@ -167,7 +172,7 @@ def _race_forces(y, dy, m):
             indentation = ex * c + ey * sn - play
             if indentation > 0.0:
                 rate = ux * c + uy * sn
-                elastic = law.stiffness * indentation * math.sqrt(indentation)
+                elastic = elastic_force(indentation, law)
                 force = max(elastic + law.damping * indentation * rate, 0.0)
                 lever = ri - ex * c - ey * sn  # from the ring's centre, which stands off by e
                 sliding = y[ring.RW] * lever + uy * c - ux * sn - v + rb * spin
@@ -212,7 +217,7 @@ def _neighbour_forces(y, dy, m):
         overlap = 2.0 * (rb - rm * math.sin(half))
         lever = rm * math.cos(half)
         rate = lever * (y[i + 1] - y[k + 1])
-        elastic = p.ball_contact.stiffness * overlap**p.ball_contact.exponent
+        elastic = elastic_force(overlap, p.ball_contact)
         force = normal_force(overlap, rate, p.ball_contact)
         sliding = rb * (y[i + 2] + y[k + 2])
         rub = coefficient(sliding, d.ball_friction) * force
@@ -222,7 +227,7 @@ def _neighbour_forces(y, dy, m):
         dy[i + 2] -= rb * rub / d.inertia
         dy[k + 2] -= rb * rub / d.inertia
         heat += rub * sliding + (force - elastic) * rate
-        s.energy += elastic * overlap / (p.ball_contact.exponent + 1.0)
+        s.energy += elastic_energy(overlap, p.ball_contact)
         if force > s.pushed:
             s.pushed = force
         if overlap > s.overlap:
@@ -308,6 +313,90 @@ def start(words):
 
 
 @kernel
+def linearise(y, j, m):
+    """What is stiff: slopes of friction times load at the inner (j[i]) and outer race (j[i + 1]) of each
+    ball, its inner contact's distance from the ring's centre (j[i + 2]), and the journal's on the ring.
+    """
+    p, d = m.p, m.d
+    rm, rb, play = d.pitch_radius, d.ball_radius, p.balls.play
+    ex, ey = y[ring.RX] - y[seat.HX], y[ring.RY] - y[seat.HY]
+    ux, uy = y[ring.RVX] - y[seat.HVX], y[ring.RVY] - y[seat.HVY]
+    for b in range(p.balls.count):
+        i = BALLS + 3 * b
+        c, sn = math.cos(y[i]), math.sin(y[i])
+        orbit, spin = y[i + 1], y[i + 2]
+        indentation = ex * c + ey * sn - play
+        force, inner = 0.0, 0.0
+        j[i + 2] = d.inner_radius - ex * c - ey * sn
+        if indentation > 0.0:
+            force = elastic_force(indentation, d.race)
+            sliding = y[ring.RW] * j[i + 2] + uy * c - ux * sn - rm * orbit + rb * spin
+            inner = slope(sliding, d.race_friction) * force
+        pressed = force + rm * d.mass * orbit * orbit
+        j[i] = inner
+        j[i + 1] = slope(rm * orbit + rb * spin, d.race_friction) * pressed
+    bore = p.journal_radius + p.clearance
+    j[ring.RW] = 0.0
+    if m.s.ring.normal > 0.0:
+        sliding = y[seat.JW] * p.journal_radius - y[ring.RW] * bore
+        j[ring.RW] = slope(sliding, d.friction) * m.s.ring.normal * bore * bore / p.ring.inertia
+
+
+@kernel
+def _ball_block(i, j, s, d):
+    """s - J of the ball at state i, [[a, g], [h, e]], and what the ring's spin brings into it, (o, q)."""
+    rm, rb, mass, inertia = d.pitch_radius, d.ball_radius, d.mass, d.inertia
+    inner, outer, lever = j[i], j[i + 1], j[i + 2]
+    a = s + (inner + outer) / mass
+    g = (outer - inner) * rb / (rm * mass)
+    h = (outer - inner) * rb * rm / inertia
+    e = s + (inner + outer) * rb * rb / inertia
+    return a, g, h, e, inner * lever / (rm * mass), -inner * lever * rb / inertia
+
+
+@kernel
+def solve(j, s, r, m):
+    """Overwrite r with the solution of (s - J) x = r, J that of the balls' and the ring's turning.
+
+    J is an arrow: each ball's orbit and spin are tied to each other and to the ring's spin only. So the
+    balls are eliminated one by one, the ring is solved for, and its share handed back to them.
+    """
+    p, d = m.p, m.d
+    rm, rb = d.pitch_radius, d.ball_radius
+    pivot, right = s + j[ring.RW], r[ring.RW]
+    for b in range(p.balls.count):
+        i = BALLS + 3 * b
+        a, g, h, e, o, q = _ball_block(i, j, s, d)
+        scale = 1.0 / (a * e - g * h)
+        x, z = (e * r[i + 1] - g * r[i + 2]) * scale, (a * r[i + 2] - h * r[i + 1]) * scale
+        xo, zo = (e * o - g * q) * scale, (a * q - h * o) * scale
+        r[i], r[i + 1], r[i + 2] = r[i] / s, x, z
+        lever = j[i + 2]
+        back = j[i] * lever / p.ring.inertia
+        pivot += back * (lever - rm * xo + rb * zo)
+        right += back * (rm * x - rb * z)
+    turned = right / pivot
+    for b in range(p.balls.count):
+        i = BALLS + 3 * b
+        a, g, h, e, o, q = _ball_block(i, j, s, d)
+        scale = turned / (a * e - g * h)
+        r[i + 1] += (e * o - g * q) * scale
+        r[i + 2] += (a * q - h * o) * scale
+    for i in range(BALLS):
+        r[i] /= s
+    r[ring.RW] = turned
+
+
+@kernel
+def integrate(m, work, span):
+    """Advance the state by `span` (s)."""
+    tolerance = m.p.interface.tolerance
+    return rosenbrock.integrate(
+        rhs, linearise, solve, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance
+    )
+
+
+@kernel
 def instant(t, y, dy, m):
     """Derivative and load under the motion m.u."""
     seat.instant(react, t, y, dy, m)
@@ -316,7 +405,7 @@ def instant(t, y, dy, m):
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, rhs, observe, report, words.view(MEMORY)[0], work, time, step, step)
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step, step)
 
 
 def derive(p: Parameters) -> Derived:
@@ -344,7 +433,13 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return p.balls.problem()
+    laws = {
+        "friction": p.friction,
+        "race_friction": p.race_friction,
+        "ball_friction": p.ball_friction,
+    }
+    found = [p.balls.problem(), *(friction_problem(law, name) for name, law in laws.items())]
+    return next((text for text in found if text), None)
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -83,7 +83,7 @@ def integrate(rhs, observe, m, y, n, weight, k, span, h, tolerance):
         for i in range(n):
             e = E1 * k[0, i] + E3 * k[2, i] + E4 * k[3, i] + E5 * k[4, i] + E6 * k[5, i] + E7 * k[6, i]
             e = abs(step * e) * weight[i]
-            if not e <= error:  # also takes a NaN over
+            if e > error or e != e:  # nothing is larger than a NaN, so it stays
                 error = e
         error /= tolerance
         if error <= 1.0:

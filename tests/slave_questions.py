@@ -284,10 +284,11 @@ def mixed_types(folder: str, _: str) -> list[Any]:
         slave = Slave(folder)
         variable = slave.variables[name]
         other = "Integer" if variable.type == "Real" else "Real"
-        if not slave.refuses(getattr(slave.fmu, f"get{other}"), [variable.valueReference]) and not slave.said:
+        read, write = getattr(slave.fmu, f"get{other}"), getattr(slave.fmu, f"set{other}")
+        if not slave.refuses(read, [variable.valueReference]) and not slave.said:
             wrong.append([f"get{other}", name])
         before = slave.get([name])
-        slave.refuses(getattr(slave.fmu, f"set{other}"), [variable.valueReference], [2])
+        slave.refuses(write, [variable.valueReference], [2])
         if slave.get([name]) != before:
             wrong.append([f"set{other}", name])
         slave.free()

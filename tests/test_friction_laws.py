@@ -8,7 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bearings.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient, makkar_amplitude, prepared
+from bearings.friction import (
+    COULOMB,
+    MAKKAR,
+    STRIBECK,
+    FrictionLaw,
+    coefficient,
+    makkar_amplitude,
+    prepared,
+)
 from modelkit.variables import as_record
 
 KINDS = {"Coulomb": COULOMB, "Stribeck": STRIBECK, "Makkar": MAKKAR}
@@ -73,7 +81,7 @@ def test_coulomb_is_the_regularised_step():
 
 
 def test_stribeck_blends_static_into_dynamic():
-    """Just past the regularised rise friction is static; at the Stribeck speed 1/e of the excess is left."""
+    """Past the regularised rise friction is static; at the Stribeck speed 1/e of the excess is left."""
     law = FrictionLaw(kind=STRIBECK, slope=1e5, stribeck_speed=0.05)
     near, faded = curve(law, np.array([5e-4, 0.05]))
     assert near == pytest.approx(0.15, rel=1e-4)

@@ -165,9 +165,7 @@ def test_turning_the_frame_changes_nothing(seed, law):
 def test_moving_frame_changes_nothing(seed):
     """A shift and a common velocity of both bodies leave the contact as it is."""
     journal, ring = random_pair(seed)
-    moved = [
-        b._replace(x=b.x + 4e-3, y=b.y - 2e-3, vx=b.vx + 0.3, vy=b.vy - 0.7) for b in (journal, ring)
-    ]
+    moved = [b._replace(x=b.x + 4e-3, y=b.y - 2e-3, vx=b.vx + 0.3, vy=b.vy - 0.7) for b in (journal, ring)]
     here, there = touched((journal, ring)), touched((moved[0], moved[1]))
     assert here.normal > 0.0
     np.testing.assert_allclose(there, here, rtol=1e-8)
@@ -219,10 +217,9 @@ def test_power_balance(seed, law, kind):
     found = touched(pair, law, kind)
     on_journal = found.fx * journal.vx + found.fy * journal.vy + found.journal_moment * journal.spin
     on_ring = -found.fx * ring.vx - found.fy * ring.vy + found.ring_moment * ring.spin
-    record = as_record(law)
     step = 1e-4 * found.indentation
-    rise = elastic_energy(found.indentation + step, record) - elastic_energy(found.indentation - step, record)
-    storing = rise / (2.0 * step) * found.rate
+    lower, upper = (elastic_energy(found.indentation + d, as_record(law)) for d in (-step, step))
+    storing = (upper - lower) / (2.0 * step) * found.rate
     assert found.normal > 0.0
     assert abs(storing) > 0.0
     scale = abs(storing) + abs(found.loss) + abs(on_journal) + abs(on_ring)
@@ -237,7 +234,9 @@ def test_contact_energy_is_the_laws(law):
     assert contact_energy(-20e-6, record) == 0.0
 
 
-@pytest.mark.parametrize("coefficients", [(1.0, 0.0, 0.0, 0.0), (0.3, -2.0, 0.7, 1.9), (0.0, 0.0, 0.0, -4.0)])
+@pytest.mark.parametrize(
+    "coefficients", [(1.0, 0.0, 0.0, 0.0), (0.3, -2.0, 0.7, 1.9), (0.0, 0.0, 0.0, -4.0)]
+)
 def test_hermite_is_exact_for_cubics(coefficients):
     """Any cubic comes back from its values and slopes at the ends."""
     start, h = 0.4, 0.7

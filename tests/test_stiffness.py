@@ -132,7 +132,8 @@ def test_damping_from_ratio_damps_an_oscillator():
 def test_damping_from_ratio_over_the_peak_indentation():
     """For (2.38) the damper at the peak indentation is the linear one."""
     linear = damping_from_ratio(2.5e8, 1.65, 0.05)
-    assert damping_from_ratio(2.5e8, 1.65, 0.05, indentation=30e-6) * 30e-6 == pytest.approx(linear, rel=1e-14)
+    damping = damping_from_ratio(2.5e8, 1.65, 0.05, indentation=30e-6)
+    assert damping * 30e-6 == pytest.approx(linear, rel=1e-14)
 
 
 def test_balls_that_do_not_fit_are_refused():
@@ -248,3 +249,9 @@ def test_preload_holds_the_ring_high():
     assert x == pytest.approx(0.0, abs=1e-12)
     assert -y == pytest.approx(weight / slope, rel=1e-3)
     assert np.all(ball_forces(balls, (x, y))[1] > 0.0)
+
+
+@pytest.mark.parametrize("play", [5e-6, -5e-6])
+def test_a_weightless_ring_floats_in_the_middle(play):
+    """Without gravity nothing draws the ring anywhere."""
+    assert BallSet(play=play, first_angle=0.3).resting_place(0.0) == (0.0, 0.0)
