@@ -6,19 +6,17 @@ The outer ring sits in it and moves with it. `x0`, `y0` put its rest position of
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import dopri
+from modelkit import body
 from modelkit.kernel import kernel
-from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model, memory_layout
+from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, MountLoad, MountState
 from modelkit.variables import group, real
 
 X, Y, VX, VY, WORK, LOSS = range(6)
-TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -96,29 +94,11 @@ def start(words):
 
 
 @kernel
-def _ignore(t, y, m):
-    """Nothing happens inside a housing's step that its end does not show."""
-
-
-@kernel
 def advance(words, work, time, step):
     """One macro step under the given force."""
     m = words.view(MEMORY)[0]
     u = m.u.seat
-    if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
-        return BAD_INPUT
-    m.time = time
-    m.half = 0.5 * step
-    m.h, failure, evaluations = dopri.integrate(
-        rhs, _ignore, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
-    )
-    m.evaluations += evaluations
-    publish(m.y, m)
-    if failure == dopri.STEP_UNDERFLOW:
-        return STIFF
-    if failure == dopri.TOO_MANY_STEPS:
-        return BUSY
-    return OK
+    return body.advance(rhs, publish, m, work, time, step, u.fx + u.fy + u.dfx + u.dfy)
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -23,10 +23,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import dopri
 from modelkit.kernel import inlined, kernel
-from modelkit.model import BAD_INPUT, BUSY, OK, STIFF
 from modelkit.ports import ACCELERATION, VELOCITY, Load, Motion, MountMotion, SeatMotion
+from modelkit.status import BAD_INPUT
 from modelkit.variables import group, real
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
@@ -236,14 +235,9 @@ def advance(react, integrate, report, m, work, time, step, span):
         before = react(0.0, y, work[0], m)
         account_jump(m, before, y[JX] - jx, y[JY] - jy, y[HX] - hx, y[HY] - hy)
         remember(m, before)
-        m.h, failure, evaluations = integrate(m, work, span)
+        m.h, status, evaluations = integrate(m, work, span)
         m.evaluations += evaluations
         hand_over(y, m, step)
         remember(m, react(step, y, work[0], m))
         report(y, m)
-        status = OK
-        if failure == dopri.STEP_UNDERFLOW:
-            status = STIFF
-        elif failure == dopri.TOO_MANY_STEPS:
-            status = BUSY
     return status

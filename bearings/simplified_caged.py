@@ -21,15 +21,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import ring, seat
-from bearings.balls import MOST_BALLS, BallReport, BallSet, RaceStiffness
+from bearings.balls import MOST_BALLS
 from bearings.contact import ContactLaw, elastic_energy, elastic_force
-from bearings.friction import FrictionLaw, prepared
+from bearings.friction import prepared
 from bearings.friction import problem as friction_problem
-from bearings.journal_contact import ContactMemory, ContactReport
+from bearings.rolling import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
-from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from modelkit.ports import Load
 from modelkit.variables import array, group, real
 
 ROLLING_EXPONENT = 0.55  # of the load over the static rating, in the friction moment
@@ -52,18 +52,10 @@ class Rolling:
 
 
 @dataclass(frozen=True)
-class Parameters:
+class Parameters(RollingParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
-    clearance: float = real(0.3e-3, "m", "radial clearance of the journal in the bore", above=0.0)
-    journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
-    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     damping: float = real(0.0, "N.s/m", "damping between the rings, also out of contact (2.7)", minimum=0.0)
-    interface: Interface = group(Interface)
-    contact: ContactLaw = group(ContactLaw, damping=1e7)
-    friction: FrictionLaw = group(FrictionLaw)
-    balls: BallSet = group(BallSet)
-    ring: ring.Ring = group(ring.Ring)
     cage: Cage = group(Cage)
     rolling: Rolling = group(Rolling)
 
@@ -77,33 +69,19 @@ class Speeds(ring.RaceSpeeds):
 
 
 @dataclass(frozen=True)
-class Outputs:
+class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
-    journal: SeatReaction = group(SeatReaction)
-    housing: MountReaction = group(MountReaction)
-    contact: ContactReport = group(ContactReport)
-    ring: ring.RingReport = group(ring.RingReport)
-    balls: BallReport = group(BallReport)
     speed: Speeds = group(Speeds)
-    energy: Energy = group(Energy)
-    stiffness: RaceStiffness = group(RaceStiffness)
 
 
 @dataclass(frozen=True)
-class Derived:
+class Derived(RollingDerived):
     """What parameters fix."""
 
-    friction: FrictionLaw = group(FrictionLaw)
-    race: ContactLaw = group(ContactLaw)
-    inner: float = real(0.0, "N/m^n", "ball on inner race")
-    outer: float = real(0.0, "N/m^n", "ball on outer race")
     inertia: float = real(0.0, "kg.m2", "equivalent moment of inertia of the ring (4.3)")
     cage_ratio: float = real(0.0, "1", "cage speed over ring speed (4.2)")
     ball_ratio: float = real(0.0, "1", "ball spin over ring speed (4.2)")
-    inner_radius: float = real(0.0, "m", "inner race")
-    rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
-    rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
     cosine: tuple = array(MOST_BALLS)
     sine: tuple = array(MOST_BALLS)
 
@@ -119,12 +97,9 @@ class BallMemory:
 
 
 @dataclass(frozen=True)
-class Hidden:
+class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
-    seat: seat.SeatMemory = group(seat.SeatMemory)
-    ring: ring.RingMemory = group(ring.RingMemory)
-    contact: ContactMemory = group(ContactMemory)
     balls: BallMemory = group(BallMemory)
 
 

@@ -31,15 +31,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import ring, seat
-from bearings.balls import MOST_BALLS, BallReport, BallSet, RaceStiffness
+from bearings.balls import MOST_BALLS, BallSet
 from bearings.contact import ContactLaw, elastic_energy, elastic_force, normal_force
 from bearings.friction import FrictionLaw, coefficient, prepared, slope
 from bearings.friction import problem as friction_problem
-from bearings.journal_contact import ContactMemory, ContactReport
+from bearings.rolling import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from modelkit import rosenbrock
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
-from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from modelkit.ports import Interface, Load
 from modelkit.variables import array, group, integer, real
 
 BALLS = ring.NEXT  # three components a ball from here: attitude angle, its rate, spin
@@ -48,23 +48,18 @@ ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
 
 
 @dataclass(frozen=True)
-class Parameters:
+class Parameters(RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
-    clearance: float = real(0.3e-3, "m", "radial clearance of the journal in the bore", above=0.0)
-    journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
-    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    interface: Interface = group(Interface, tolerance=1e-4)
+    balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
+    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = integer(
         0, "1: (2.10) with its last friction term as printed, which breaks momentum", minimum=0, maximum=1
     )
-    interface: Interface = group(Interface, tolerance=1e-4)
-    contact: ContactLaw = group(ContactLaw, damping=1e7)
-    friction: FrictionLaw = group(FrictionLaw)
-    balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
-    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
 
 
 @dataclass(frozen=True)
@@ -88,38 +83,24 @@ class Speeds(ring.RaceSpeeds):
 
 
 @dataclass(frozen=True)
-class Outputs:
+class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
-    journal: SeatReaction = group(SeatReaction)
-    housing: MountReaction = group(MountReaction)
-    contact: ContactReport = group(ContactReport)
-    ring: ring.RingReport = group(ring.RingReport)
-    balls: BallReport = group(BallReport)
     neighbours: Neighbours = group(Neighbours)
     speed: Speeds = group(Speeds)
-    energy: Energy = group(Energy)
-    stiffness: RaceStiffness = group(RaceStiffness)
 
 
 @dataclass(frozen=True)
-class Derived:
+class Derived(RollingDerived):
     """What parameters fix."""
 
-    friction: FrictionLaw = group(FrictionLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)
-    race: ContactLaw = group(ContactLaw)
-    inner: float = real(0.0, "N/m^n", "ball on inner race")
-    outer: float = real(0.0, "N/m^n", "ball on outer race")
     mass: float = real(0.0, "kg", "of a ball")
     inertia: float = real(0.0, "kg.m2", "of a ball")
     ball_radius: float = real(0.0, "m", "of a ball")
     pitch_radius: float = real(0.0, "m", "where ball centres run")
-    inner_radius: float = real(0.0, "m", "inner race")
     touch_angle: float = real(0.0, "rad", "between neighbours that just touch")
-    rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
-    rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
     angles: tuple = array(MOST_BALLS)
 
 
@@ -136,12 +117,9 @@ class BallMemory:
 
 
 @dataclass(frozen=True)
-class Hidden:
+class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
-    seat: seat.SeatMemory = group(seat.SeatMemory)
-    ring: ring.RingMemory = group(ring.RingMemory)
-    contact: ContactMemory = group(ContactMemory)
     balls: BallMemory = group(BallMemory)
 
 

@@ -13,10 +13,7 @@ import math
 import numpy as np
 
 from modelkit.kernel import inlined
-
-OK = 0
-STEP_UNDERFLOW = 1
-TOO_MANY_STEPS = 2
+from modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 STAGES = 8  # rows of scratch: seven slopes and one trial state
 SMALLEST_STEP = 1e-15  # s; far below the fastest motion here (0.1 us)

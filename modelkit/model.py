@@ -10,12 +10,8 @@ from typing import Any
 import numpy as np
 
 from modelkit import dopri
+from modelkit.status import BAD_INPUT, OK, TOO_MANY_STEPS
 from modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record, layout
-
-OK = 0
-BAD_INPUT = 1
-STIFF = 2
-BUSY = 3
 
 
 class ModelError(Exception):
@@ -66,7 +62,7 @@ class Model:
     itself; handing a record over costs numba several microseconds.
 
     start(words)                 sets the state and the outputs from parameters and inputs
-    advance(words, work, t, H)   one macro step; returns one of OK, BAD_INPUT, STIFF, BUSY
+    advance(words, work, t, H)   one macro step; returns one of `modelkit.status`
     rhs(t, y, dy, m)             bodies: time derivative under the loads m.u
     publish(y, m)                bodies: outputs from the state
     instant(t, y, dy, m)         bearings: derivative of what is inside and, as mean of m.o's loads, the
@@ -198,7 +194,7 @@ class Instance:
                         f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
                         "look at the component that feeds it"
                     )
-        if status == BUSY:
+        if status == TOO_MANY_STEPS:
             return (
                 f"more than {dopri.MOST_STEPS} micro-steps within one macro step of {step:g} s "
                 f"at t = {time:.9g} s; take a smaller macro step or a larger interface.tolerance"

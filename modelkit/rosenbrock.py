@@ -15,8 +15,9 @@ import math
 
 import numpy as np
 
-from modelkit.dopri import MOST_STEPS, OK, SMALLEST_STEP, STEP_UNDERFLOW, TOO_MANY_STEPS
+from modelkit.dopri import MOST_STEPS, SMALLEST_STEP
 from modelkit.kernel import inlined
+from modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 G = 4.3586652150845900e-01
 

@@ -16,15 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import dopri
+from modelkit import body
 from modelkit.kernel import kernel
-from modelkit.model import BAD_INPUT, BUSY, OK, STIFF, Model, memory_layout
+from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, SeatLoad, SeatState
 from modelkit.variables import group, real
 
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
 SIZE = 9
-TOLERANCE = 1e-9  # of the scales below; the motion within a macro step is nearly polynomial
 DRAG_SPEED = 0.1  # rad/s; below it the constant drag torque fades, so that it cannot reverse the spin
 
 
@@ -144,33 +143,15 @@ def start(words):
 
 
 @kernel
-def _finite(load):
-    return math.isfinite(load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz)
-
-
-@kernel
-def _ignore(t, y, m):
-    """Nothing happens inside a rotor's step that its end does not show."""
+def _sum(load):
+    return load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz
 
 
 @kernel
 def advance(words, work, time, step):
     """One macro step under the given loads."""
     m = words.view(MEMORY)[0]
-    if not (_finite(m.u.A) and _finite(m.u.amb)):
-        return BAD_INPUT
-    m.time = time
-    m.half = 0.5 * step
-    m.h, failure, evaluations = dopri.integrate(
-        rhs, _ignore, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
-    )
-    m.evaluations += evaluations
-    publish(m.y, m)
-    if failure == dopri.STEP_UNDERFLOW:
-        return STIFF
-    if failure == dopri.TOO_MANY_STEPS:
-        return BUSY
-    return OK
+    return body.advance(rhs, publish, m, work, time, step, _sum(m.u.A) + _sum(m.u.amb))
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -37,12 +37,12 @@ def answers(alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
     """Answers of an FMU to all questions, asked once."""
 
     @cache
-    def of(fmu: str) -> dict[str, Any]:
+    def asked(fmu: str) -> subprocess.CompletedProcess[str]:
         other = next(name for name in names() if name != fmu)
         script = "from slave_questions import ask; ask(*sys.argv[1:])"
-        return answer(alone(script, unpacked[fmu], unpacked[other]))
+        return alone(script, unpacked[fmu], unpacked[other])
 
-    return of
+    return lambda fmu: answer(asked(fmu))
 
 
 # -- standing alone ----------------------------------------------------------------------------------

@@ -13,7 +13,6 @@ from bearings.journal_contact import (
     ContactMemory,
     ContactReport,
     Touch,
-    contact_energy,
     hermite,
     touch,
     watch_contact,
@@ -224,14 +223,6 @@ def test_power_balance(seed, law, kind):
     assert abs(storing) > 0.0
     scale = abs(storing) + abs(found.loss) + abs(on_journal) + abs(on_ring)
     assert on_journal + on_ring == pytest.approx(-(found.loss + storing), abs=1e-8 * scale)
-
-
-@every_law
-def test_contact_energy_is_the_laws(law):
-    """What journal and ring store is the elastic energy of the law, and nothing in the gap."""
-    record = as_record(law)
-    assert contact_energy(20e-6, record) == elastic_energy(20e-6, record) > 0.0
-    assert contact_energy(-20e-6, record) == 0.0
 
 
 @pytest.mark.parametrize(

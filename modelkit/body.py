@@ -1,0 +1,29 @@
+"""A macro step of a body: something that takes a load (mean and slope) and gives its motion."""
+
+from __future__ import annotations
+
+from modelkit import dopri
+from modelkit.kernel import inlined, kernel
+from modelkit.status import BAD_INPUT
+
+TOLERANCE = 1e-9  # of the body's scales; its motion within a macro step is nearly polynomial
+
+
+@kernel
+def nothing_to_watch(t, y, m):
+    """Nothing happens inside a body's step that its end does not show."""
+
+
+@inlined
+def advance(rhs, publish, m, work, time, step, load):
+    """One macro step; `load` is the sum of all inputs, by which one that is not finite is noticed."""
+    status = BAD_INPUT
+    if load - load == 0.0:  # false for infinities and NaN
+        m.time = time
+        m.half = 0.5 * step
+        m.h, status, evaluations = dopri.integrate(
+            rhs, nothing_to_watch, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
+        )
+        m.evaluations += evaluations
+        publish(m.y, m)
+    return status
