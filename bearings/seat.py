@@ -127,7 +127,7 @@ def copy_rates(t, y, dy, m, half, load):
     dy[JQX] = s * load.jx
     dy[JQY] = s * load.jy
     dy[JQM] = s * load.jm
-    dy[JE] = load.jx * y[JVX] + load.jy * y[JVY] + load.jm * y[JW]
+    dy[JE] = load.jx * dy[JX] + load.jy * dy[JY] + load.jm * y[JW]  # of the copy: held, it does not move
     h = m.u.housing
     dy[HX] = moves * y[HVX]
     dy[HY] = moves * y[HVY]
@@ -139,7 +139,7 @@ def copy_rates(t, y, dy, m, half, load):
     dy[HFY] = y[HFVY]
     dy[HFVX] = load.hx - h.k_over_m * y[HFX] - h.c_over_m * y[HFVX]
     dy[HFVY] = load.hy - h.k_over_m * y[HFY] - h.c_over_m * y[HFVY]
-    dy[HE] = load.hx * y[HVX] + load.hy * y[HVY]
+    dy[HE] = load.hx * dy[HX] + load.hy * dy[HY]
 
 
 @kernel

@@ -39,6 +39,7 @@ class Ledger:
     def __init__(self, system: System, scale: float) -> None:
         self._signals = system.signals
         self.scale = scale  # J; 0: unknown, residuals are then absolute
+        self.total = 0.0  # J, sum of |r_n| over all connections and steps
         self.entries: list[Entry] = []
         for a in system.attachments:
             keys = (
@@ -61,6 +62,7 @@ class Ledger:
             last = entry.last
             residual = entry.pending + (jump - last[1])
             entry.total += abs(residual)
+            self.total += abs(residual)
             entry.net += residual
             entry.pending = (bearing - last[0]) - (body - last[2])
             entry.last = (bearing, jump, body)
@@ -68,8 +70,7 @@ class Ledger:
     @property
     def residual(self) -> float:
         """Sum of |r_n| over all connections and steps, over the energy scale (or in J without one)."""
-        total = sum(entry.total for entry in self.entries)
-        return total / self.scale if self.scale > 0.0 else total
+        return self.total / self.scale if self.scale > 0.0 else self.total
 
     def worst(self) -> Entry | None:
         """The connection with the largest residual."""

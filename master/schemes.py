@@ -20,15 +20,22 @@ class Scheme:
     title: str
     order: int  # 0 held, 1 velocity, 2 acceleration extrapolated, 3 interface model
     slopes: bool  # whether dfx, dfy, dmz are exchanged
+    order_of_residual: int  # of the macro step, at which the ledger's residual falls
 
 
 SCHEMES = {
     scheme.name: scheme
     for scheme in (
-        Scheme("hold", "motion held, mean load", order=0, slopes=False),
-        Scheme("velocity", "velocity extrapolated, mean load", order=1, slopes=False),
-        Scheme("acceleration", "acceleration extrapolated, mean and slope", order=2, slopes=True),
-        Scheme("interface", "interface model, mean and slope", order=3, slopes=True),
+        Scheme("hold", "motion held, mean load", order=0, slopes=False, order_of_residual=1),
+        Scheme("velocity", "velocity extrapolated, mean load", order=1, slopes=False, order_of_residual=2),
+        Scheme(
+            "acceleration",
+            "acceleration extrapolated, mean and slope",
+            order=2,
+            slopes=True,
+            order_of_residual=3,
+        ),
+        Scheme("interface", "interface model, mean and slope", order=3, slopes=True, order_of_residual=3),
     )
 }
 

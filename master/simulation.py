@@ -17,7 +17,7 @@ from master.errors import TouchdownError
 from master.fmi import FmuComponent, find
 from master.ledger import Ledger
 from master.recording import Recorder
-from master.scene import Scene
+from master.scene import RunSpec, Scene
 from master.schemes import scheme
 from master.system import System, assemble
 from master.twin import TwinComponent
@@ -128,6 +128,7 @@ def _loop(
 ) -> None:
     step, every = scene.run.macro_step, scene.run.record_every
     active = list(system.order)
+    limit = scene.run.warn_residual * ledger.scale if ledger.scale > 0.0 else math.inf
     began = clock.perf_counter()
     try:
         for k in range(steps):
@@ -140,6 +141,8 @@ def _loop(
                 component.step(time, step)
                 component.pull()
             ledger.update()
+            if not ledger.total <= limit:
+                limit = _judge(scene, ledger, outcome, time + step)
             done = k + 1
             outcome.steps = done
             outcome.end = done * step
@@ -149,10 +152,8 @@ def _loop(
                 watch(outcome.end, system)
             if done % BEAT == 0 or done == steps:
                 outcome.wall_time = clock.perf_counter() - began
-                outcome.residual = ledger.residual
-                _judge(scene, ledger, outcome)
                 active = [name for name in active if _has_work(system.components[name])]
-                progress(outcome.end - outcome.zero, outcome.residual)
+                progress(outcome.end - outcome.zero, ledger.residual)
     finally:
         outcome.wall_time = clock.perf_counter() - began
         outcome.residual = ledger.residual
@@ -163,18 +164,28 @@ def _has_work(component: Component) -> bool:
     return "active" not in component.variables or component.read(["active"])[0] != 0
 
 
-def _judge(scene: Scene, ledger: Ledger, outcome: Outcome) -> None:
-    """Warn or stop where the coupling creates or loses too much energy."""
-    if ledger.scale <= 0.0:
-        return
-    time = outcome.end - outcome.zero
-    if outcome.warned_at is None and ledger.residual > scene.run.warn_residual:
-        outcome.warned_at = time
-    if not ledger.residual <= scene.run.stop_residual:
-        worst = ledger.worst()
-        assert worst is not None
-        raise TouchdownError(
-            f"the energy ledger of {worst.attachment.title} is off by {ledger.residual:.2g} of the "
-            f"energy lost by falling at t = {time:.6g} s; the macro step of {scene.run.macro_step:g} s is "
-            f"too long for scheme {scene.run.scheme}, try --macro-step {scene.run.macro_step / 5:g}"
-        )
+def _judge(scene: Scene, ledger: Ledger, outcome: Outcome, time: float) -> float:
+    """Warn, or stop, where the coupling makes or loses too much energy; returns the next limit (J)."""
+    run = scene.run
+    if ledger.residual <= run.stop_residual:
+        outcome.warned_at = time - outcome.zero
+        return run.stop_residual * ledger.scale
+    worst = ledger.worst()
+    name = worst.attachment.title if worst else "the system"
+    raise TouchdownError(
+        f"the energy ledger of {name} is off by {ledger.residual:.2g} of the energy lost by falling at "
+        f"t = {time - outcome.zero:.6g} s; the macro step of {run.macro_step:g} s is too long for scheme "
+        f"{run.scheme}, try --macro-step {shorter_step(run, ledger.residual):g}"
+    )
+
+
+def shorter_step(run: RunSpec, residual: float) -> float:
+    """A macro step (s), 1, 2 or 5 times a power of ten, with which the ledger should hold.
+
+    From the order at which the scheme's residual falls with the step, to a twentieth of the threshold, since it grows with every impact.
+    """
+    wanted = 0.05 * run.stop_residual / residual if math.isfinite(residual) else 0.0
+    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / scheme(run.scheme).order_of_residual)
+    step = min(step, 0.5 * run.macro_step)
+    power = 10.0 ** math.floor(math.log10(step))
+    return power * max(digit for digit in (1, 2, 5) if digit * power <= step * (1.0 + 1e-9))

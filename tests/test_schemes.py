@@ -9,7 +9,7 @@ from systems import history, rotor_on
 from master.errors import TouchdownError
 from master.scene import Scene, load
 from master.schemes import SCHEMES, scheme
-from master.simulation import open_system, simulate
+from master.simulation import Outcome, energy_scale, open_system, simulate
 
 
 def bounce(name: str) -> tuple[float, float]:
@@ -116,3 +116,53 @@ def test_a_saved_state_replays_the_impact() -> None:
         assert np.array_equal(once, bearing.outputs)
     finally:
         system.close()
+
+
+def residual(name: str, step: float) -> tuple[float, float]:
+    """Ledger and balance of all energies through the first impact, over the energy lost by falling."""
+    scene = (
+        load("disk-caged-simplified").with_setting("run.duration", 0.01).with_setting("run.scheme", name)
+    )
+    scene = scene.with_setting("run.macro_step", step).with_setting("run.stop_residual", 1e9)
+    system = open_system(scene, in_process=True)
+    energies = ("kinetic", "potential", "dissipated")
+
+    def total() -> float:
+        parts = [system.value(f"{c}.energy.{k}") for c in ("rotor", "bearing", "housing") for k in energies]
+        return sum(parts) - system.value("amb.supplied")
+
+    before: list[float] = []
+    outcome = simulate(scene, system, watch=lambda *_: before.append(total()) if not before else None)
+    return outcome.residual, abs(total() - before[0]) / energy_scale(scene, system)
+
+
+@pytest.mark.parametrize("name", ["hold", "velocity", "acceleration"])
+def test_the_residual_falls_at_the_order_the_scheme_states(name: str) -> None:
+    steps = np.array([5e-6, 1e-5, 2e-5, 4e-5])
+    found = [residual(name, step)[0] for step in steps]
+    order = np.polyfit(np.log(steps), np.log(found), 1)[0]
+    assert order == pytest.approx(SCHEMES[name].order_of_residual, abs=0.25)
+
+
+def test_the_ledger_is_the_energy_that_is_made() -> None:
+    """Held motion makes energy; the ledger, a sum of absolute values, bounds it without looking inside."""
+    ledger, balance = residual("hold", 1e-5)
+    assert 0.02 < balance <= ledger < 1.3 * balance
+
+
+@pytest.mark.parametrize(("name", "step"), [("hold", 1e-4), ("velocity", 5e-4), ("interface", 2e-2)])
+def test_a_step_that_is_too_long_stops_and_names_one_that_holds(name: str, step: float) -> None:
+    scene = (
+        load("disk-caged-simplified").with_setting("run.duration", 0.05).with_setting("run.scheme", name)
+    )
+    outcome = simulated(scene.with_setting("run.macro_step", step))
+    assert "bearing.journal on rotor.A" in outcome.stopped_because
+    suggested = float(outcome.stopped_because.rpartition(" ")[2])
+    assert suggested < step
+    again = simulated(scene.with_setting("run.macro_step", suggested))
+    assert not again.stopped_because
+
+
+def simulated(scene: Scene) -> Outcome:
+    """Outcome of a run in process."""
+    return simulate(scene, open_system(scene, in_process=True))
