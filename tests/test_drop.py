@@ -128,3 +128,12 @@ def test_what_five_seconds_bring(
     assert summary["rotor_speed_end_rpm"] == pytest.approx(speed, abs=15.0)
     assert summary["loaded_balls_end"] in loaded
     assert float(summary["energy_residual_relative"]) < 1e-4  # type: ignore[arg-type]
+
+
+def test_the_linearly_implicit_steps_follow_an_explicit_solution() -> None:
+    """The cageless bearing, stepped with its stiff friction implicit, against DOP853 on all equations."""
+    scene = load(CAGELESS).with_setting("run.duration", 0.02).with_setting("run.macro_step", 1e-4)
+    times = np.linspace(1e-3, 20e-3, 20)
+    solution = Monolith(scene).solve(times, JOURNAL, 1e-6, "DOP853")
+    exact = np.stack([solution.series[name] for name in JOURNAL], 1)
+    assert np.max(np.abs(sampled(scene, times) - exact)) < 1e-9
