@@ -125,7 +125,7 @@ MODEL = Model(
     starts_from={
         "seat.x": ("x0",),
         "seat.y": ("y0", *_SAG),
-        "seat.ay_free": _SAG,
+        "seat.ay_free": (*_SAG, "y0"),
         "seat.inv_m": _MASS,
         "seat.k_over_m": ("stiffness", *_MASS),
         "seat.c_over_m": ("damping", *_MASS),

@@ -25,7 +25,7 @@ import numpy as np
 
 from modelkit.kernel import inlined, kernel
 from modelkit.ports import ACCELERATION, VELOCITY, Load, Motion, MountMotion, SeatMotion
-from modelkit.status import BAD_INPUT
+from modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from modelkit.variables import group, real
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
@@ -33,12 +33,14 @@ JX, JY, JVX, JVY, JW = range(5)  # journal copy
 JPX, JPY, JPM, JQX, JQY, JQM, JE = range(5, 12)  # impulse, first moment, work
 HX, HY, HVX, HVY = range(12, 16)  # housing copy
 HFX, HFY, HFVX, HFVY, HE = range(16, 21)  # its response to the load alone, per mass; work
-INSIDE = 21  # first component of what is inside the bearing
+HPX, HPY = range(21, 23)  # impulse
+INSIDE = 23  # first component of what is inside the bearing
 
 POSITION_SCALE = 1e-5  # m; an indentation
 VELOCITY_SCALE = 0.1  # m/s; a landing
 SPIN_SCALE = 1e3  # rad/s
-MOST_TERMS = 60  # of the series in `linear_load`; a step of one period of the housing needs about 30
+TERMS = 24  # of the series in `linear_load`, enough up to STIFFEST
+STIFFEST = 3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ def take_inputs(y, m):
     y[HX], y[HY], y[HVX], y[HVY] = h.x, h.y, h.vx, h.vy
     for i in range(JPX, JE + 1):
         y[i] = 0.0
-    for i in range(HFX, HE + 1):
+    for i in range(HFX, HPY + 1):
         y[i] = 0.0
 
 
@@ -103,6 +105,15 @@ def finite_inputs(m):
     total += j.alpha_free + j.inv_I + h.x + h.y + h.vx + h.vy + h.ax_free + h.ay_free + h.inv_m
     total += h.k_over_m + h.c_over_m
     return math.isfinite(total)
+
+
+@kernel
+def finite_load(m):
+    """Whether the load handed over is one."""
+    j, h = m.o.journal, m.o.housing
+    return math.isfinite(
+        j.fx + j.fy + j.mz + j.dfx + j.dfy + j.dmz + h.fx + h.fy + h.dfx + h.dfy + j.work + h.work
+    )
 
 
 @kernel
@@ -135,6 +146,8 @@ def copy_rates(t, y, dy, m, half, load):
     spring_y = h.k_over_m * (y[HY] - h.y) + h.c_over_m * (y[HVY] - h.vy)
     dy[HVX] = speeds_up * (h.ax_free + h.inv_m * own.hx - spring_x)
     dy[HVY] = speeds_up * (h.ay_free + h.inv_m * own.hy - spring_y)
+    dy[HPX] = load.hx
+    dy[HPY] = load.hy
     dy[HFX] = y[HFVX]
     dy[HFY] = y[HFVY]
     dy[HFVX] = load.hx - h.k_over_m * y[HFX] - h.c_over_m * y[HFVX]
@@ -151,14 +164,12 @@ def linear_load(step, k, c, z, v):
     """
     w0, w1 = 0.0, step  # A^i b H^(i+1) / (i+1)!
     s0, s1, r0, r1 = 0.0, 0.0, 0.0, 0.0
-    for i in range(MOST_TERMS):
+    for i in range(TERMS):
         s0 += w0
         s1 += w1
         r0 += w0 * step / (i + 2)
         r1 += w1 * step / (i + 2)
         w0, w1 = w1 * step / (i + 2), -(k * w0 + c * w1) * step / (i + 2)
-        if i > 0 and abs(w0) <= 1e-18 * abs(s0) and abs(w1) <= 1e-18 * abs(s1):
-            break
     r0 -= 0.5 * step * s0
     r1 -= 0.5 * step * s1
     determinant = s0 * r1 - s1 * r0
@@ -176,8 +187,11 @@ def hand_over(y, m, step):
     j.work += y[JE]
     h = m.o.housing
     u = m.u.housing
-    h.fx, h.dfx = linear_load(step, u.k_over_m, u.c_over_m, y[HFX], y[HFVX])
-    h.fy, h.dfy = linear_load(step, u.k_over_m, u.c_over_m, y[HFY], y[HFVY])
+    if max(step * math.sqrt(u.k_over_m), step * u.c_over_m) < STIFFEST:
+        h.fx, h.dfx = linear_load(step, u.k_over_m, u.c_over_m, y[HFX], y[HFVX])
+        h.fy, h.dfy = linear_load(step, u.k_over_m, u.c_over_m, y[HFY], y[HFVY])
+    else:
+        h.fx, h.fy, h.dfx, h.dfy = first * y[HPX], first * y[HPY], 0.0, 0.0
     h.work += y[HE]
 
 
@@ -240,4 +254,6 @@ def advance(react, integrate, report, m, work, time, step, span):
         hand_over(y, m, step)
         remember(m, react(step, y, work[0], m))
         report(y, m)
+        if status == OK and not finite_load(m):
+            status = BAD_LOAD
     return status

@@ -34,11 +34,7 @@ class ModelSlave(Fmi2Slave):
         self._instance = Instance(self.model)
         self._reals = self._instance.reals
         self._integers = self._instance.integers
-        settable = {s.index for s in self._instance.slots if s.causality != "output"}
-        self._settable_before = settable
-        self._settable = {s.index for s in self._instance.slots if s.causality == "input"}
-        self._readable = {s.index for s in self._instance.slots}
-        self._known: set[tuple[int, ...]] = set()  # value references that were checked before
+        self._known: set[tuple[object, ...]] = set()  # vectors of value references checked before
         self._initialising = True
         self._stale = True  # outputs do not yet follow from what was set
         self._failed = ""
@@ -80,45 +76,60 @@ class ModelSlave(Fmi2Slave):
     # -- variables -----------------------------------------------------------------------------------
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
-        self._set(self._reals, vrs, values)
+        self._set("real", self._reals, vrs, values)
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        self._set(self._integers, vrs, values)
+        self._set("integer", self._integers, vrs, values)
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        if self._initialising and self._stale and self._refresh():
+        if not self._may_get("real", vrs):
             return [math.nan] * len(vrs)
-        try:
-            reals = self._reals
-            return [reals[i] for i in vrs]
-        except IndexError:
-            self._fail(f"value references {sorted(set(vrs) - self._readable)} do not exist")
-            return [math.nan] * len(vrs)
+        reals = self._reals
+        return [reals[i] for i in vrs]
 
     def get_integer(self, vrs: list[int]) -> list[int]:
-        if self._initialising and self._stale and self._refresh():
+        if not self._may_get("integer", vrs):
             return [0] * len(vrs)
-        try:
-            # the C side holds 32 bits; a real asked for as an integer is the caller's mistake
-            return [max(-(2**31), min(2**31 - 1, self._integers[i])) for i in vrs]
-        except IndexError:
-            self._fail(f"value references {sorted(set(vrs) - self._readable)} do not exist")
-            return [0] * len(vrs)
+        return [self._integers[i] for i in vrs]
 
-    def _set(self, store: Any, vrs: list[int], values: list[Any]) -> None:
-        key = tuple(vrs)
+    def _set(self, kind: str, store: Any, vrs: list[int], values: list[Any]) -> None:
+        key = ("set", kind, *vrs)
         if key not in self._known:
-            allowed = self._settable_before if self._initialising else self._settable
-            wrong = sorted(set(vrs) - allowed)
+            causes = ("parameter", "input") if self._initialising else ("input",)
+            wrong = self._others(kind, vrs, causes)
             if wrong:
-                names = {s.index: s.variable.name for s in self._instance.slots}
-                listed = ", ".join(names.get(i, f"value reference {i}") for i in wrong)
-                self._fail(f"{listed} cannot be set now; parameters are fixed after initialisation")
+                self._fail(
+                    f"{wrong} cannot be set as {kind} now; parameters are fixed after initialisation"
+                )
                 return
             self._known.add(key)
         for i, value in zip(vrs, values, strict=True):
             store[i] = value
         self._stale = True
+
+    def _may_get(self, kind: str, vrs: list[int]) -> bool:
+        if self._initialising and self._stale and self._refresh():
+            return False
+        key = ("get", kind, *vrs)
+        if key not in self._known:
+            wrong = self._others(kind, vrs, ("parameter", "input", "output"))
+            if wrong:
+                self._fail(f"{wrong} cannot be read as {kind}")
+                return False
+            self._known.add(key)
+        return True
+
+    def _others(self, kind: str, vrs: list[int], causes: tuple[str, ...]) -> str:
+        """Names of the variables among `vrs` that are not of this kind and these causalities."""
+        slots = {s.index: s for s in self._instance.slots}
+        wrong: list[str] = []
+        for i in sorted(set(vrs)):
+            slot = slots.get(i)
+            if slot is None:
+                wrong.append(f"value reference {i % 2**32}")
+            elif slot.variable.spec.kind != kind or slot.causality not in causes:
+                wrong.append(slot.variable.name)
+        return ", ".join(wrong)
 
     # -- state ---------------------------------------------------------------------------------------
 

@@ -87,7 +87,8 @@ def _check_ports(component: Component, report: Report) -> None:
                 if variable is None:
                     missing.append(suffix)
                 elif variable.causality not in causes:
-                    report.problems.append(f"{name} is a {variable.causality}, not an {causes[0]}")
+                    text = f"{name} has the causality {variable.causality}, not {causes[0]}"
+                    report.problems.append(text)
                 elif variable.unit is not None and variable.unit != UNITS[suffix]:
                     report.problems.append(f"{name} is in {variable.unit}, not in {UNITS[suffix]}")
         needed = [s for s in (*NEEDED["motion"], *NEEDED["load"]) if s in missing]

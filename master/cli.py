@@ -15,7 +15,8 @@ STOPPED = 3
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status. A user's mistake is one line on stderr."""
-    options = _parser().parse_args(arguments)
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    options = _parser().parse_args(_joined(given))
     try:
         return options.run(options)
     except TouchdownError as error:
@@ -26,6 +27,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         return 0
+
+
+def _joined(arguments: list[str]) -> list[str]:
+    """Tie --macro-step to its value: argparse would take a negative one for an option."""
+    found = list(arguments)
+    if "--macro-step" in found[:-1]:
+        i = found.index("--macro-step")
+        found[i : i + 2] = [f"--macro-step={found[i + 1]}"]
+    return found
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -101,9 +111,9 @@ def _run(options: argparse.Namespace) -> int:
         chosen = chosen.with_swap(*_assignment(text, "--swap"))
     for text in options.set:
         chosen = chosen.with_setting(*_assignment(text, "--set"))
-    if options.scheme:
+    if options.scheme is not None:
         chosen = chosen.with_setting("run.scheme", options.scheme)
-    if options.macro_step:
+    if options.macro_step is not None:
         chosen = chosen.with_setting("run.macro_step", options.macro_step)
     result = run_scene(
         chosen,

@@ -110,7 +110,8 @@ class Component(ABC):
 
 def check_value(component: Component, variable: Variable, value: float) -> None:
     """Raise TouchdownError where `value` is out of the bounds the component declares."""
-    what = f"{component.name}.{variable.name} = {value:g} {variable.unit or ''}".rstrip()
+    unit = f" {variable.unit}" if variable.unit not in (None, "1") else ""
+    what = f"{component.name}.{variable.name} = {value:g}{unit}"
     if variable.minimum is not None and value < variable.minimum:
         raise TouchdownError(f"{what} must be at least {variable.minimum:g}")
     if variable.maximum is not None and value > variable.maximum:

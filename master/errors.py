@@ -15,6 +15,6 @@ def one_of(name: str, known: Iterable[str]) -> str:
     known = sorted(known)
     near = get_close_matches(name, known, n=3, cutoff=0.5)
     if near:
-        return f"did you mean {' or '.join(near)}?"
+        return f"did you mean {' or '.join(near)}"
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
     return f"there are: {listed}" if known else "there are none"

@@ -12,6 +12,7 @@ import os
 import shutil
 import tempfile
 import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -68,7 +69,7 @@ def unpack(path: Path, cache: Path) -> Path:
         except OSError:
             if not folder.is_dir():  # else another process was first
                 raise
-    except (zipfile.BadZipFile, EOFError, zipfile.zlib.error) as error:  # type: ignore[attr-defined]
+    except (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, OSError, zlib.error) as error:
         raise TouchdownError(f"{path} is damaged or no FMU ({error}); build or download it again") from None
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
@@ -93,7 +94,16 @@ def describe(path: Path, folder: Path) -> Any:
         raise TouchdownError(
             f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
         )
+    if "PythonFMU" in (description.generationTool or ""):
+        _check_script(path, folder)
     return description
+
+
+def _check_script(path: Path, folder: Path) -> None:
+    """pythonfmu's library ends the process where the script it is to run is missing."""
+    name = folder / "resources" / "slavemodule.txt"
+    if not name.is_file() or not (name.parent / f"{name.read_text(encoding='utf-8').strip()}.py").is_file():
+        raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
 
 
 def variables_of(description: Any) -> dict[str, Variable]:
@@ -131,6 +141,7 @@ class FmuComponent(Component):
         super().__init__(name, str(path), variables_of(description))
         self._messages: list[str] = []
         self._open = False
+        here = Path.cwd()
         try:
             self._fmu = FMU2Slave(
                 guid=description.guid,
@@ -141,6 +152,7 @@ class FmuComponent(Component):
             self._callbacks = self._make_callbacks()
             self._fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:
+            os.chdir(here)  # fmpy leaves the library's folder current where loading fails
             raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
         self._open = True
         self._component = self._fmu.component

@@ -64,7 +64,7 @@ class Recorder:
         return dataset
 
     def append(self, time: float) -> None:
-        """Record all variables at `time` (s)."""
+        """Record all variables at `time` (s). Raises TouchdownError where the file cannot grow."""
         row = self._block[self._filled]
         row[0] = time
         column = 1
@@ -74,7 +74,10 @@ class Recorder:
             column += len(values)
         self._filled += 1
         if self._filled == BLOCK:
-            self._write()
+            try:
+                self._write()
+            except OSError as error:
+                raise TouchdownError(f"cannot write {self.path}: {error}; make room for it") from None
 
     def _write(self) -> None:
         n = self._filled

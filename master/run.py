@@ -12,8 +12,9 @@ from tqdm import tqdm
 from master.errors import TouchdownError
 from master.recording import Recording, write_csv
 from master.scene import Scene
-from master.simulation import open_system, simulate
+from master.simulation import Outcome, interrupts_noted, open_system, simulate
 from master.summary import summarise
+from master.system import System
 
 
 @dataclass(frozen=True)
@@ -41,32 +42,44 @@ def run_scene(
     it recorded, and says why in the result.
     """
     _make_writable(folder)
-    system = open_system(scene, in_process)
-    try:
-        with _Bar(scene, progress) as show:
-            outcome = simulate(scene, system, folder / "result.h5", show)
-        recording = Recording(folder / "result.h5")
+    with interrupts_noted():
+        system = open_system(scene, in_process)
         try:
-            summary = summarise(scene, system, outcome, recording)
-            (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-            if csv:
-                write_csv(recording, folder / "result.csv")
-            drawn: list[Path] = []
-            if pictures:
-                from master.plots import draw_all  # matplotlib is slow to import
-
-                drawn = draw_all(scene, system, recording, folder)
+            with _Bar(scene, progress) as show:
+                outcome = simulate(scene, system, folder / "result.h5", show)
+            summary, drawn = _write_results(scene, system, outcome, folder, csv, pictures)
+        except OSError as error:
+            raise TouchdownError(
+                f"cannot write to {folder}: {error}; choose another folder with -o"
+            ) from None
         finally:
-            recording.close()
-    finally:
-        system.close()
+            system.close()
     warnings = []
-    if outcome.warned_at is not None:
+    if outcome.warned_at is not None and not outcome.stopped_because:
         warnings.append(
             f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
             f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
         )
     return Result(folder, summary, outcome.stopped_because, warnings, drawn)
+
+
+def _write_results(
+    scene: Scene, system: System, outcome: Outcome, folder: Path, csv: bool, pictures: bool
+) -> tuple[dict[str, object], list[Path]]:
+    """summary.json, and on request result.csv and pictures; returns the figures and the pictures."""
+    recording = Recording(folder / "result.h5")
+    try:
+        summary = summarise(scene, system, outcome, recording)
+        (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        if csv:
+            write_csv(recording, folder / "result.csv")
+        if not pictures:
+            return summary, []
+        from master.plots import draw_all  # matplotlib is slow to import
+
+        return summary, draw_all(scene, system, recording, folder)
+    finally:
+        recording.close()
 
 
 def _make_writable(folder: Path) -> None:

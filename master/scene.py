@@ -164,8 +164,8 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         components=components,
         attach=_pairs(data.get("attach", []), f"scene {name}: attach"),
         connect=_pairs(data.get("connect", []), f"scene {name}: connect"),
-        zero=data.get("zero"),
-        energy_scale=tuple(data.get("energy_scale", ())),
+        zero=_reference(data["zero"], f"scene {name}: zero") if "zero" in data else None,
+        energy_scale=_references(data.get("energy_scale", []), f"scene {name}: energy_scale"),
         run=_run(_table(data.get("run", {}), f"scene {name}: [run]"), RunSpec()),
         folder=folder,
     )
@@ -219,6 +219,18 @@ def _pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
     ):
         raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
     return tuple((p[0], p[1]) for p in value)
+
+
+def _reference(value: object, where: str) -> str:
+    if not isinstance(value, str) or not all(value.partition(".")):
+        raise TouchdownError(f'{where} = {value!r} must name a variable, such as "amb.shutdown_time"')
+    return value
+
+
+def _references(value: object, where: str) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise TouchdownError(f'{where} = {value!r} must be a list of variables, such as ["rotor.mass"]')
+    return tuple(_reference(item, where) for item in value)
 
 
 def _refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:

@@ -67,40 +67,46 @@ def simulate(
     """
     began = clock.perf_counter()
     outcome = Outcome()
-    recorder: Recorder | None = None
-    try:
+    with interrupts_noted() as interrupted:
         outcome.zero = system.value(scene.zero) if scene.zero else 0.0
+        steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
         ledger = Ledger(system, energy_scale(scene, system))
         system.initialise()
-        if record_to is not None:
-            recorder = Recorder(record_to, system.components)
-            recorder.append(-outcome.zero)
-        steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
-        outcome.start_up = clock.perf_counter() - began
-        with _interrupts_noted() as interrupted:
+        recorder = Recorder(record_to, system.components) if record_to is not None else None
+        try:
+            if recorder is not None:
+                recorder.append(-outcome.zero)
+            outcome.start_up = clock.perf_counter() - began
             _loop(scene, system, steps, ledger, recorder, outcome, progress, watch, interrupted)
-    except TouchdownError as error:
-        if outcome.steps == 0 and recorder is None:
-            raise
-        outcome.stopped_because = str(error)
-    finally:
-        if recorder is not None:
-            recorder.close()
+        except TouchdownError as error:
+            outcome.stopped_because = str(error)
+        finally:
+            if recorder is not None:
+                recorder.close()
     return outcome
 
 
+_noted: threading.Event | None = None  # while interrupts are noted; they are the process's, not a run's
+
+
 @contextmanager
-def _interrupts_noted() -> Iterator[threading.Event]:
-    """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU."""
-    noted = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield noted
+def interrupts_noted() -> Iterator[threading.Event]:
+    """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU.
+
+    May be nested; what was noted outside is known inside.
+    """
+    global _noted
+    outer = _noted
+    if outer is not None or threading.current_thread() is not threading.main_thread():
+        yield outer or threading.Event()
         return
+    _noted = noted = threading.Event()
     before = signal.signal(signal.SIGINT, lambda *_: noted.set())
     try:
         yield noted
     finally:
         signal.signal(signal.SIGINT, before)
+        _noted = None
 
 
 def macro_steps(duration: float, step: float) -> int:
@@ -182,7 +188,8 @@ def _judge(scene: Scene, ledger: Ledger, outcome: Outcome, time: float) -> float
 def shorter_step(run: RunSpec, residual: float) -> float:
     """A macro step (s), 1, 2 or 5 times a power of ten, with which the ledger should hold.
 
-    From the order at which the scheme's residual falls with the step, to a twentieth of the threshold, since it grows with every impact.
+    From the order at which the scheme's residual falls with the step, to a twentieth of the threshold,
+    since it grows with every impact.
     """
     wanted = 0.05 * run.stop_residual / residual if math.isfinite(residual) else 0.0
     step = run.macro_step * max(wanted, 1e-9) ** (1.0 / scheme(run.scheme).order_of_residual)

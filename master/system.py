@@ -154,7 +154,9 @@ def _checked(component: Component, name: str, given: object) -> float:
     """A setting's value in SI, if the component can take it."""
     variable = component.variable(name)
     if not variable.settable:
-        raise TouchdownError(f"{component.name}.{name} is a {variable.causality} and cannot be set")
+        raise TouchdownError(
+            f"{component.name}.{name} has the causality {variable.causality} and cannot be set"
+        )
     value = to_si(given, variable.unit, f"{component.name}.{name}")
     check_value(component, variable, value)
     return value
@@ -206,9 +208,13 @@ def _check_connections(connections: list[Connection], components: dict[str, Comp
         given = components[c.target].variable(c.input)
         what = f"connection {c.source}.{c.output} to {c.target}.{c.input}"
         if output.causality not in ("output", "local", "calculatedParameter"):
-            raise TouchdownError(f"{what}: {c.source}.{c.output} is a {output.causality}, not an output")
+            raise TouchdownError(
+                f"{what}: {c.source}.{c.output} has the causality {output.causality}, not output"
+            )
         if given.causality != "input":
-            raise TouchdownError(f"{what}: {c.target}.{c.input} is a {given.causality}, not an input")
+            raise TouchdownError(
+                f"{what}: {c.target}.{c.input} has the causality {given.causality}, not input"
+            )
         if output.kind != "Real" or given.kind != "Real":
             raise TouchdownError(f"{what}: only Real variables can be connected")
         if output.unit and given.unit and output.unit != given.unit:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
+
 from modelkit import dopri
 from modelkit.kernel import inlined, kernel
-from modelkit.status import BAD_INPUT
+from modelkit.status import BAD_INPUT, BAD_LOAD, OK
 
 TOLERANCE = 1e-9  # of the body's scales; its motion within a macro step is nearly polynomial
 
@@ -26,4 +30,6 @@ def advance(rhs, publish, m, work, time, step, load):
         )
         m.evaluations += evaluations
         publish(m.y, m)
+        if status == OK and not math.isfinite(np.sum(m.y[: m.n])):
+            status = BAD_LOAD
     return status

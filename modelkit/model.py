@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from modelkit import dopri
-from modelkit.status import BAD_INPUT, OK, TOO_MANY_STEPS
+from modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
 from modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record, layout
 
 
@@ -194,6 +194,11 @@ class Instance:
                         f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
                         "look at the component that feeds it"
                     )
+        if status == BAD_LOAD:
+            return (
+                f"the load at t = {time:.9g} s is not a finite number; look for an input or a parameter "
+                "that is out of all proportion"
+            )
         if status == TOO_MANY_STEPS:
             return (
                 f"more than {dopri.MOST_STEPS} micro-steps within one macro step of {step:g} s "

@@ -41,14 +41,15 @@ class Variable:
     def problem(self, value: float) -> str | None:
         """Why `value` is not allowed, or None."""
         s = self.spec
+        unit = "" if s.unit == "1" else f" {s.unit}"
         if not math.isfinite(value):
             return f"{self.name} = {value} is not a finite number"
         if s.above is not None and not value > s.above:
-            return f"{self.name} = {value:g} {s.unit} must be above {s.above:g} {s.unit}"
+            return f"{self.name} = {value:g}{unit} must be above {s.above:g}{unit}"
         if s.minimum is not None and value < s.minimum:
-            return f"{self.name} = {value:g} {s.unit} must be at least {s.minimum:g} {s.unit}"
+            return f"{self.name} = {value:g}{unit} must be at least {s.minimum:g}{unit}"
         if s.maximum is not None and value > s.maximum:
-            return f"{self.name} = {value:g} {s.unit} must be at most {s.maximum:g} {s.unit}"
+            return f"{self.name} = {value:g}{unit} must be at most {s.maximum:g}{unit}"
         return None
 
 

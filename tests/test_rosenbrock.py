@@ -103,6 +103,6 @@ def test_the_arrow_solver_solves_what_finite_differences_give() -> None:
     found = right.copy()
     simplified_cageless.solve(j, 2e5, found, m)
     exact = np.linalg.solve(2e5 * np.eye(35) - jacobian, right[index])
-    np.testing.assert_allclose(found[index], exact, atol=2e-3 * np.max(np.abs(exact)))
+    np.testing.assert_allclose(found[index], exact, atol=5e-3 * np.max(np.abs(exact)))
     others = [i for i in range(n) if i not in index]
     np.testing.assert_allclose(found[others], right[others] / 2e5)

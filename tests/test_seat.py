@@ -24,7 +24,7 @@ def oscillator(step: float, k: float, c: float, mean: float, slope: float) -> tu
     return float(solution.y[0, -1]), float(solution.y[1, -1])
 
 
-@pytest.mark.parametrize(("k", "c"), [(0.0, 0.0), (5e7, 500.0), (5e7, 0.0), (4e9, 2e4)])
+@pytest.mark.parametrize(("k", "c"), [(0.0, 0.0), (5e7, 500.0), (5e7, 0.0), (8e8, 2e4)])
 def test_the_linear_load_brings_an_oscillator_where_it_was(k: float, c: float) -> None:
     step, mean, slope = 1e-4, 37.0, -2.5e5
     z, v = oscillator(step, k, c, mean, slope)
