@@ -127,6 +127,11 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
             _connection(pair, components) for pair in scene.connect
         ]
         _check_connections(connections, components)
+        for c in connections:
+            if c.input in scene.components[c.target].set:
+                raise TouchdownError(
+                    f"{c.target}.{c.input} cannot be set: it is connected to {c.source}.{c.output}"
+                )
         return _wire(components, attachments, connections, settings)
     except BaseException:
         for component in components.values():
