@@ -101,8 +101,8 @@ class _Bar:
         self._bar = tqdm(
             total=scene.run.duration,
             disable=not shown,
-            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s, "
-            "{postfix} left {remaining}",
+            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s"
+            "{postfix}, left {remaining}",
             desc=scene.name,
             mininterval=0.2,
         )
@@ -111,9 +111,9 @@ class _Bar:
         def show(time: float, residual: float) -> None:
             if time > self._bar.n:
                 speed = self._bar.format_dict["elapsed"] / time
-                text = f"{speed:.2f} s per simulated s, ledger {residual:.1e},"
+                text = f"{speed:.2f} s per simulated s, ledger {residual:.1e}"
                 self._bar.set_postfix_str(text, refresh=False)
-                self._bar.update(time - self._bar.n)
+                self._bar.update(min(time, self._bar.total) - self._bar.n)
 
         return show
 

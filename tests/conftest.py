@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
-import importlib.abc, pathlib, sys
+import importlib.abc, sys
 PROJECT = ("modelkit", "rotor", "bearings", "fmus", "master")
 class Wall(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
@@ -36,8 +36,8 @@ def importable():
     return found
 def loaded_from_project():
     files = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
-    inside = [pathlib.Path(f) for f in files if f.startswith({root!r} + "/")]
-    return [str(f) for f in inside if f.parent != pathlib.Path({tests!r})]
+    packages = [{root!r} + "/" + name + "/" for name in PROJECT]
+    return [f for f in files if any(f.startswith(package) for package in packages)]
 """
 
 
