@@ -135,10 +135,10 @@ def variables_of(description: Any) -> dict[str, Variable]:
 class FmuComponent(Component):
     """An FMU that is stepped."""
 
-    def __init__(self, name: str, path: Path, cache: Path) -> None:
+    def __init__(self, name: str, path: Path, cache: Path, origin: str = "") -> None:
         folder = unpack(path, cache)
         description = describe(path, folder)
-        super().__init__(name, str(path), variables_of(description))
+        super().__init__(name, origin or str(path), variables_of(description))
         self._messages: list[str] = []
         self._open = False
         here = Path.cwd()

@@ -45,9 +45,11 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
 
     def load(name: str, fmu: str) -> Component:
         path = find(fmu, scene.folder, names())
-        if path is None:
-            return TwinComponent(name, fmu) if in_process else FmuComponent(name, cached(fmu), user_cache())
-        return FmuComponent(name, path, user_cache())
+        if path is not None:
+            return FmuComponent(name, path, user_cache())
+        if in_process:
+            return TwinComponent(name, fmu)
+        return FmuComponent(name, cached(fmu), user_cache(), origin=fmu)
 
     return assemble(scene, scheme(scene.run.scheme), load)
 
