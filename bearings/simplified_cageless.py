@@ -51,7 +51,7 @@ ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
 class Parameters(RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
-    interface: Interface = group(Interface, tolerance=1e-4)
+    interface: Interface = group(Interface, tolerance=2e-5)
     balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = integer(
