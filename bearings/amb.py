@@ -17,6 +17,7 @@ from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Interface, Load, MountReaction, SeatReaction
+from modelkit.status import OK
 from modelkit.variables import group, integer, real
 
 SUPPLIED = seat.INSIDE
@@ -108,10 +109,24 @@ def start(words):
 
 
 @kernel
-def integrate(m, work, span):
-    """Advance the state by `span` (s)."""
+def _integrate_for(m, work, span):
     tolerance = m.p.interface.tolerance
     return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+
+
+@kernel
+def integrate(m, work, step):
+    """Advance the state by `step` (s): with load up to the shutdown, then free."""
+    acting = m.s.span
+    h, status, evaluations = m.h, OK, 0
+    if acting > 0.0:
+        h, status, evaluations = _integrate_for(m, work, acting)
+    if status == OK and acting < step:
+        m.s.span = -1.0
+        h, status, more = _integrate_for(m, work, step - max(acting, 0.0))
+        m.s.span = acting
+        evaluations += more
+    return h, status, evaluations
 
 
 @kernel
@@ -123,12 +138,11 @@ def instant(t, y, dy, m):
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step, or what the shutdown leaves of it."""
+    """One macro step."""
     m = words.view(MEMORY)[0]
     left = m.p.shutdown_time - time
     m.s.span = -1.0 if left <= ROUNDING else min(left, step)
-    span = max(m.s.span, 0.0)
-    return seat.advance(react, integrate, report, m, work, time, step, span)
+    return seat.advance(react, integrate, report, m, work, time, step)
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -124,7 +124,7 @@ def instant(t, y, dy, m):
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step, step)
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step)
 
 
 def derive(p: Parameters) -> Derived:

@@ -232,12 +232,11 @@ def instant(react, t, y, dy, m):
 
 
 @inlined
-def advance(react, integrate, report, m, work, time, step, span):
+def advance(react, integrate, report, m, work, time, step):
     """One macro step of a bearing.
 
-    react(t, y, dy, m) gives the `Load` and the derivative of what is inside; integrate(m, work, span)
-    advances the state; report(y, m) fills the outputs that are wanted once per macro step. The load acts
-    for `span` (s) of the macro step, which is all of it but where a magnetic bearing is shut down.
+    react(t, y, dy, m) gives the `Load` and the derivative of what is inside; integrate(m, work, step)
+    advances the state; report(y, m) fills the outputs that are wanted once per macro step.
     """
     status = BAD_INPUT
     if finite_inputs(m):
@@ -249,7 +248,7 @@ def advance(react, integrate, report, m, work, time, step, span):
         before = react(0.0, y, work[0], m)
         account_jump(m, before, y[JX] - jx, y[JY] - jy, y[HX] - hx, y[HY] - hy)
         remember(m, before)
-        m.h, status, evaluations = integrate(m, work, span)
+        m.h, status, evaluations = integrate(m, work, step)
         m.evaluations += evaluations
         hand_over(y, m, step)
         remember(m, react(step, y, work[0], m))

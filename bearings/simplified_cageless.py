@@ -18,6 +18,8 @@ Deviations from the source, each named where it acts:
 - A ball driven into the narrowing gap resists with -F (e . t)/r_m; without it the model creates energy.
 - Friction on a ball reacts on the rings as a force, too, so that action equals reaction.
 - Neighbours push along the chord between their centres.
+- Balls have no inertia or weight across the race: what (2.9) adds at the outer race loads friction, not
+  the housing.
 
 Friction on a ball of half a gram is stiff (1e7 per second under load), everything else is not; so the
 state is advanced by a linearly implicit method whose matrix holds the slopes of friction only.
@@ -383,7 +385,7 @@ def instant(t, y, dy, m):
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step, step)
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step)
 
 
 def derive(p: Parameters) -> Derived:
@@ -422,12 +424,9 @@ def check(p: Parameters) -> str | None:
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    ball = [
-        ORBIT_SCALE / seat.VELOCITY_SCALE * p.balls.pitch_radius,
-        1.0 / ORBIT_SCALE,
-        1.0 / BALL_SPIN_SCALE,
-    ]
-    return seat.weights(ring.error_weights() + ball * p.balls.count)
+    b = p.balls
+    ball = [b.pitch_radius / seat.POSITION_SCALE, 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE]
+    return seat.weights(ring.error_weights() + ball * b.count)
 
 
 _GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")

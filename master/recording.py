@@ -77,6 +77,7 @@ class Recorder:
             try:
                 self._write()
             except OSError as error:
+                self._filled = 0
                 raise TouchdownError(f"cannot write {self.path}: {error}; make room for it") from None
 
     def _write(self) -> None:
@@ -89,11 +90,17 @@ class Recorder:
             self._filled = 0
             self._file.flush()
 
-    def close(self) -> None:
-        """Write what is left."""
-        if self._file:
+    def close(self) -> str:
+        """Write what is left; returns what went wrong, or ""."""
+        problem = ""
+        try:
             self._write()
+        except OSError as error:
+            problem = f"cannot write {self.path}: {error}; make room for it"
+        finally:
+            self._filled = 0
             self._file.close()
+        return problem
 
 
 class Recording:
@@ -101,14 +108,19 @@ class Recording:
 
     def __init__(self, path: Path) -> None:
         self._file = h5py.File(path, "r")
-        self.time = np.asarray(self._file["time"])
+        sizes: list[int] = []
+        self._file.visititems(
+            lambda _, item: sizes.append(len(item)) if isinstance(item, h5py.Dataset) else None
+        )
+        self._rows = min(sizes)  # a disk that ran full leaves columns of unequal length
+        self.time = np.asarray(self._file["time"])[: self._rows]
 
     def __contains__(self, name: str) -> bool:
         return self._key(name) in self._file
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Values of COMPONENT.VARIABLE."""
-        return np.asarray(self._file[self._key(name)])
+        return np.asarray(self._file[self._key(name)])[: self._rows]
 
     def columns(self) -> list[tuple[str, str]]:
         """(COMPONENT.VARIABLE, unit) of everything recorded."""

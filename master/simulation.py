@@ -19,7 +19,7 @@ from master.ledger import Ledger
 from master.recording import Recorder
 from master.scene import RunSpec, Scene
 from master.schemes import scheme
-from master.system import System, assemble
+from master.system import LOAD, SLOPE, System, assemble
 from master.twin import TwinComponent
 from modelkit.kernel import user_cache
 
@@ -83,8 +83,8 @@ def simulate(
         except TouchdownError as error:
             outcome.stopped_because = str(error)
         finally:
-            if recorder is not None:
-                recorder.close()
+            problem = recorder.close() if recorder is not None else ""
+        outcome.stopped_because = outcome.stopped_because or problem
     return outcome
 
 
@@ -103,7 +103,13 @@ def interrupts_noted() -> Iterator[threading.Event]:
         yield outer or threading.Event()
         return
     _noted = noted = threading.Event()
-    before = signal.signal(signal.SIGINT, lambda *_: noted.set())
+
+    def note(*_: object) -> None:
+        if noted.is_set():  # asked a second time: now, whatever it breaks
+            raise KeyboardInterrupt
+        noted.set()
+
+    before = signal.signal(signal.SIGINT, note)
     try:
         yield noted
     finally:
@@ -149,13 +155,14 @@ def _loop(
                 component.step(time, step)
                 component.pull()
             ledger.update()
-            if not ledger.total <= limit:
-                limit = _judge(scene, ledger, outcome, time + step)
             done = k + 1
             outcome.steps = done
             outcome.end = done * step
-            if recorder is not None and (done % every == 0 or done == steps):
+            noticed = not ledger.total <= limit
+            if recorder is not None and (noticed or done % every == 0 or done == steps):
                 recorder.append(outcome.end - outcome.zero)
+            if noticed:
+                limit = _judge(scene, ledger, outcome)
             if watch is not None:
                 watch(outcome.end, system)
             if done % BEAT == 0 or done == steps:
@@ -168,21 +175,26 @@ def _loop(
 
 
 def _has_work(component: Component) -> bool:
-    """A component that says `active` = 0 gives nothing any more and is not stepped."""
-    return "active" not in component.variables or component.read(["active"])[0] != 0
+    """A component that says `active` = 0, and gives no load, gives nothing any more and is not stepped."""
+    variable = component.variables.get("active")
+    if variable is None or variable.causality != "output" or variable.kind != "Integer":
+        return True
+    loads = [name for name in component.variables if name.rpartition(".")[2] in LOAD + SLOPE]
+    given = [name for name in loads if component.variables[name].causality == "output"]
+    return component.read(["active"])[0] != 0 or any(component.read(given))
 
 
-def _judge(scene: Scene, ledger: Ledger, outcome: Outcome, time: float) -> float:
+def _judge(scene: Scene, ledger: Ledger, outcome: Outcome) -> float:
     """Warn, or stop, where the coupling makes or loses too much energy; returns the next limit (J)."""
-    run = scene.run
+    run, time = scene.run, outcome.end - outcome.zero
     if ledger.residual <= run.stop_residual:
-        outcome.warned_at = time - outcome.zero
+        outcome.warned_at = time
         return run.stop_residual * ledger.scale
     worst = ledger.worst()
     name = worst.attachment.title if worst else "the system"
     raise TouchdownError(
         f"the energy ledger of {name} is off by {ledger.residual:.2g} of the energy lost by falling at "
-        f"t = {time - outcome.zero:.6g} s; the macro step of {run.macro_step:g} s is too long for scheme "
+        f"t = {time:.6g} s; the macro step of {run.macro_step:g} s is too long for scheme "
         f"{run.scheme}, try --macro-step {shorter_step(run, ledger.residual):g}"
     )
 

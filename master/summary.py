@@ -13,6 +13,7 @@ from master.scene import Scene
 from master.simulation import Outcome, energy_scale
 from master.system import Attachment, System
 
+STANDS_OUT = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
 
 
@@ -82,11 +83,12 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
 def _bearing_figures(system: System, a: Attachment, outcome: Outcome) -> dict[str, object]:
     component = system.components[a.bearing]
     found: dict[str, object] = {}
+    touched = component.read(["contact.first_time"])[0] != -1.0
     for figure in FIGURES:
         if figure.variable not in component.variables:
             continue
         value = component.read([figure.variable])[0]
-        if figure.missing is not None and value == figure.missing:
+        if not touched or (figure.missing is not None and value == figure.missing):
             found[figure.key] = None
         elif isinstance(value, int):
             found[figure.key] = value
@@ -104,21 +106,24 @@ def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dic
     if after.any():
         start = int(np.argmax(time >= -1e-12))
         fall = 1e6 * float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
-    settled = time >= 0.2 * (outcome.end - outcome.zero)
-    return {
-        "largest_displacement_um": fall,
-        "pendulum_frequency_Hz": dominant_frequency(time[settled], x[settled]),
-    }
+    frequency = None
+    touched = recording[f"{a.bearing}.contact.first_time"][-1]
+    if touched != -1.0:
+        first = touched - outcome.zero
+        settled = time >= first + 0.2 * (outcome.end - outcome.zero - first)
+        frequency = dominant_frequency(time[settled], x[settled])
+    return {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
 
 
 def dominant_frequency(
     time: np.ndarray, values: np.ndarray, low: float = 8.0, high: float = 100.0
 ) -> float | None:
-    """Frequency of the largest line between `low` and `high` (Hz); None for less than four of its periods.
+    """Frequency of the largest line between `low` and `high` (Hz).
 
+    None for less than four of its periods, or where no line stands out.
     Hann window, zero-padded, the maximum refined by a parabola through the logarithm of three lines.
     """
-    if len(time) < 64 or time[-1] - time[0] < 4.0 / low * 0.5:
+    if len(time) < 64:
         return None
     step = (time[-1] - time[0]) / (len(time) - 1)
     centred = values - np.mean(values)
@@ -129,14 +134,19 @@ def dominant_frequency(
     frequency = np.fft.rfftfreq(count, step)
     band = np.flatnonzero((frequency >= low) & (frequency <= high))
     peak = int(band[np.argmax(spectrum[band])])
-    if peak in (band[0], band[-1]):
+    alone = spectrum[peak] > STANDS_OUT * np.median(spectrum[band])
+    if peak in (band[0], band[-1]) or not alone or frequency[peak] * (time[-1] - time[0]) < 4.0:
         return None
     a, b, c = np.log(spectrum[peak - 1 : peak + 2] + 1e-300)
     return float(frequency[peak] + 0.5 * (a - c) / (a - 2.0 * b + c) * frequency[1])
 
 
 def energy_total(system: System, recording: Recording) -> np.ndarray | None:
-    """Sum of all stated energies minus what was supplied (J); constant where nothing is lost."""
+    """Sum of all energies minus what was supplied (J); None where a component does not state its own."""
+    attached = {name for a in system.attachments for name in (a.bearing, a.body)}
+    stated = ("energy.kinetic", "supplied")
+    if not all(any(s in system.components[n].variables for s in stated) for n in attached):
+        return None
     parts = []
     for name, component in system.components.items():
         for variable, sign in ENERGIES:

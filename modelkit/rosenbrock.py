@@ -69,6 +69,7 @@ def integrate(rhs, linearise, solve, observe, m, y, n, weight, k, span, h, toler
     steps = 0
     u1, u2, u3, u4, f, w, j, f0 = k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7]
     rhs(t, y, f0, m)
+    linearise(y, j, m)
     evaluations = 1
     while t < span:
         steps += 1
@@ -79,7 +80,6 @@ def integrate(rhs, linearise, solve, observe, m, y, n, weight, k, span, h, toler
         step = span - t if last else h
         inverse = 1.0 / step
         shift = inverse / G
-        linearise(y, j, m)
         for i in range(n):
             u1[i] = f0[i]
         solve(j, shift, u1, m)
@@ -114,6 +114,7 @@ def integrate(rhs, linearise, solve, observe, m, y, n, weight, k, span, h, toler
             for i in range(n):
                 y[i] = w[i]
             rhs(t, y, f0, m)
+            linearise(y, j, m)
             observe(t, y, m)
             grown = step * min(4.0, 0.9 / max(error, 1e-6) ** (1.0 / 3.0))
             h = max(h, grown) if last else grown

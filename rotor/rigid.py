@@ -6,6 +6,8 @@ as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft cen
 
     m e (omega^2 cos(theta + phase) + alpha sin(theta + phase)),   likewise in y.
 
+A load at the shaft centre turns the rotor about its centre of mass, so unbalance makes no energy.
+
 Sign and frame: x horizontal, y up, angles counter-clockwise, SI.
 """
 
@@ -75,12 +77,11 @@ def rhs(t, y, dy, m):
     ax, ay, am = a.fx + a.dfx * s, a.fy + a.dfy * s, a.mz + a.dmz * s
     bx, by, bm = b.fx + b.dfx * s, b.fy + b.dfy * s, b.mz + b.dmz * s
     drag = _drag(y[SPIN], p)
-    alpha = (am + bm - drag) / p.inertia
-    ux, uy = _unbalance(y[ANGLE], y[SPIN], alpha, p)
+    dvx, dvy, alpha = _accelerations(y, ax + bx, ay + by, am + bm - drag, p)
     dy[X] = y[VX]
     dy[Y] = y[VY]
-    dy[VX] = (ax + bx) / p.mass + ux
-    dy[VY] = (ay + by) / p.mass + uy - p.gravity
+    dy[VX] = dvx
+    dy[VY] = dvy
     dy[ANGLE] = y[SPIN]
     dy[SPIN] = alpha
     dy[WORK_A] = ax * y[VX] + ay * y[VY] + am * y[SPIN]
@@ -94,13 +95,18 @@ def _drag(spin, p):
 
 
 @kernel
-def _unbalance(angle, spin, alpha, p):
-    """Acceleration of the shaft centre by the unbalance (m/s2)."""
+def _accelerations(y, fx, fy, moment, p):
+    """Of the shaft centre (m/s2) and the spin (rad/s2) under loads at the shaft centre and gravity.
+
+    The centre of mass stands off by e (c, s): I alpha = M + e (Fx s - Fy c), gravity drops out.
+    """
     if p.eccentricity == 0.0:
-        return 0.0, 0.0
-    c, s = math.cos(angle + p.unbalance_angle), math.sin(angle + p.unbalance_angle)
-    w2 = spin * spin
-    return p.eccentricity * (w2 * c + alpha * s), p.eccentricity * (w2 * s - alpha * c)
+        return fx / p.mass, fy / p.mass - p.gravity, moment / p.inertia
+    angle = y[ANGLE] + p.unbalance_angle
+    ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
+    alpha = (moment + fx * ey - fy * ex) / p.inertia
+    w2 = y[SPIN] * y[SPIN]
+    return fx / p.mass + w2 * ex + alpha * ey, fy / p.mass + w2 * ey - alpha * ex - p.gravity, alpha
 
 
 @kernel
@@ -111,23 +117,28 @@ def publish(y, m):
     _publish_seat(y, p, m.o.amb, m.u.A, m.half)
     m.o.A.work = y[WORK_A]
     m.o.amb.work = y[WORK_AMB]
+    angle = y[ANGLE] + p.unbalance_angle
+    ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
+    vx, vy = y[VX] - y[SPIN] * ey, y[VY] + y[SPIN] * ex  # of the centre of mass
     e = m.o.energy
-    e.kinetic = 0.5 * p.mass * (y[VX] ** 2 + y[VY] ** 2) + 0.5 * p.inertia * y[SPIN] ** 2
-    e.potential = p.mass * p.gravity * y[Y]
+    e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * y[SPIN] ** 2
+    e.potential = p.mass * p.gravity * (y[Y] + ey)
     e.dissipated = y[LOSS]
 
 
 @kernel
 def _publish_seat(y, p, seat, other, half):
     """`other` is the load of the other seat, taken at its end value."""
-    alpha = (other.mz + other.dmz * half - _drag(y[SPIN], p)) / p.inertia
-    ux, uy = _unbalance(y[ANGLE], y[SPIN], alpha, p)
     seat.x, seat.y, seat.vx, seat.vy = y[X], y[Y], y[VX], y[VY]
-    seat.ax_free = (other.fx + other.dfx * half) / p.mass + ux
-    seat.ay_free = (other.fy + other.dfy * half) / p.mass + uy - p.gravity
+    seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(
+        y,
+        other.fx + other.dfx * half,
+        other.fy + other.dfy * half,
+        other.mz + other.dmz * half - _drag(y[SPIN], p),
+        p,
+    )
     seat.inv_m = 1.0 / p.mass
     seat.omega = y[SPIN]
-    seat.alpha_free = alpha
     seat.inv_I = 1.0 / p.inertia
 
 
@@ -165,12 +176,13 @@ def weights(p: Parameters) -> np.ndarray:
 
 def _starts_from() -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {
-        "energy.kinetic": ("mass", "inertia", "speed", "vx", "vy"),
-        "energy.potential": ("mass", "gravity", "y"),
+        "energy.kinetic": ("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
+        "energy.potential": ("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
     }
     for seat, other in (("A", "amb"), ("amb", "A")):
+        loads = (f"{other}.fx", f"{other}.fy")
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
-        unbalance = ("eccentricity", "unbalance_angle", *turning)
+        unbalance = ("eccentricity", "unbalance_angle", *turning, *loads)
         found |= {
             f"{seat}.{name}": (name if name in ("x", "y", "vx", "vy") else source,)
             for name, source in (
@@ -183,9 +195,9 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
                 ("inv_I", "inertia"),
             )
         }
-        found[f"{seat}.alpha_free"] = turning
-        found[f"{seat}.ax_free"] = ("mass", f"{other}.fx", *unbalance)
-        found[f"{seat}.ay_free"] = ("mass", "gravity", f"{other}.fy", *unbalance)
+        found[f"{seat}.alpha_free"] = unbalance
+        found[f"{seat}.ax_free"] = ("mass", *unbalance)
+        found[f"{seat}.ay_free"] = ("mass", "gravity", *unbalance)
     return found
 
 

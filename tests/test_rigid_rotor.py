@@ -78,3 +78,22 @@ def test_what_the_other_seat_does_is_free_acceleration() -> None:
     assert out["A"]["ay_free"] == pytest.approx(3.3 / DISK - GRAVITY)
     assert out["amb"]["ay_free"] == pytest.approx(-GRAVITY)
     assert out["A"]["inv_m"] == pytest.approx(1.0 / DISK)
+
+
+def test_unbalance_makes_no_energy() -> None:
+    """A pulled, turned and falling rotor with its centre of mass off the shaft centre."""
+    instance = Instance(MODEL)
+    instance.record["p"]["eccentricity"] = 1e-3
+    instance.start(0.0)
+    load = instance.record["u"]["A"]
+    load["fx"], load["fy"], load["mz"] = 300.0, -200.0, 0.2
+    energy = instance.record["o"]["energy"]
+
+    def balance() -> float:
+        return float(energy["kinetic"] + energy["potential"] - instance.record["o"]["A"]["work"])
+
+    before = balance()
+    for k in range(200):
+        instance.step(k * 1e-4, 1e-4)
+    assert abs(instance.record["o"]["A"]["work"]) > 1.0
+    assert balance() == pytest.approx(before, abs=1e-6)

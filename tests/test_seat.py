@@ -122,6 +122,8 @@ def test_a_shutdown_within_a_step_gives_its_impulse_and_moment() -> None:
     assert out["fy"] == pytest.approx(weight * on / step, rel=1e-9)
     moment = weight * (on**2 / 2 - on * step / 2)  # int_0^on (t - H/2) F dt
     assert out["dfy"] == pytest.approx(12.0 * moment / step**3, rel=1e-9)
+    stator = instance.record["o"]["housing"]
+    assert (stator["fy"], stator["dfy"]) == pytest.approx((-out["fy"], -out["dfy"]), rel=1e-9)
     instance.step(step, step)
     assert (out["fy"], out["dfy"], instance.record["o"]["active"]) == (0.0, 0.0, 0)
 
