@@ -10,17 +10,16 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from modelkit.kernel import source_hash
+from modelkit.kernel import PHYSICS_PACKAGES, source_hash
 
 ROOT = Path(__file__).resolve().parents[1]
-PHYSICS = ("modelkit", "rotor", "bearings")
 SLAVE_MODULES = ("__init__.py", "slave.py", "description.py")
 _IMPORT = re.compile(r"^(from|import) (modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 
 
 def content_hash() -> str:
     """Hash over everything that decides what an FMU contains."""
-    return source_hash((*PHYSICS, "fmus"))
+    return source_hash((*PHYSICS_PACKAGES, "fmus"))
 
 
 def package_name() -> str:
@@ -36,7 +35,7 @@ def rewritten(text: str) -> str:
 def write_package(folder: Path) -> Path:
     """Write the package into `folder`; returns its path."""
     package = folder / package_name()
-    for name in PHYSICS:
+    for name in PHYSICS_PACKAGES:
         for path in sorted((ROOT / name).rglob("*.py")):
             _copy(path, package / path.relative_to(ROOT))
     for name in SLAVE_MODULES:
