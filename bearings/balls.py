@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from bearings.stiffness import in_series, race_contact_stiffness
+from modelkit.kernel import kernel
 from modelkit.variables import integer, real
 
 MOST_BALLS = 32  # room in the state vector
@@ -27,6 +28,13 @@ class BallSet:
     poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
     density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
     first_angle: float = real(-math.pi / 2, "rad", "attitude angle of the first ball at the start")
+    spread: float = real(
+        1.0,
+        "1",
+        "spacing of the balls at the start over even spacing; below 1 they are bunched around the first",
+        above=0.0,
+        maximum=1.0,
+    )
     damping: float = real(
         0.0, "N.s/m2", "damping of the race contacts, proportional to indentation (2.38)", minimum=0.0
     )
@@ -83,8 +91,32 @@ class BallSet:
         return in_series(self.inner_stiffness(), self.outer_stiffness())
 
     def angles(self) -> list[float]:
-        """Attitude angles of evenly spaced balls (rad)."""
-        return [self.first_angle + 2.0 * math.pi * i / self.count for i in range(self.count)]
+        """Attitude angles at the start (rad), rising from the first ball's by less than a turn."""
+        spacing = 2.0 * math.pi / self.count
+        gap = (1.0 - self.spread) * 2.0 * math.pi  # left open opposite the first ball
+        return [
+            self.first_angle + self.spread * spacing * i + (gap if i > self.count // 2 else 0.0)
+            for i in range(self.count)
+        ]
+
+    def starting_places(self, rest: tuple[float, float]) -> list[tuple[float, float]]:
+        """Centres of the balls at the start, from the middle (m), with the ring at `rest` (m).
+
+        A ball that both rings press sits where their forces balance; any other lies on the outer race in
+        the lower half, on the inner one in the upper half.
+        """
+        inner, outer = self.inner_stiffness() ** (-2.0 / 3.0), self.outer_stiffness() ** (-2.0 / 3.0)
+        places = []
+        for angle in self.angles():
+            nx, ny = math.cos(angle), math.sin(angle)
+            approach = rest[0] * nx + rest[1] * ny - self.play
+            radius = self.pitch_radius + 0.5 * self.play
+            if approach > 0.0:
+                radius += approach * outer / (inner + outer)
+            elif ny > 0.0:
+                radius += approach
+            places.append((radius * nx, radius * ny))
+        return places
 
     def resting_place(self, weight: float) -> tuple[float, float]:
         """Where a ring of `weight` (N, downwards) rests on evenly spaced balls, from the centre (m).
@@ -124,12 +156,18 @@ class BallSet:
                 f"balls.diameter = {self.diameter:g} m does not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be smaller"
             )
-        if self.count * self.touch_angle > 2.0 * math.pi:
+        if self.count * self.touch_angle > 2.0 * math.pi * (1.0 + 1e-12):
             # rounded up, so that the remedy is one
             needed = math.ceil(1e6 * self.diameter / math.sin(math.pi / self.count)) / 1e6
             return (
                 f"balls.count = {self.count} balls of {self.diameter:g} m do not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"
+            )
+        if self.count * self.touch_angle > 2.0 * math.pi * self.spread * (1.0 + 1e-12):
+            needed = self.count * self.touch_angle / (2.0 * math.pi)
+            return (
+                f"balls.spread = {self.spread:g} lets neighbouring balls overlap; "
+                f"it must be at least {math.ceil(1e6 * needed) / 1e6:g}"
             )
         if -self.play >= self.diameter:
             return (
@@ -144,12 +182,63 @@ class BallReport:
     """The balls as a whole."""
 
     loaded: int = integer(0, "balls pressed by both rings now", local=True)
-    force: float = real(0.0, "N", "largest ball force now", local=True)
+    force: float = real(0.0, "N", "largest force between a ball and a race now", local=True)
     indentation: float = real(0.0, "m", "largest approach of the rings at a ball now", local=True)
-    peak_force: float = real(0.0, "N", "largest ball force since the start", local=True)
+    peak_force: float = real(
+        0.0, "N", "largest force between a ball and a race since the start", local=True
+    )
+    first_impact_force: float = real(
+        0.0, "N", "largest force between a ball and a race during the journal's first contact", local=True
+    )
     peak_indentation: float = real(
         0.0, "m", "largest approach of the rings at a ball since the start", local=True
     )
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """What the model counts (the source's Tables 5 and 6)."""
+
+    coordinates: int = integer(
+        0, "coordinates of rings, balls and cage, the outer ring's too", constant=True
+    )
+    constraints: int = integer(0, "constraints between them", constant=True)
+    ball_ball: int = integer(0, "elastic contacts between balls", constant=True)
+    ball_cage: int = integer(0, "elastic contacts of balls with the cage", constant=True)
+    ball_outer: int = integer(0, "elastic contacts of balls with the outer ring", constant=True)
+    ball_inner: int = integer(0, "elastic contacts of balls with the inner ring", constant=True)
+    rings: int = integer(0, "elastic contacts of both rings through a ball", constant=True)
+
+
+@dataclass(frozen=True)
+class BallContacts:
+    """Contacts of the balls with one kind of partner: a race, each other, the cage."""
+
+    force: float = real(0.0, "N", "largest normal force now", local=True)
+    indentation: float = real(0.0, "m", "largest indentation now", local=True)
+    peak_force: float = real(0.0, "N", "largest normal force since the start", local=True)
+    peak_indentation: float = real(0.0, "m", "largest indentation since the start", local=True)
+
+
+@kernel
+def watch_balls(force, indentation, m):
+    """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step."""
+    o = m.o.balls
+    if force > o.peak_force:
+        o.peak_force = force
+    if indentation > o.peak_indentation:
+        o.peak_indentation = indentation
+    if force > o.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.left == 0.0:
+        o.first_impact_force = force
+
+
+@kernel
+def watch_contacts(force, indentation, report):
+    """Keep the peaks of `BallContacts`, after a micro-step."""
+    if force > report.peak_force:
+        report.peak_force = force
+    if indentation > report.peak_indentation:
+        report.peak_indentation = indentation
 
 
 @dataclass(frozen=True)

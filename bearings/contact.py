@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from modelkit.kernel import kernel
+from modelkit.kernel import kernel, woven
 from modelkit.variables import real
 
 
@@ -38,6 +38,15 @@ def power(x, exponent):
     return x**exponent
 
 
+@woven
+def hertz(indentation, rate, stiffness, damping):
+    """(Normal force, its elastic part, stiffness at this load in N/m) of (2.1) and (2.38), zero apart."""
+    depth = max(indentation, 0.0)
+    root = math.sqrt(depth)
+    elastic = stiffness * depth * root
+    return max(elastic + damping * depth * rate, 0.0), elastic, 1.5 * stiffness * root
+
+
 @kernel
 def elastic_force(indentation, law):
     """k d^n (N), zero where bodies are apart (2.1)."""
@@ -53,10 +62,16 @@ def elastic_energy(indentation, law):
 
 
 @kernel
-def normal_force(indentation, rate, law):
-    """Force pressing the bodies apart (N); `rate` is the indentation's time derivative (m/s)."""
+def normal_and_elastic(indentation, rate, law):
+    """(Force pressing the bodies apart, its elastic part) in N; `rate` is the indentation's (m/s)."""
     if indentation <= 0.0:
-        return 0.0
+        return 0.0, 0.0
     elastic = law.stiffness * power(indentation, law.exponent)
     damping = law.dissipation * elastic + law.damping * indentation + law.viscous
-    return max(elastic + damping * rate, 0.0)
+    return max(elastic + damping * rate, 0.0), elastic
+
+
+@kernel
+def normal_force(indentation, rate, law):
+    """Force pressing the bodies apart (N); `rate` is the indentation's time derivative (m/s)."""
+    return normal_and_elastic(indentation, rate, law)[0]

@@ -16,11 +16,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import cast
+from typing import NamedTuple, cast
 
 from scipy.optimize import brentq, minimize_scalar
 
-from modelkit.kernel import kernel
+from modelkit.kernel import kernel, woven
 from modelkit.variables import integer, real
 
 COULOMB = 0
@@ -45,33 +45,90 @@ class FrictionLaw:
     g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0)
 
 
-@kernel
-def coefficient(speed, law):
-    """Friction coefficient at sliding speed `speed` (m/s), with its sign."""
-    if law.kind == COULOMB:
-        return law.dynamic * math.tanh(law.slope * speed)
-    if law.kind == STRIBECK:
-        fade = math.exp(-((speed / law.stribeck_speed) ** 2))
-        return (law.dynamic + (law.static - law.dynamic) * fade) * math.tanh(law.slope * speed)
-    rise = math.tanh(law.g2 * speed)
-    plateau = rise if law.slope == law.g2 else math.tanh(law.slope * speed)
-    return law.g1 * (rise - math.tanh(law.g3 * speed)) + law.dynamic * plateau + law.g6 * speed
+class Makkar(NamedTuple):
+    """The constants of Makkar's curve as plain numbers, for loops that are to become vector code."""
+
+    g1: float
+    g2: float
+    g3: float
+    dynamic: float
+    slope: float
+    g6: float
 
 
 @kernel
-def slope(speed, law):
-    """Derivative of the coefficient (s/m), zero where it falls: what a linearly implicit step needs."""
+def curve(law):
+    """Makkar's constants of a `FrictionLaw` record."""
+    return Makkar(law.g1, law.g2, law.g3, law.dynamic, law.slope, law.g6)
+
+
+@woven
+def saturation(x):
+    """1 - exp(-x) for x >= 0 to rounding, from sums and products alone.
+
+    A series at x/1024, then 1 - e^(-2a) = (1 - e^(-a)) (1 + e^(-a)) ten times, written out: unlike a call
+    of the mathematical library, or a loop, it becomes vector code. It is 1 to rounding beyond x = 40.
+    """
+    z = min(x, 40.0) * (1.0 / 1024.0)
+    u = z * (1.0 - z * (1 / 2 - z * (1 / 6 - z * (1 / 24 - z * (1 / 120 - z * (1 / 720))))))
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    return u * (2.0 - u)
+
+
+@woven
+def makkar(speed, law):
+    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of Makkar's curve.
+
+    law: a record of `FrictionLaw`, or `Makkar`. tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|).
+    """
+    v = abs(speed)
+    steep, flat = saturation(2.0 * law.g2 * v), saturation(2.0 * law.g3 * v)
+    both = 1.0 / ((2.0 - steep) * (2.0 - flat))
+    rise = steep * (2.0 - flat) * both
+    fall = flat * (2.0 - steep) * both
+    plateau = rise
+    if law.slope != law.g2:
+        third = saturation(2.0 * law.slope * v)
+        plateau = third / (2.0 - third)
+    value = law.g1 * (rise - fall) + law.dynamic * plateau + law.g6 * v
+    slope = law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
+    slope += law.dynamic * law.slope * (1.0 - plateau * plateau) + law.g6
+    return value if speed >= 0.0 else -value, max(slope, 0.0)
+
+
+@kernel
+def coefficient_and_slope(speed, law):
+    """Friction coefficient at sliding speed `speed` (m/s), with its sign, and its derivative (s/m).
+
+    The derivative is zero where the curve falls: it is what an implicit step needs.
+    """
     if law.kind == MAKKAR:
-        rise, fall = math.tanh(law.g2 * speed), math.tanh(law.g3 * speed)
-        plateau = rise if law.slope == law.g2 else math.tanh(law.slope * speed)
-        found = law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
-        found += law.dynamic * law.slope * (1.0 - plateau * plateau) + law.g6
-        return max(found, 0.0)
+        return makkar(speed, law)
     plateau = math.tanh(law.slope * speed)
     level = law.dynamic
     if law.kind == STRIBECK:
         level += (law.static - law.dynamic) * math.exp(-((speed / law.stribeck_speed) ** 2))
-    return level * law.slope * (1.0 - plateau * plateau)
+    return level * plateau, level * law.slope * (1.0 - plateau * plateau)
+
+
+@kernel
+def coefficient(speed, law):
+    """Friction coefficient at sliding speed `speed` (m/s), with its sign."""
+    return coefficient_and_slope(speed, law)[0]
+
+
+@kernel
+def slope(speed, law):
+    """Derivative of the coefficient (s/m), zero where it falls."""
+    return coefficient_and_slope(speed, law)[1]
 
 
 @cache

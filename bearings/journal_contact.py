@@ -11,8 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from bearings.contact import elastic_force, normal_force
-from bearings.friction import coefficient
+from bearings.pair import INSIDE, Place, press
 from modelkit.kernel import kernel
 from modelkit.variables import real
 
@@ -31,10 +30,11 @@ class Touch(NamedTuple):
 
 
 @kernel
-def touch(journal, ring, journal_radius, clearance, law, friction):
+def touch(journal, ring, journal_radius, clearance, law, friction, grip=0.0):
     """Contact of a journal of radius `journal_radius` (m) with the bore of `ring`.
 
-    journal, ring: Motion. Returns a `Touch`; the force on the ring is the opposite one.
+    journal, ring: Motion; grip as in `bearings.pair.press`. Returns a `Touch`; the force on the ring is
+    the opposite one.
     """
     ex = journal.x - ring.x
     ey = journal.y - ring.y
@@ -44,27 +44,12 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
         return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, 0.0, 0.0)
     nx = ex / distance
     ny = ey / distance
-    ux = journal.vx - ring.vx
-    uy = journal.vy - ring.vy
-    rate = ux * nx + uy * ny
     if indentation <= 0.0:
+        rate = (journal.vx - ring.vx) * nx + (journal.vy - ring.vy) * ny
         return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0)
-    lever = distance + journal_radius
-    sliding = uy * nx - ux * ny + journal.spin * journal_radius - ring.spin * lever
-    normal = normal_force(indentation, rate, law)
-    elastic = elastic_force(indentation, law)
-    tangential = -coefficient(sliding, friction) * normal
-    loss = (normal - elastic) * rate - tangential * sliding
-    return Touch(
-        -normal * nx - tangential * ny,
-        -normal * ny + tangential * nx,
-        tangential * journal_radius,
-        -tangential * lever,
-        normal,
-        indentation,
-        rate,
-        loss,
-    )
+    place = Place(nx, ny, indentation, journal_radius, distance + journal_radius, 0.0)
+    c = press(journal, ring, place, INSIDE, law, friction, grip)
+    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, c.loss)
 
 
 @dataclass(frozen=True)
@@ -93,6 +78,7 @@ class ContactMemory:
     y: float = real(0.0, "m", "journal")
     vx: float = real(0.0, "m/s", "journal")
     vy: float = real(0.0, "m/s", "journal")
+    left: float = real(0.0, "1", "1: the journal has left the ring after its first contact")
 
 
 @kernel
@@ -128,6 +114,8 @@ def watch_contact(time, journal, touched, report, memory):
     if indentation > report.peak_indentation:
         report.peak_indentation = indentation
     if report.first_time >= 0.0:
+        if indentation < 0.0:
+            memory.left = 1.0
         return
     if indentation >= 0.0:
         h = time - memory.time

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bearings import seat
+from bearings.contact import elastic_energy
 from bearings.journal_contact import touch, watch_contact
 from modelkit.kernel import kernel
 from modelkit.ports import Motion
@@ -68,15 +69,36 @@ def ring_motion(y):
 
 
 @kernel
-def journal_on_ring(y, m):
+def journal_on_ring(y, m, grip=0.0):
     """The journal's `Touch` with the ring, remembered for `observe`."""
-    p = m.p
-    t = touch(
-        seat.journal_motion(y), ring_motion(y), p.journal_radius, p.clearance, p.contact, m.d.friction
-    )
+    p, journal = m.p, seat.journal_motion(y)
+    t = touch(journal, ring_motion(y), p.journal_radius, p.clearance, p.contact, m.d.friction, grip)
     r = m.s.ring
     r.normal, r.indentation, r.rate = t.normal, t.indentation, t.rate
     return t
+
+
+@kernel
+def accelerate(y, dy, m, journal, balls):
+    """Derivatives of the ring under the journal's `Touch` and what the balls do to it (`Total`)."""
+    p = m.p
+    dy[RX] = y[RVX]
+    dy[RY] = y[RVY]
+    dy[RVX] = (balls.fx - journal.fx) / p.ring.mass
+    dy[RVY] = (balls.fy - journal.fy) / p.ring.mass - p.gravity
+    dy[RANGLE] = y[RW]
+    dy[RW] = (journal.ring_moment + balls.moment) / p.ring.inertia
+
+
+@kernel
+def report_energy(y, m, kinetic, potential):
+    """Energy of the bearing; `kinetic` and `potential` (J) are those of balls and cage."""
+    p, o = m.p, m.o.energy
+    speed2 = y[RVX] ** 2 + y[RVY] ** 2
+    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * p.ring.inertia * y[RW] ** 2
+    o.potential = potential + elastic_energy(m.s.ring.indentation, p.contact)
+    o.potential += p.ring.mass * p.gravity * y[RY]
+    o.dissipated = y[LOSS]
 
 
 @kernel

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bearings import ring, seat
-from bearings.balls import BallReport, BallSet, RaceStiffness
+from bearings.balls import BallReport, BallSet, Coordinates, RaceStiffness
 from bearings.contact import ContactLaw
 from bearings.friction import FrictionLaw
 from bearings.journal_contact import ContactMemory, ContactReport
+from modelkit.kernel import kernel
 from modelkit.ports import Energy, Interface, MountReaction, SeatReaction
 from modelkit.variables import group, real
 
@@ -38,6 +39,7 @@ class RollingOutputs:
     balls: BallReport = group(BallReport)
     energy: Energy = group(Energy)
     stiffness: RaceStiffness = group(RaceStiffness)
+    size: Coordinates = group(Coordinates)
 
 
 @dataclass(frozen=True)
@@ -45,12 +47,36 @@ class RollingDerived:
     """What parameters fix."""
 
     friction: FrictionLaw = group(FrictionLaw)
-    race: ContactLaw = group(ContactLaw)
-    inner: float = real(0.0, "N/m^n", "ball on inner race")
-    outer: float = real(0.0, "N/m^n", "ball on outer race")
+    stiffness: RaceStiffness = group(RaceStiffness)
+    size: Coordinates = group(Coordinates)
     inner_radius: float = real(0.0, "m", "inner race")
     rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
     rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
+
+
+@kernel
+def state_constants(m):
+    """Outputs that parameters fix."""
+    given, o = m.d.stiffness, m.o.stiffness
+    o.inner, o.outer, o.series = given.inner, given.outer, given.series
+    counted, o = m.d.size, m.o.size
+    o.coordinates, o.constraints = counted.coordinates, counted.constraints
+    o.ball_ball, o.ball_cage = counted.ball_ball, counted.ball_cage
+    o.ball_outer, o.ball_inner, o.rings = counted.ball_outer, counted.ball_inner, counted.rings
+
+
+def race_stiffness(b: BallSet) -> RaceStiffness:
+    """Of the race contacts, from geometry."""
+    return RaceStiffness(b.inner_stiffness(), b.outer_stiffness(), b.series_stiffness())
+
+
+GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
+
+
+def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:
+    """Initial dependencies of a rolling bearing's outputs; `counted`: what of `Coordinates` it counts."""
+    known = {f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")}
+    return known | {f"size.{name}": ("balls.count",) for name in counted}
 
 
 @dataclass(frozen=True)

@@ -21,11 +21,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import ring, seat
-from bearings.balls import MOST_BALLS
+from bearings.balls import MOST_BALLS, Coordinates, watch_balls
+from bearings.cage import Cage
 from bearings.contact import ContactLaw, elastic_energy, elastic_force
 from bearings.friction import prepared
 from bearings.friction import problem as friction_problem
-from bearings.rolling import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
+from bearings.rolling import (
+    RollingDerived,
+    RollingMemory,
+    RollingOutputs,
+    RollingParameters,
+    race_stiffness,
+    starts_from,
+    state_constants,
+)
 from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
@@ -33,13 +42,6 @@ from modelkit.ports import Load
 from modelkit.variables import array, group, real
 
 ROLLING_EXPONENT = 0.55  # of the load over the static rating, in the friction moment
-
-
-@dataclass(frozen=True)
-class Cage:
-    """Cage, which turns with the balls."""
-
-    mass: float = real(2.15e-3, "kg", "mass of the cage; as heavy as two balls", minimum=0.0)
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,7 @@ class Outputs(RollingOutputs):
 class Derived(RollingDerived):
     """What parameters fix."""
 
+    race: ContactLaw = group(ContactLaw)
     inertia: float = real(0.0, "kg.m2", "equivalent moment of inertia of the ring (4.3)")
     cage_ratio: float = real(0.0, "1", "cage speed over ring speed (4.2)")
     ball_ratio: float = real(0.0, "1", "ball spin over ring speed (4.2)")
@@ -175,11 +178,7 @@ def rhs(t, y, dy, m):
 def observe(t, y, m):
     """Peaks and events, after each accepted micro-step."""
     ring.watch(t, y, m)
-    o, s = m.o.balls, m.s.balls
-    if s.force > o.peak_force:
-        o.peak_force = s.force
-    if s.indentation > o.peak_indentation:
-        o.peak_indentation = s.indentation
+    watch_balls(m.s.balls.force, m.s.balls.indentation, m)
 
 
 @kernel
@@ -205,8 +204,7 @@ def start(words):
     y, d = m.y, m.d
     seat.take_inputs(y, m)
     ring.place(y, d.rest_x, d.rest_y)
-    o = m.o.stiffness
-    o.inner, o.outer, o.series = d.inner, d.outer, d.race.stiffness
+    state_constants(m)
     seat.begin(react, report, m)
 
 
@@ -243,8 +241,8 @@ def derive(p: Parameters) -> Derived:
     return Derived(
         friction=prepared(p.friction),
         race=ContactLaw(stiffness=b.series_stiffness(), damping=b.damping),
-        inner=b.inner_stiffness(),
-        outer=b.outer_stiffness(),
+        stiffness=race_stiffness(b),
+        size=Coordinates(coordinates=5, rings=b.count),
         inertia=p.ring.inertia + orbiting * cage_ratio**2 + spinning * ball_ratio**2,
         cage_ratio=cage_ratio,
         ball_ratio=ball_ratio,
@@ -266,8 +264,6 @@ def weights(p: Parameters) -> np.ndarray:
     return seat.weights(ring.error_weights())
 
 
-_GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
-
 MODEL = Model(
     name="simplified_caged",
     title="Simplified caged touchdown bearing",
@@ -284,9 +280,5 @@ MODEL = Model(
     derive=derive,
     check=check,
     instant=instant,
-    starts_from={
-        "stiffness.inner": _GEOMETRY,
-        "stiffness.outer": _GEOMETRY,
-        "stiffness.series": _GEOMETRY,
-    },
+    starts_from=starts_from("rings"),
 )

@@ -33,11 +33,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import ring, seat
-from bearings.balls import MOST_BALLS, BallSet
+from bearings.balls import MOST_BALLS, BallContacts, BallSet, Coordinates, watch_balls, watch_contacts
 from bearings.contact import ContactLaw, elastic_energy, elastic_force, normal_force
 from bearings.friction import FrictionLaw, coefficient, prepared, slope
 from bearings.friction import problem as friction_problem
-from bearings.rolling import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
+from bearings.rolling import (
+    RollingDerived,
+    RollingMemory,
+    RollingOutputs,
+    RollingParameters,
+    race_stiffness,
+    starts_from,
+    state_constants,
+)
 from modelkit import rosenbrock
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
@@ -65,18 +73,6 @@ class Parameters(RollingParameters):
 
 
 @dataclass(frozen=True)
-class Neighbours:
-    """Contacts between balls."""
-
-    force: float = real(0.0, "N", "largest force between balls now", local=True)
-    indentation: float = real(0.0, "m", "largest indentation between balls now", local=True)
-    peak_force: float = real(0.0, "N", "largest force between balls since the start", local=True)
-    peak_indentation: float = real(
-        0.0, "m", "largest indentation between balls since the start", local=True
-    )
-
-
-@dataclass(frozen=True)
 class Speeds(ring.RaceSpeeds):
     """Circumferential speeds that agree where nothing slips (4.2; the source's Figs 25 and 26)."""
 
@@ -88,7 +84,7 @@ class Speeds(ring.RaceSpeeds):
 class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
-    neighbours: Neighbours = group(Neighbours)
+    neighbours: BallContacts = group(BallContacts)
     speed: Speeds = group(Speeds)
 
 
@@ -96,6 +92,7 @@ class Outputs(RollingOutputs):
 class Derived(RollingDerived):
     """What parameters fix."""
 
+    race: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)
     mass: float = real(0.0, "kg", "of a ball")
@@ -244,11 +241,9 @@ def rhs(t, y, dy, m):
 def observe(t, y, m):
     """Peaks and events, after each accepted micro-step."""
     ring.watch(t, y, m)
-    o, n, s = m.o.balls, m.o.neighbours, m.s.balls
-    o.peak_force = max(o.peak_force, s.force)
-    o.peak_indentation = max(o.peak_indentation, s.indentation)
-    n.peak_force = max(n.peak_force, s.pushed)
-    n.peak_indentation = max(n.peak_indentation, s.overlap)
+    s = m.s.balls
+    watch_balls(s.force, s.indentation, m)
+    watch_contacts(s.pushed, s.overlap, m.o.neighbours)
 
 
 @kernel
@@ -287,8 +282,7 @@ def start(words):
         y[BALLS + 3 * b] = d.angles[b]
         y[BALLS + 3 * b + 1] = 0.0
         y[BALLS + 3 * b + 2] = 0.0
-    o = m.o.stiffness
-    o.inner, o.outer, o.series = d.inner, d.outer, d.race.stiffness
+    state_constants(m)
     seat.begin(react, report, m)
 
 
@@ -397,8 +391,8 @@ def derive(p: Parameters) -> Derived:
         race_friction=prepared(p.race_friction),
         ball_friction=prepared(p.ball_friction),
         race=ContactLaw(stiffness=b.series_stiffness(), damping=b.damping),
-        inner=b.inner_stiffness(),
-        outer=b.outer_stiffness(),
+        stiffness=race_stiffness(b),
+        size=Coordinates(coordinates=5 + 2 * b.count, ball_ball=b.count, rings=b.count),
         mass=b.ball_mass,
         inertia=b.ball_inertia,
         ball_radius=b.ball_radius,
@@ -429,8 +423,6 @@ def weights(p: Parameters) -> np.ndarray:
     return seat.weights(ring.error_weights() + ball * b.count)
 
 
-_GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
-
 MODEL = Model(
     name="simplified_cageless",
     title="Simplified cageless touchdown bearing",
@@ -448,9 +440,5 @@ MODEL = Model(
     derive=derive,
     check=check,
     instant=instant,
-    starts_from={
-        "stiffness.inner": _GEOMETRY,
-        "stiffness.outer": _GEOMETRY,
-        "stiffness.series": _GEOMETRY,
-    },
+    starts_from=starts_from("coordinates", "ball_ball", "rings"),
 )

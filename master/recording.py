@@ -1,7 +1,8 @@
 """Recording to HDF5, streamed: memory stays flat, and what was recorded survives a run that stops.
 
 One group per component, one dataset per variable (attributes unit and description), and `time` in
-seconds from the scene's zero.
+seconds from the scene's zero. Of elements of arrays (``ball[3].x``) only the last values are kept, in the
+attributes of the group `@end`, unless a run asks for all.
 """
 
 from __future__ import annotations
@@ -15,22 +16,25 @@ from master.component import Component
 from master.errors import TouchdownError
 
 BLOCK = 4096  # rows held before they are written
+END = "@end"  # group of the values that are kept of the end only; no component is called so
 
 
 class Recorder:
     """Rows of all recorded variables of a system."""
 
-    def __init__(self, path: Path, components: dict[str, Component]) -> None:
+    def __init__(self, path: Path, components: dict[str, Component], arrays: bool = False) -> None:
         self.path = path
         self._components = components
-        self.names = {
-            name: [
+        self.names: dict[str, list[str]] = {}
+        self.kept_at_end: dict[str, list[str]] = {}
+        for name, component in components.items():
+            given = [
                 v.name
                 for v in component.variables.values()
                 if v.causality in ("output", "local") and v.kind in ("Real", "Integer")
             ]
-            for name, component in components.items()
-        }
+            self.names[name] = [v for v in given if arrays or "[" not in v]
+            self.kept_at_end[name] = [v for v in given if v not in self.names[name]]
         try:
             self._file = h5py.File(path, "w", libver="latest")
         except OSError as error:
@@ -90,11 +94,19 @@ class Recorder:
             self._filled = 0
             self._file.flush()
 
+    def _write_end(self) -> None:
+        for name, variables in self.kept_at_end.items():
+            if variables:
+                group = self._file.require_group(f"{END}/{name}")
+                for variable, value in zip(variables, self._components[name].read(variables), strict=True):
+                    group.attrs[variable] = float(value)
+
     def close(self) -> str:
         """Write what is left; returns what went wrong, or ""."""
         problem = ""
         try:
             self._write()
+            self._write_end()
         except OSError as error:
             problem = f"cannot write {self.path}: {error}; make room for it"
         finally:
@@ -122,11 +134,19 @@ class Recording:
         """Values of COMPONENT.VARIABLE."""
         return np.asarray(self._file[self._key(name)])[: self._rows]
 
+    def at_end(self, name: str) -> float:
+        """Last value of COMPONENT.VARIABLE, also of an array's element. KeyError where there is none."""
+        component, _, variable = name.partition(".")
+        group = self._file.get(f"{END}/{component}")
+        if group is not None and variable in group.attrs:
+            return float(group.attrs[variable])
+        return float(self[name][-1])
+
     def columns(self) -> list[tuple[str, str]]:
         """(COMPONENT.VARIABLE, unit) of everything recorded."""
         found: list[tuple[str, str]] = []
         for component, group in self._file.items():
-            if isinstance(group, h5py.Group):
+            if isinstance(group, h5py.Group) and component != END:
                 found += [(f"{component}.{name}", str(d.attrs["unit"])) for name, d in group.items()]
         return found
 

@@ -54,6 +54,7 @@ class RunSpec:
     macro_step: float = 2e-5  # s
     scheme: str = schemes.DEFAULT
     record_every: int = 5  # macro steps
+    record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
     warn_residual: float = 1e-3  # ledger over energy scale: say so
     stop_residual: float = 0.1  # ledger over energy scale: stop
 
@@ -172,11 +173,14 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
 
 
 def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
-    _refuse_unknown(changes, ("scheme", *RUN_UNITS), "[run]")
+    _refuse_unknown(changes, ("scheme", "record_arrays", *RUN_UNITS), "[run]")
     values: dict[str, Any] = {}
     for key, value in changes.items():
         if key == "scheme":
             values[key] = schemes.scheme(str(value)).name
+            continue
+        if key == "record_arrays":
+            values[key] = _switch(value, f"run.{key}")
             continue
         number = to_si(value, RUN_UNITS[key], f"run.{key}")
         if number <= 0.0 or not math.isfinite(number):
@@ -187,6 +191,14 @@ def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
             number = int(number)
         values[key] = number
     return replace(run, **values)
+
+
+def _switch(value: object, name: str) -> bool:
+    known = {"true": True, "1": True, "false": False, "0": False}
+    try:
+        return known[str(value).lower()]
+    except KeyError:
+        raise TouchdownError(f"{name} = {value} must be true or false") from None
 
 
 def _preset(name: object, where: str) -> str | None:

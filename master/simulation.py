@@ -74,7 +74,9 @@ def simulate(
         steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
         ledger = Ledger(system, energy_scale(scene, system))
         system.initialise()
-        recorder = Recorder(record_to, system.components) if record_to is not None else None
+        recorder = None
+        if record_to is not None:
+            recorder = Recorder(record_to, system.components, scene.run.record_arrays)
         try:
             if recorder is not None:
                 recorder.append(-outcome.zero)

@@ -48,10 +48,22 @@ def kernel(function: F) -> F:
     IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in process
     must agree bit for bit.
     """
+    return _compiled(function, forceinline=False)
+
+
+def woven(function: F) -> F:
+    """A kernel that becomes part of every kernel that calls it, whatever its length.
+
+    For the bodies of loops that are to become vector code, which a call left in them would prevent.
+    """
+    return _compiled(function, forceinline=True)
+
+
+def _compiled(function: F, forceinline: bool) -> F:
     before = numba.config.CACHE_DIR  # type: ignore[attr-defined]
     numba.config.CACHE_DIR = _machine_code_folder()  # type: ignore[attr-defined]
     try:
-        return cast(F, numba.njit(cache=True, error_model="numpy")(function))
+        return cast(F, numba.njit(cache=True, error_model="numpy", forceinline=forceinline)(function))
     finally:
         numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
 

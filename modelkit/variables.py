@@ -1,8 +1,8 @@
 """Variables, declared once.
 
 A model states its parameters, inputs and outputs as frozen dataclasses whose fields are made by
-`real`, `integer` or `group`. Everything else is derived from them: the memory layout a kernel reads
-(``p.contact.stiffness``), the FMU's XML, bounds checks, tables and column headers.
+`real`, `integer`, `group` or `groups`. Everything else is derived from them: the memory layout a kernel
+reads (``p.contact.stiffness``), the FMU's XML, bounds checks, tables and column headers.
 """
 
 from __future__ import annotations
@@ -74,6 +74,12 @@ def group(kind: type, **changes: Any) -> Any:
     return field(default_factory=lambda: value, metadata={"group": kind})
 
 
+def groups(kind: type, count: int) -> Any:
+    """Declare `count` groups of the same kind, NAME[1] to NAME[count]; kernels count them from 0."""
+    value = (kind(),) * count
+    return field(default_factory=lambda: value, metadata={"groups": kind, "count": count})
+
+
 @dataclass(frozen=True)
 class Nothing:
     """The empty set of variables."""
@@ -85,6 +91,8 @@ def layout(kind: type) -> np.dtype:
     for f in fields(kind):
         if "group" in f.metadata:
             parts.append((f.name, layout(f.metadata["group"])))
+        elif "groups" in f.metadata:
+            parts.append((f.name, layout(f.metadata["groups"]), (f.metadata["count"],)))
         elif "array" in f.metadata:
             parts.append((f.name, "f8", (f.metadata["array"],)))
         else:
@@ -100,6 +108,9 @@ def flatten(instance: Any, prefix: str = "") -> list[Variable]:
         name = f"{prefix}{f.name}"
         if "group" in f.metadata:
             found += flatten(value, f"{name}.")
+        elif "groups" in f.metadata:
+            for i, member in enumerate(value):
+                found += flatten(member, f"{name}[{i + 1}].")
         elif "spec" in f.metadata:
             found.append(Variable(name, f.metadata["spec"], value))
     return found
@@ -107,10 +118,14 @@ def flatten(instance: Any, prefix: str = "") -> list[Variable]:
 
 def as_tuple(instance: Any) -> tuple:
     """Values of a declaration, nested as `layout` nests them."""
-    return tuple(
-        as_tuple(value) if dataclasses.is_dataclass(value) else value
-        for value in (getattr(instance, f.name) for f in fields(instance))
-    )
+
+    def nested(f: Any) -> Any:
+        value = getattr(instance, f.name)
+        if "groups" in f.metadata:
+            return [as_tuple(member) for member in value]
+        return as_tuple(value) if dataclasses.is_dataclass(value) else value
+
+    return tuple(nested(f) for f in fields(instance))
 
 
 def as_record(instance: Any) -> Any:
@@ -125,6 +140,8 @@ def from_record(kind: type, record: Any) -> Any:
         value = record[f.name]
         if "group" in f.metadata:
             values[f.name] = from_record(f.metadata["group"], value)
+        elif "groups" in f.metadata:
+            values[f.name] = tuple(from_record(f.metadata["groups"], member) for member in value)
         elif "array" in f.metadata:
             values[f.name] = tuple(float(v) for v in value)
         else:

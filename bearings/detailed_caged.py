@@ -1,0 +1,219 @@
+"""Detailed touchdown bearing with a cage: balls and cage as bodies (sections 2.2, 2.3, 4.3 of the source).
+
+Inner ring, balls and cage have three coordinates each, the outer ring has the housing's two, its rotation
+is fixed: with nine balls 36 coordinates and one constraint. Contacts: journal and ring, ball and inner
+race, ball and outer race, ball and cage. The rotation of the outer ring is eliminated; see
+`bearings.augmented` for the form with a Lagrange multiplier.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearings import ball_bodies, cage, ring, seat
+from bearings.ball_bodies import (
+    MOST_STATES,
+    BallBodiesDerived,
+    BallBodiesMemory,
+    BallBodiesOutputs,
+    BallBodiesParameters,
+    drift,
+    fastest,
+    forecast,
+    race_contacts,
+    settle,
+)
+from bearings.balls import MOST_BALLS, BallContacts, Coordinates
+from bearings.contact import ContactLaw
+from bearings.friction import FrictionLaw, prepared
+from bearings.friction import problem as friction_problem
+from bearings.rolling import starts_from, state_constants
+from modelkit import dopri, verlet
+from modelkit.kernel import kernel
+from modelkit.model import Model, memory_layout
+from modelkit.ports import Load
+from modelkit.variables import array, group, real
+
+
+@dataclass(frozen=True)
+class Parameters(BallBodiesParameters):
+    """Defaults: SKF 6004 under the disk of section 4.3."""
+
+    cage: cage.CageBody = group(cage.CageBody)
+    cage_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
+    cage_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
+
+
+@dataclass(frozen=True)
+class Speeds(ring.RaceSpeeds):
+    """Circumferential speeds that agree where nothing slips (4.2; the source's Fig 26)."""
+
+    cage: float = real(0.0, "m/s", "circumferential speed of the cage on the pitch circle", local=True)
+    orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
+    ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
+
+
+@dataclass(frozen=True)
+class Outputs(BallBodiesOutputs):
+    """Loads, and what to know of the inside."""
+
+    cage: cage.CageReport = group(cage.CageReport)
+    pockets: BallContacts = group(BallContacts)
+    speed: Speeds = group(Speeds)
+
+
+@dataclass(frozen=True)
+class Derived(BallBodiesDerived):
+    """What parameters fix."""
+
+    cage_friction: FrictionLaw = group(FrictionLaw)
+    cage_inertia: float = real(0.0, "kg.m2", "of the cage")
+    pocket_x: tuple = array(MOST_BALLS)  # from the cage's centre, at the start
+    pocket_y: tuple = array(MOST_BALLS)
+
+
+MEMORY = memory_layout(
+    Parameters, seat.BearingInputs, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory
+)
+SCRATCH = dopri.scratch_layout(MOST_STATES)
+
+
+@kernel
+def react(t, y, dy, m):
+    """Derivative of ring, balls and cage, and the load on journal and housing."""
+    j = ring.journal_on_ring(y, m, m.s.step * m.d.bore_grip)
+    inner, outer = race_contacts(y, dy, m)
+    loss = cage.pocket_contacts(y, dy, m)
+    ring.accelerate(y, dy, m, j, inner)
+    dy[ring.LOSS] = j.loss + inner.loss + outer.loss + loss
+    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
+
+
+@kernel
+def rhs(t, y, dy, m):
+    """Everything the bearing integrates within a macro step."""
+    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+
+
+@kernel
+def observe(t, y, m):
+    """Peaks and events, after each accepted micro-step."""
+    ring.watch(t, y, m)
+    ball_bodies.watch(m, m.o.pockets)
+
+
+@kernel
+def report(y, m):
+    """Outputs wanted once per macro step."""
+    p, o, count = m.p, m.o, m.p.balls.count
+    ring.report(y, m, m.d.inner_radius)
+    kinetic, potential = ball_bodies.report(y, m, False)
+    ball_bodies.state_contacts(o.pockets, m.s.side, count)
+    of_cage, weight = cage.report(y, m)
+    stored = ball_bodies.stored(m.s.side, p.cage_contact, count)
+    ring.report_energy(y, m, kinetic + of_cage, potential + weight + stored)
+
+
+@kernel
+def start(words):
+    """Ring, balls and cage at rest, the first ball at its angle."""
+    m = words.view(MEMORY)[0]
+    seat.take_inputs(m.y, m)
+    ring.place(m.y, m.d.rest_x, m.d.rest_y)
+    ball_bodies.place(m.y, m)
+    cage.place(m.y, m)
+    m.s.step = m.p.micro_step
+    state_constants(m)
+    seat.begin(react, report, m)
+
+
+@kernel
+def integrate(m, work, span):
+    """Advance the state by `span` (s)."""
+    p = m.p
+    if p.micro_step > 0.0:
+        status, evaluations = verlet.integrate(
+            rhs, drift, forecast, settle, fastest, observe, m, m.y, m.n, work, span, p.micro_step
+        )
+        return m.h, status, evaluations
+    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
+
+
+@kernel
+def instant(t, y, dy, m):
+    """Derivative and load under the motion m.u, friction as it stands."""
+    m.s.step = 0.0
+    seat.instant(react, t, y, dy, m)
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step."""
+    rows = work.ravel().view(SCRATCH)[0].rows
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], rows, time, step)
+
+
+def derive(p: Parameters) -> Derived:
+    """Stiffness and masses from geometry, and where everything starts."""
+    b = p.balls
+    unused = [0.0] * (MOST_BALLS - b.count)
+    inertia = p.cage.inertia or p.cage.mass * b.pitch_radius**2
+    of_ball = 1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia
+    of_cage = 1.0 / p.cage.mass + b.pitch_radius**2 / inertia
+    fields = ball_bodies.derived(p)
+    return Derived(
+        **fields,  # type: ignore[arg-type]
+        cage_friction=prepared(p.cage_friction),
+        cage_inertia=inertia,
+        side_grip=2.0 * of_ball + 0.5 * b.count * of_cage,
+        size=Coordinates(
+            coordinates=9 + 3 * b.count,
+            constraints=1,
+            ball_cage=b.count,
+            ball_outer=b.count,
+            ball_inner=b.count,
+        ),
+        pocket_x=tuple([b.pitch_radius * math.cos(a) for a in b.angles()] + unused),
+        pocket_y=tuple([b.pitch_radius * math.sin(a) for a in b.angles()] + unused),
+    )
+
+
+def check(p: Parameters) -> str | None:
+    """What is wrong between the parameters."""
+    if p.cage.clearance < 0.0:
+        pocket = p.balls.diameter + 2.0 * p.cage.clearance
+        return (
+            f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
+            f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
+        )
+    return ball_bodies.problem(p) or friction_problem(p.cage_friction, "cage_friction")
+
+
+def weights(p: Parameters) -> np.ndarray:
+    """Error weights of the state."""
+    return seat.weights(
+        ring.error_weights() + ball_bodies.ball_weights(p.balls.count) + cage.cage_weights()
+    )
+
+
+MODEL = Model(
+    name="detailed_caged",
+    title="Detailed caged touchdown bearing",
+    about="Ball bearing with every ball and the cage a body of its own",
+    parameters=Parameters,
+    inputs=seat.BearingInputs,
+    outputs=Outputs,
+    derived=Derived,
+    hidden=BallBodiesMemory,
+    memory=MEMORY,
+    start=start,
+    advance=advance,
+    weights=weights,
+    derive=derive,
+    check=check,
+    instant=instant,
+    starts_from=starts_from("coordinates", "ball_cage", "ball_outer", "ball_inner"),
+)

@@ -1,0 +1,233 @@
+"""Detailed touchdown bearing without a cage: every ball a body (sections 2.2, 2.3 and 4.3 of the source).
+
+Inner ring and balls have three coordinates each, the outer ring has the housing's two, its rotation is
+fixed: with 17 balls 57 coordinates and one constraint. Contacts: journal and ring, ball and inner race,
+ball and outer race, each ball and the next.
+
+The rotation of the outer ring is eliminated; `bearings.augmented` holds it by a Lagrange multiplier
+instead (2.18-2.28), as a check. Balls are counted around the bearing and do not pass each other.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bearings import ball_bodies, ring, seat
+from bearings.ball_bodies import (
+    MOST_STATES,
+    BallBodiesDerived,
+    BallBodiesMemory,
+    BallBodiesOutputs,
+    BallBodiesParameters,
+    X,
+    Y,
+    ball_motion,
+    drift,
+    fastest,
+    forecast,
+    note,
+    part,
+    push,
+    race_contacts,
+    settle,
+)
+from bearings.balls import BallContacts, BallSet, Coordinates
+from bearings.contact import ContactLaw
+from bearings.friction import FrictionLaw, prepared
+from bearings.friction import problem as friction_problem
+from bearings.pair import OUTSIDE, Place, press
+from bearings.rolling import starts_from, state_constants
+from modelkit import dopri, verlet
+from modelkit.kernel import kernel
+from modelkit.model import Model, memory_layout
+from modelkit.ports import Load
+from modelkit.variables import group, real
+
+
+@dataclass(frozen=True)
+class Parameters(BallBodiesParameters):
+    """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
+
+    balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
+    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
+    ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
+    ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
+
+
+@dataclass(frozen=True)
+class Speeds(ring.RaceSpeeds):
+    """Circumferential speeds that agree where nothing slips (4.2; the source's Fig 25)."""
+
+    orbit: float = real(0.0, "m/s", "mean speed of the balls along the pitch circle", local=True)
+    ball: float = real(0.0, "m/s", "mean circumferential speed of the balls by their spin", local=True)
+
+
+@dataclass(frozen=True)
+class Outputs(BallBodiesOutputs):
+    """Loads, and what to know of the inside."""
+
+    neighbours: BallContacts = group(BallContacts)
+    speed: Speeds = group(Speeds)
+
+
+@dataclass(frozen=True)
+class Derived(BallBodiesDerived):
+    """What parameters fix."""
+
+    ball_friction: FrictionLaw = group(FrictionLaw)
+
+
+MEMORY = memory_layout(
+    Parameters, seat.BearingInputs, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory
+)
+SCRATCH = dopri.scratch_layout(MOST_STATES)
+
+
+@kernel
+def _neighbour_contacts(y, dy, m):
+    """Each ball against the next; adds to the balls' derivatives, returns the heat (W)."""
+    p, d = m.p, m.d
+    count, apart = p.balls.count, 2.0 * d.ball_radius
+    grip = m.s.step * d.side_grip
+    loss = 0.0
+    x, z = part(y, X, m), part(y, Y, m)
+    for b in range(count):
+        k = b + 1 if b + 1 < count else 0
+        ex, ey = x[k] - x[b], z[k] - z[b]
+        square = ex * ex + ey * ey
+        if square >= apart * apart:
+            note(m.s.side, b, 0.0, 0.0, -1.0)
+            continue
+        distance = math.sqrt(square)
+        half = 0.5 * distance
+        at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
+        this, following = ball_motion(y, b, m), ball_motion(y, k, m)
+        c = press(following, this, at, OUTSIDE, p.ball_contact, d.ball_friction, grip)
+        note(m.s.side, b, c.normal, c.tangential, at.indentation)
+        push(dy, k, c.fx, c.fy, c.first_moment, m)
+        push(dy, b, -c.fx, -c.fy, c.second_moment, m)
+        loss += c.loss
+    return loss
+
+
+@kernel
+def react(t, y, dy, m):
+    """Derivative of ring and balls, and the load on journal and housing."""
+    j = ring.journal_on_ring(y, m, m.s.step * m.d.bore_grip)
+    inner, outer = race_contacts(y, dy, m)
+    loss = _neighbour_contacts(y, dy, m)
+    ring.accelerate(y, dy, m, j, inner)
+    dy[ring.LOSS] = j.loss + inner.loss + outer.loss + loss
+    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
+
+
+@kernel
+def rhs(t, y, dy, m):
+    """Everything the bearing integrates within a macro step."""
+    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+
+
+@kernel
+def observe(t, y, m):
+    """Peaks and events, after each accepted micro-step."""
+    ring.watch(t, y, m)
+    ball_bodies.watch(m, m.o.neighbours)
+
+
+@kernel
+def report(y, m):
+    """Outputs wanted once per macro step."""
+    p, o, count = m.p, m.o, m.p.balls.count
+    ring.report(y, m, m.d.inner_radius)
+    kinetic, potential = ball_bodies.report(y, m, neighbours=True)
+    ball_bodies.state_contacts(o.neighbours, m.s.side, count)
+    ring.report_energy(y, m, kinetic, potential + ball_bodies.stored(m.s.side, p.ball_contact, count))
+
+
+@kernel
+def start(words):
+    """Ring and balls at rest, the first ball at its angle."""
+    m = words.view(MEMORY)[0]
+    seat.take_inputs(m.y, m)
+    ring.place(m.y, m.d.rest_x, m.d.rest_y)
+    ball_bodies.place(m.y, m)
+    m.s.step = m.p.micro_step
+    state_constants(m)
+    seat.begin(react, report, m)
+
+
+@kernel
+def integrate(m, work, span):
+    """Advance the state by `span` (s)."""
+    p = m.p
+    if p.micro_step > 0.0:
+        status, evaluations = verlet.integrate(
+            rhs, drift, forecast, settle, fastest, observe, m, m.y, m.n, work, span, p.micro_step
+        )
+        return m.h, status, evaluations
+    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
+
+
+@kernel
+def instant(t, y, dy, m):
+    """Derivative and load under the motion m.u, friction as it stands."""
+    m.s.step = 0.0
+    seat.instant(react, t, y, dy, m)
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step."""
+    rows = work.ravel().view(SCRATCH)[0].rows
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], rows, time, step)
+
+
+def derive(p: Parameters) -> Derived:
+    """Stiffness and masses from geometry, and where everything starts."""
+    b = p.balls
+    fields = ball_bodies.derived(p)
+    return Derived(
+        **fields,  # type: ignore[arg-type]
+        ball_friction=prepared(p.ball_friction),
+        side_grip=4.0 * (1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia),
+        size=Coordinates(
+            coordinates=6 + 3 * b.count,
+            constraints=1,
+            ball_ball=b.count,
+            ball_outer=b.count,
+            ball_inner=b.count,
+        ),
+    )
+
+
+def check(p: Parameters) -> str | None:
+    """What is wrong between the parameters."""
+    return ball_bodies.problem(p) or friction_problem(p.ball_friction, "ball_friction")
+
+
+def weights(p: Parameters) -> np.ndarray:
+    """Error weights of the state."""
+    return seat.weights(ring.error_weights() + ball_bodies.ball_weights(p.balls.count))
+
+
+MODEL = Model(
+    name="detailed_cageless",
+    title="Detailed cageless touchdown bearing",
+    about="Full-complement ball bearing with every ball a body of its own",
+    parameters=Parameters,
+    inputs=seat.BearingInputs,
+    outputs=Outputs,
+    derived=Derived,
+    hidden=BallBodiesMemory,
+    memory=MEMORY,
+    start=start,
+    advance=advance,
+    weights=weights,
+    derive=derive,
+    check=check,
+    instant=instant,
+    starts_from=starts_from("coordinates", "ball_ball", "ball_outer", "ball_inner"),
+)
