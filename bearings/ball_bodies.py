@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from bearings import race_profile, ring, seat
 from bearings.balls import MOST_BALLS, BallContacts, watch_balls, watch_contacts
-from bearings.contact import ContactLaw
+from bearings.contact import ContactLaw, damped
 from bearings.contact_search import SearchReport
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
@@ -135,6 +135,7 @@ class BallBodiesMemory(RollingMemory):
     side: SideContacts = group(SideContacts)
     step: float = real(0.0, "s", "length of the micro-step, for grip; 0: friction as it stands")
     race_loss: float = real(0.0, "W", "heat of the race contacts at the last evaluation")
+    outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
     inner_starts: tuple = array(2 * MOST_BALLS)
     outer_starts: tuple = array(2 * MOST_BALLS)
     search: SearchReport = group(SearchReport)
@@ -194,7 +195,8 @@ def race_contacts(y, dy, m):
     grip = s.step * d.race_grip
     at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping, grip)
     at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping, grip)
-    housing, inner_ring = seat.housing_motion(y), ring.ring_motion(y)
+    inner_ring, at = ring.ring_motion(y), seat.housing_motion(y)
+    housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
     outer = _one_race(balls, housing, 0.0, at_outer, p.outer_profile, s.outer_starts, s.outer, m)
     angle = y[ring.RANGLE]
     inner = _one_race(balls, inner_ring, angle, at_inner, p.inner_profile, s.inner_starts, s.inner, m)
@@ -418,11 +420,12 @@ def derived(p: BallBodiesParameters) -> dict[str, object]:
     bore = p.journal_radius + p.clearance
     of_ring = 1.0 / p.ring.mass + inner_radius**2 / p.ring.inertia
     return {
+        "contact": damped(p.contact, p.ring.mass),
         "friction": prepared(p.friction),
         "race_friction": prepared(p.race_friction),
         "stiffness": race_stiffness(b),
-        "inner": ContactLaw(stiffness=b.inner_stiffness(), damping=b.damping),
-        "outer": ContactLaw(stiffness=b.outer_stiffness(), damping=b.damping),
+        "inner": b.race_law(b.inner_stiffness()),
+        "outer": b.race_law(b.outer_stiffness()),
         "mass": b.ball_mass,
         "inertia": b.ball_inertia,
         "ball_radius": b.ball_radius,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from bearings.contact import ContactLaw, damped
 from bearings.stiffness import in_series, race_contact_stiffness
 from modelkit.kernel import kernel
 from modelkit.variables import integer, real
@@ -37,6 +38,12 @@ class BallSet:
     )
     damping: float = real(
         0.0, "N.s/m2", "damping of the race contacts, proportional to indentation (2.38)", minimum=0.0
+    )
+    damping_ratio: float = real(
+        0.0, "1", "damping ratio (2.47) of the race contacts, added to `damping`", minimum=0.0
+    )
+    expected_indentation: float = real(
+        3e-6, "m", "peak indentation for which the damping ratio holds", above=0.0
     )
 
     @property
@@ -90,6 +97,22 @@ class BallSet:
         """Inner ring over ball to outer ring (2.5), N/m^1.5."""
         return in_series(self.inner_stiffness(), self.outer_stiffness())
 
+    @property
+    def outer_share(self) -> float:
+        """How much of the rings' approach at a ball is indentation of the outer race."""
+        inner, outer = self.inner_stiffness() ** (-2.0 / 3.0), self.outer_stiffness() ** (-2.0 / 3.0)
+        return outer / (inner + outer)
+
+    def race_law(self, stiffness: float) -> ContactLaw:
+        """Law of a contact with races of `stiffness` (N/m^1.5), damped as asked for a ball's mass."""
+        law = ContactLaw(
+            stiffness=stiffness,
+            damping=self.damping,
+            damping_ratio=self.damping_ratio,
+            expected_indentation=self.expected_indentation,
+        )
+        return damped(law, self.ball_mass)
+
     def angles(self) -> list[float]:
         """Attitude angles at the start (rad), rising from the first ball's by less than a turn."""
         spacing = 2.0 * math.pi / self.count
@@ -105,14 +128,13 @@ class BallSet:
         A ball that both rings press sits where their forces balance; any other lies on the outer race in
         the lower half, on the inner one in the upper half.
         """
-        inner, outer = self.inner_stiffness() ** (-2.0 / 3.0), self.outer_stiffness() ** (-2.0 / 3.0)
         places = []
         for angle in self.angles():
             nx, ny = math.cos(angle), math.sin(angle)
             approach = rest[0] * nx + rest[1] * ny - self.play
             radius = self.pitch_radius + 0.5 * self.play
             if approach > 0.0:
-                radius += approach * outer / (inner + outer)
+                radius += approach * self.outer_share
             elif ny > 0.0:
                 radius += approach
             places.append((radius * nx, radius * ny))

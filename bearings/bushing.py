@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import seat
-from bearings.contact import ContactLaw, elastic_energy
+from bearings.contact import ContactLaw, damped, elastic_energy
 from bearings.friction import FrictionLaw, prepared, problem
 from bearings.journal_contact import ContactMemory, ContactReport, touch, watch_contact
 from modelkit import dopri
@@ -48,6 +48,7 @@ class Outputs:
 class Derived:
     """What parameters fix."""
 
+    contact: ContactLaw = group(ContactLaw)
     friction: FrictionLaw = group(FrictionLaw)
 
 
@@ -70,7 +71,7 @@ def react(t, y, dy, m):
     """Load on journal and housing; inside there is only the heat."""
     p, s = m.p, m.s
     bore = seat.housing_motion(y)
-    j = touch(seat.journal_motion(y), bore, p.journal_radius, p.clearance, p.contact, m.d.friction)
+    j = touch(seat.journal_motion(y), bore, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
     s.normal, s.indentation, s.rate = j.normal, j.indentation, j.rate
     dy[LOSS] = j.loss
     return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
@@ -128,12 +129,17 @@ def advance(words, work, time, step):
 
 
 def derive(p: Parameters) -> Derived:
-    """Fill in what the friction law leaves open."""
-    return Derived(friction=prepared(p.friction))
+    """Fill in what the laws leave open."""
+    return Derived(contact=damped(p.contact, p.contact.mass), friction=prepared(p.friction))
 
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
+    if p.contact.damping_ratio > 0.0 and p.contact.mass == 0.0:
+        return (
+            f"contact.damping_ratio = {p.contact.damping_ratio:g} needs contact.mass above 0 kg; "
+            "a bushing does not know the mass of its journal"
+        )
     return problem(p.friction, "friction")
 
 

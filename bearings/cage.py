@@ -85,7 +85,7 @@ def pocket_contacts(y, dy, m):
         distance = math.sqrt(square)
         at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
         pocket = Motion(y[i + X] + rx, y[i + Y] + ry, vx - spin * ry, vy + spin * rx, spin)
-        push_out = press(ball, pocket, at, INSIDE, p.cage_contact, d.cage_friction, grip)
+        push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, grip)
         note(m.s.side, b, push_out.normal, push_out.tangential, at.indentation)
         push(dy, b, push_out.fx, push_out.fy, push_out.first_moment, m)
         fx -= push_out.fx

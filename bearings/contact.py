@@ -13,8 +13,9 @@ does not say so; the force cut off is below 0.1 um of indentation in its cases.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from bearings.stiffness import damping_from_ratio
 from modelkit.kernel import kernel, woven
 from modelkit.variables import real
 
@@ -28,6 +29,25 @@ class ContactLaw:
     damping: float = real(0.0, "N.s/m2", "damping c proportional to indentation (2.38)", minimum=0.0)
     dissipation: float = real(0.0, "s/m", "dissipation parameter epsilon (2.12)", minimum=0.0)
     viscous: float = real(0.0, "N.s/m", "linear damping while in contact (2.2)", minimum=0.0)
+    damping_ratio: float = real(
+        0.0, "1", "damping ratio (2.47) of the contact, added to `damping`", minimum=0.0
+    )
+    expected_indentation: float = real(
+        1e-5, "m", "peak indentation for which the damping ratio holds", above=0.0
+    )
+    mass: float = real(
+        0.0, "kg", "mass for which the damping ratio holds; 0: the lighter body's", minimum=0.0
+    )
+
+
+def damped(law: ContactLaw, lighter: float) -> ContactLaw:
+    """`law` with the damping that its ratio asks for (2.47); `lighter`: mass of the lighter body (kg)."""
+    if law.damping_ratio == 0.0:
+        return law
+    depth = law.expected_indentation
+    slope = law.exponent * law.stiffness * depth ** (law.exponent - 1.0)
+    added = damping_from_ratio(slope, law.mass or lighter, law.damping_ratio, depth)
+    return replace(law, damping=law.damping + added, damping_ratio=0.0)
 
 
 @kernel

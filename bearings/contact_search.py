@@ -23,8 +23,8 @@ from modelkit.kernel import kernel
 from modelkit.variables import real
 
 MOST_ITERATIONS = 20
-CLOSE = 1e-14  # rad, last Newton step; 1e-16 m on a race
-AROUND = 256  # points of the cold search
+CLOSE = 1e-10  # rad, last Newton step; what it leaves is of its square, and rounding stays well below
+AROUND = 256  # points of the cold search, each time
 
 
 class Point(NamedTuple):
@@ -122,13 +122,16 @@ def cold_start(ball, race, profile, dent):
     """(s_P, s_Q) at the race's nearest of many points."""
     bx, by, _ = ball
     rx, ry, angle, radius = race
-    best, found = math.inf, 0.0
-    for i in range(AROUND):
-        s = 2.0 * math.pi * i / AROUND
-        q = on_race(s, rx, ry, angle, radius, profile, dent)
-        distance = (q.x - bx) ** 2 + (q.y - by) ** 2
-        if distance < best:
-            best, found = distance, s
+    best, found, width = math.inf, 0.0, 2.0 * math.pi
+    for _ in range(2):  # all around, then between the neighbours of the nearest: lobes may be many
+        middle = found
+        for i in range(AROUND):
+            s = middle + width * (i / AROUND - 0.5)
+            q = on_race(s, rx, ry, angle, radius, profile, dent)
+            distance = (q.x - bx) ** 2 + (q.y - by) ** 2
+            if distance < best:
+                best, found = distance, s
+        width *= 2.0 / AROUND
     q = on_race(found, rx, ry, angle, radius, profile, dent)
     return math.atan2(q.y - by, q.x - bx), found
 
@@ -142,6 +145,7 @@ def race_place(b, side, ball, race, profile, starts, report):
     """
     rb = ball[2]
     dent = side
+    race = (race[0], race[1], race[2] % (2.0 * math.pi), race[3])  # s - angle keeps its digits
     sp, sq, found = newton(starts[2 * b], starts[2 * b + 1], ball, race, profile, dent)
     if not (found and is_contact(sp, sq, side, ball, race, profile, dent)):
         report.cold += 1.0

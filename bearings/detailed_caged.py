@@ -27,7 +27,7 @@ from bearings.ball_bodies import (
     settle,
 )
 from bearings.balls import MOST_BALLS, BallContacts, Coordinates
-from bearings.contact import ContactLaw
+from bearings.contact import ContactLaw, damped
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
 from bearings.rolling import starts_from, state_constants
@@ -69,6 +69,7 @@ class Outputs(BallBodiesOutputs):
 class Derived(BallBodiesDerived):
     """What parameters fix."""
 
+    cage_contact: ContactLaw = group(ContactLaw)
     cage_friction: FrictionLaw = group(FrictionLaw)
     cage_inertia: float = real(0.0, "kg.m2", "of the cage")
     pocket_x: tuple = array(MOST_BALLS)  # from the cage's centre, at the start
@@ -114,7 +115,7 @@ def report(y, m):
     ball_bodies.state_contacts(o.pockets, m.s.side, count)
     of_cage, weight = cage.report(y, m)
     stored = ball_bodies.stored(m.s.side, p.cage_contact, count)
-    ring.report_energy(y, m, kinetic + of_cage, potential + weight + stored)
+    ring.report_energy(y, m, kinetic + of_cage, potential + weight + stored, p.ring.inertia)
 
 
 @kernel
@@ -166,6 +167,7 @@ def derive(p: Parameters) -> Derived:
     fields = ball_bodies.derived(p)
     return Derived(
         **fields,  # type: ignore[arg-type]
+        cage_contact=damped(p.cage_contact, b.ball_mass),
         cage_friction=prepared(p.cage_friction),
         cage_inertia=inertia,
         side_grip=2.0 * of_ball + 0.5 * b.count * of_cage,
@@ -189,6 +191,8 @@ def check(p: Parameters) -> str | None:
             f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
             f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
         )
+    if p.balls.spread < 1.0:
+        return f"balls.spread = {p.balls.spread:g} must be 1; the cage keeps the balls evenly spaced"
     return ball_bodies.problem(p) or friction_problem(p.cage_friction, "cage_friction")
 
 

@@ -35,7 +35,7 @@ from bearings.ball_bodies import (
     settle,
 )
 from bearings.balls import BallContacts, BallSet, Coordinates
-from bearings.contact import ContactLaw
+from bearings.contact import ContactLaw, damped
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
 from bearings.pair import OUTSIDE, Place, press
@@ -77,6 +77,7 @@ class Outputs(BallBodiesOutputs):
 class Derived(BallBodiesDerived):
     """What parameters fix."""
 
+    ball_contact: ContactLaw = group(ContactLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)
 
 
@@ -105,7 +106,7 @@ def _neighbour_contacts(y, dy, m):
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
         this, following = ball_motion(y, b, m), ball_motion(y, k, m)
-        c = press(following, this, at, OUTSIDE, p.ball_contact, d.ball_friction, grip)
+        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, grip)
         note(m.s.side, b, c.normal, c.tangential, at.indentation)
         push(dy, k, c.fx, c.fy, c.first_moment, m)
         push(dy, b, -c.fx, -c.fy, c.second_moment, m)
@@ -144,7 +145,8 @@ def report(y, m):
     ring.report(y, m, m.d.inner_radius)
     kinetic, potential = ball_bodies.report(y, m, neighbours=True)
     ball_bodies.state_contacts(o.neighbours, m.s.side, count)
-    ring.report_energy(y, m, kinetic, potential + ball_bodies.stored(m.s.side, p.ball_contact, count))
+    stored = ball_bodies.stored(m.s.side, p.ball_contact, count)
+    ring.report_energy(y, m, kinetic, potential + stored, p.ring.inertia)
 
 
 @kernel
@@ -191,6 +193,7 @@ def derive(p: Parameters) -> Derived:
     fields = ball_bodies.derived(p)
     return Derived(
         **fields,  # type: ignore[arg-type]
+        ball_contact=damped(p.ball_contact, b.ball_mass),
         ball_friction=prepared(p.ball_friction),
         side_grip=4.0 * (1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia),
         size=Coordinates(

@@ -18,6 +18,7 @@ from modelkit.kernel import kernel
 from modelkit.variables import as_record, integer, real
 
 SAMPLES = 20_000  # around a race, for the check of its curvature
+DENT_SAMPLES = 801  # across a worn dent; odd: one is its middle
 ROOM = 1.02  # radii of curvature of race and ball must differ by this factor where they nest
 
 
@@ -68,8 +69,11 @@ def _curvature(angles, radius, profile, dent):
 
 
 def curvature(radius: float, profile: RaceProfile, dent: float) -> np.ndarray:
-    """Curvature (1/m) around the race, positive where it bends like a circle."""
+    """Curvature (1/m) around the race and again across its dent, positive where it bends like a circle."""
     around = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
+    if profile.wear != 0.0:  # a dent may be narrower than the samples are apart
+        across = profile.wear_angle + profile.wear_width * np.linspace(-4.0, 4.0, DENT_SAMPLES)
+        around = np.concatenate([around, across])
     return _curvature(around, radius, as_record(profile), dent)
 
 
@@ -90,7 +94,8 @@ def problem(name: str, profile: RaceProfile, radius: float, ball_radius: float, 
     sharpest = float(np.max(bent)) if hollow else -float(np.min(bent))
     if sharpest * ball_radius * ROOM < 1.0:
         return None
-    cause = "wear" if profile.wear > abs(profile.amplitude) * profile.lobes**2 else "amplitude"
+    worn, lobed = profile.wear / profile.wear_width**2, abs(profile.amplitude) * profile.lobes**2
+    cause = "wear" if worn > lobed else "amplitude"
     value = getattr(profile, cause)
     return (
         f"{name}.{cause} = {value:g} m bends the race to a radius of {1.0 / sharpest:.3g} m, where a ball "

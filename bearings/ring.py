@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from bearings import seat
 from bearings.contact import elastic_energy
 from bearings.journal_contact import touch, watch_contact
+from bearings.pitch_circle import Gap
 from modelkit.kernel import kernel
 from modelkit.ports import Motion
 from modelkit.variables import real
@@ -72,10 +73,22 @@ def ring_motion(y):
 def journal_on_ring(y, m, grip=0.0):
     """The journal's `Touch` with the ring, remembered for `observe`."""
     p, journal = m.p, seat.journal_motion(y)
-    t = touch(journal, ring_motion(y), p.journal_radius, p.clearance, p.contact, m.d.friction, grip)
+    t = touch(journal, ring_motion(y), p.journal_radius, p.clearance, m.d.contact, m.d.friction, grip)
     r = m.s.ring
     r.normal, r.indentation, r.rate = t.normal, t.indentation, t.rate
     return t
+
+
+@kernel
+def gap(y):
+    """The ring as balls on the pitch circle meet it, from the housing's middle (`Gap`)."""
+    return Gap(
+        y[RX] - y[seat.HX],
+        y[RY] - y[seat.HY],
+        y[RVX] - y[seat.HVX],
+        y[RVY] - y[seat.HVY],
+        y[RW],
+    )
 
 
 @kernel
@@ -91,11 +104,13 @@ def accelerate(y, dy, m, journal, balls):
 
 
 @kernel
-def report_energy(y, m, kinetic, potential):
-    """Energy of the bearing; `kinetic` and `potential` (J) are those of balls and cage."""
+def report_energy(y, m, kinetic, potential, inertia):
+    """Energy of the bearing; `kinetic` and `potential` (J) are those of balls and cage, `inertia` (kg m2)
+    is what turns with the ring.
+    """
     p, o = m.p, m.o.energy
     speed2 = y[RVX] ** 2 + y[RVY] ** 2
-    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * p.ring.inertia * y[RW] ** 2
+    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * y[RW] ** 2
     o.potential = potential + elastic_energy(m.s.ring.indentation, p.contact)
     o.potential += p.ring.mass * p.gravity * y[RY]
     o.dissipated = y[LOSS]

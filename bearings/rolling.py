@@ -46,6 +46,7 @@ class RollingOutputs:
 class RollingDerived:
     """What parameters fix."""
 
+    contact: ContactLaw = group(ContactLaw)
     friction: FrictionLaw = group(FrictionLaw)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)

@@ -10,6 +10,8 @@ Deviations from the source, each named where it acts:
   is a plus.
 - A ball carried by the turning ring into the narrowing gap resists with the moment -F (e . t) about the
   bearing's centre. The source leaves it out; without it the model creates energy and angular momentum.
+- `slip = 1` (section 5.3) gives cage and balls coordinates of their own, driven by friction at both races
+  as in the cageless model; it takes the place of the friction moment.
 - Friction moment and gaps act at the ring's actual place, so that action equals reaction.
 """
 
@@ -23,9 +25,10 @@ import numpy as np
 from bearings import ring, seat
 from bearings.balls import MOST_BALLS, Coordinates, watch_balls
 from bearings.cage import Cage
-from bearings.contact import ContactLaw, elastic_energy, elastic_force
-from bearings.friction import prepared
+from bearings.contact import ContactLaw, damped, elastic_force
+from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
+from bearings.pitch_circle import Pressed, between_races, note
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -39,8 +42,10 @@ from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Load
-from modelkit.variables import array, group, real
+from modelkit.variables import array, group, integer, real
 
+CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
+ORBIT_SCALE = 100.0  # rad/s; of the cage
 ROLLING_EXPONENT = 0.55  # of the load over the static rating, in the friction moment
 
 
@@ -58,8 +63,15 @@ class Parameters(RollingParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
     damping: float = real(0.0, "N.s/m", "damping between the rings, also out of contact (2.7)", minimum=0.0)
+    slip: int = integer(
+        0,
+        "1: cage and balls may slip, driven by friction instead of following the ring",
+        minimum=0,
+        maximum=1,
+    )
     cage: Cage = group(Cage)
     rolling: Rolling = group(Rolling)
+    race_friction: FrictionLaw = group(FrictionLaw)
 
 
 @dataclass(frozen=True)
@@ -82,7 +94,13 @@ class Derived(RollingDerived):
     """What parameters fix."""
 
     race: ContactLaw = group(ContactLaw)
-    inertia: float = real(0.0, "kg.m2", "equivalent moment of inertia of the ring (4.3)")
+    race_friction: FrictionLaw = group(FrictionLaw)
+    mass: float = real(0.0, "kg", "of a ball")
+    ball_radius: float = real(0.0, "m", "of a ball")
+    pitch_radius: float = real(0.0, "m", "where ball centres run")
+    ring_inertia: float = real(0.0, "kg.m2", "what turns with the ring: without slip all of it (4.3)")
+    orbiting: float = real(0.0, "kg.m2", "moment of inertia of cage and balls about the middle")
+    spinning: float = real(0.0, "kg.m2", "moment of inertia of the balls about themselves")
     cage_ratio: float = real(0.0, "1", "cage speed over ring speed (4.2)")
     ball_ratio: float = real(0.0, "1", "ball spin over ring speed (4.2)")
     cosine: tuple = array(MOST_BALLS)
@@ -106,65 +124,95 @@ class Hidden(RollingMemory):
     balls: BallMemory = group(BallMemory)
 
 
-MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, ring.NEXT, derived=Derived, hidden=Hidden)
+MEMORY = memory_layout(
+    Parameters, seat.BearingInputs, Outputs, ring.NEXT + 3, derived=Derived, hidden=Hidden
+)
 
 
 @kernel
-def _ball_forces(ex, ey, ux, uy, cage_angle, m):
-    """Force on the ring (N) and moment about the cage (N m) by the balls; heat in W.
-
-    (ex, ey), (ux, uy): position and velocity of the ring from the housing.
-    """
+def _springs(gap, cage_angle, m):
+    """Balls that follow the ring without slip: (force on the ring, moment about the cage, heat)."""
     law, play, count = m.d.race, m.p.balls.play, m.p.balls.count
-    s = m.s.balls
-    s.loaded, s.force, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
-    if play >= 0.0 and ex * ex + ey * ey <= play * play:
+    if play >= 0.0 and gap.ex * gap.ex + gap.ey * gap.ey <= play * play:
         return fx, fy, moment, heat
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     for b in range(count):
         c0, s0 = m.d.cosine[b], m.d.sine[b]
         nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-        indentation = ex * nx + ey * ny - play
+        indentation = gap.ex * nx + gap.ey * ny - play
         if indentation <= 0.0:
             continue
-        rate = ux * nx + uy * ny
+        rate = gap.ux * nx + gap.uy * ny
         elastic = elastic_force(indentation, law)
         force = max(elastic + law.damping * indentation * rate, 0.0)
         fx -= force * nx
         fy -= force * ny
         # the ball moves along t = (-ny, nx) into the narrowing gap, which the source leaves out
-        moment -= elastic * (ey * nx - ex * ny)
+        moment -= elastic * (gap.ey * nx - gap.ex * ny)
         heat += (force - elastic) * rate
-        s.loaded += 1.0
-        s.energy += 0.4 * elastic * indentation
-        if force > s.force:
-            s.force = force
-        if indentation > s.indentation:
-            s.indentation = indentation
+        note(m.s.balls, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
     return fx, fy, moment, heat
 
 
 @kernel
-def react(t, y, dy, m):
-    """Derivative of the ring's motion, and the load on journal and housing."""
+def _rolling(y, dy, gap, m):
+    """Ring, cage and balls turn as one (4.2): (force on the ring, heat)."""
     p, d = m.p, m.d
-    j = ring.journal_on_ring(y, m)
-    ex, ey = y[ring.RX] - y[seat.HX], y[ring.RY] - y[seat.HY]
-    ux, uy = y[ring.RVX] - y[seat.HVX], y[ring.RVY] - y[seat.HVY]
-    bx, by, wedge, heat = _ball_forces(ex, ey, ux, uy, d.cage_ratio * y[ring.RANGLE], m)
+    bx, by, wedge, heat = _springs(gap, d.cage_ratio * y[ring.RANGLE], m)
     load = math.sqrt(bx * bx + by * by)
     moment = p.rolling.f1 * (load / p.rolling.static_rating) ** ROLLING_EXPONENT * load
     moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * y[ring.RW] * d.inner_radius)
-    bx -= p.damping * ux
-    by -= p.damping * uy
+    dy[ring.RW] = (d.cage_ratio * wedge - moment) / d.ring_inertia
+    return bx, by, heat + moment * y[ring.RW]
+
+
+@kernel
+def _slipping(y, dy, gap, m):
+    """Cage and balls turn on their own, driven by friction: (force on the ring, heat).
+
+    The cage keeps the balls on their places on the pitch circle; all share one spin.
+    """
+    p, d, count = m.p, m.d, m.p.balls.count
+    orbit, spin = y[CAGE_SPEED], y[BALL_SPIN]
+    ca, sa = math.cos(y[CAGE_ANGLE]), math.sin(y[CAGE_ANGLE])
+    fx, fy, moment, along, turning, heat = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for b in range(count):
+        c0, s0 = d.cosine[b], d.sine[b]
+        c, s = ca * c0 - sa * s0, sa * c0 + ca * s0
+        ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, m)
+        if ball.indentation > 0.0:
+            note(m.s.balls, ball)
+            fx -= ball.force * c - ball.inner * s
+            fy -= ball.force * s + ball.inner * c
+            moment -= ball.inner * ball.lever
+        along += ball.inner + ball.outer - ball.wedge - p.gravity * d.mass * c
+        turning += ball.outer - ball.inner
+        heat += ball.heat
+    dy[CAGE_ANGLE] = orbit
+    dy[CAGE_SPEED] = d.pitch_radius * along / d.orbiting
+    dy[BALL_SPIN] = d.ball_radius * turning / d.spinning
+    dy[ring.RW] = moment / d.ring_inertia
+    return fx, fy, heat
+
+
+@kernel
+def react(t, y, dy, m):
+    """Derivative of what is inside, and the load on journal and housing."""
+    p, s = m.p, m.s.balls
+    s.loaded, s.force, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0
+    j = ring.journal_on_ring(y, m)
+    gap = ring.gap(y)
+    bx, by, heat = _slipping(y, dy, gap, m) if p.slip == 1 else _rolling(y, dy, gap, m)
+    bx -= p.damping * gap.ux
+    by -= p.damping * gap.uy
     dy[ring.RX] = y[ring.RVX]
     dy[ring.RY] = y[ring.RVY]
     dy[ring.RVX] = (bx - j.fx) / p.ring.mass
     dy[ring.RVY] = (by - j.fy) / p.ring.mass - p.gravity
     dy[ring.RANGLE] = y[ring.RW]
-    dy[ring.RW] = (j.ring_moment + d.cage_ratio * wedge - moment) / d.inertia
-    dy[ring.LOSS] = j.loss + heat + moment * y[ring.RW] + p.damping * (ux * ux + uy * uy)
+    dy[ring.RW] += j.ring_moment / m.d.ring_inertia
+    dy[ring.LOSS] = j.loss + heat + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
     return Load(j.fx, j.fy, j.journal_moment, -bx, -by)
 
 
@@ -188,13 +236,14 @@ def report(y, m):
     ring.report(y, m, d.inner_radius)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force, s.indentation
-    o.speed.cage = d.cage_ratio * y[ring.RW] * 0.5 * p.balls.pitch_diameter
-    o.speed.ball = abs(d.ball_ratio * y[ring.RW]) * 0.5 * p.balls.diameter
-    speed2 = y[ring.RVX] ** 2 + y[ring.RVY] ** 2
-    o.energy.kinetic = 0.5 * p.ring.mass * speed2 + 0.5 * d.inertia * y[ring.RW] ** 2
-    stored = s.energy + elastic_energy(m.s.ring.indentation, p.contact)
-    o.energy.potential = stored + p.ring.mass * p.gravity * y[ring.RY]
-    o.energy.dissipated = y[ring.LOSS]
+    cage, spin = d.cage_ratio * y[ring.RW], d.ball_ratio * y[ring.RW]
+    inside = 0.0
+    if p.slip == 1:
+        cage, spin = y[CAGE_SPEED], y[BALL_SPIN]
+        inside = 0.5 * d.orbiting * cage**2 + 0.5 * d.spinning * spin**2
+    o.speed.cage = cage * d.pitch_radius
+    o.speed.ball = abs(spin) * d.ball_radius
+    ring.report_energy(y, m, inside, s.energy, d.ring_inertia)
 
 
 @kernel
@@ -235,15 +284,23 @@ def derive(p: Parameters) -> Derived:
     cage_inertia = p.cage.mass * b.pitch_radius**2
     orbiting = cage_inertia + b.count * b.ball_mass * b.pitch_radius**2
     spinning = b.count * b.ball_inertia
+    carried = 0.0 if p.slip else orbiting * cage_ratio**2 + spinning * ball_ratio**2
     angles = b.angles()
     rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
     unused = [0.0] * (MOST_BALLS - b.count)
     return Derived(
+        contact=damped(p.contact, p.ring.mass),
         friction=prepared(p.friction),
-        race=ContactLaw(stiffness=b.series_stiffness(), damping=b.damping),
+        race=b.race_law(b.series_stiffness()),
         stiffness=race_stiffness(b),
-        size=Coordinates(coordinates=5, rings=b.count),
-        inertia=p.ring.inertia + orbiting * cage_ratio**2 + spinning * ball_ratio**2,
+        size=Coordinates(coordinates=5 + 2 * p.slip, rings=b.count),
+        race_friction=prepared(p.race_friction),
+        mass=b.ball_mass,
+        ball_radius=b.ball_radius,
+        pitch_radius=b.pitch_radius,
+        ring_inertia=p.ring.inertia + carried,
+        orbiting=orbiting,
+        spinning=spinning,
         cage_ratio=cage_ratio,
         ball_ratio=ball_ratio,
         inner_radius=b.inner_radius,
@@ -256,12 +313,19 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return p.balls.problem() or friction_problem(p.friction, "friction")
+    if p.balls.spread < 1.0:
+        return f"balls.spread = {p.balls.spread:g} must be 1; the cage keeps the balls evenly spaced"
+    return (
+        p.balls.problem()
+        or friction_problem(p.friction, "friction")
+        or friction_problem(p.race_friction, "race_friction")
+    )
 
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    return seat.weights(ring.error_weights())
+    slipping = [p.balls.pitch_radius / seat.POSITION_SCALE, 1.0 / ORBIT_SCALE, 1.0 / seat.SPIN_SCALE]
+    return seat.weights(ring.error_weights() + (slipping if p.slip else []))
 
 
 MODEL = Model(

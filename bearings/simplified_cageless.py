@@ -10,12 +10,15 @@ inner and outer race:
 
     r_m m gamma'' = mu(s_i) F + mu(s_o) F_o + H_b - H_(b+1) - g m cos(gamma) - F (e . t)/r_m     (2.10)
     I theta''     = r_b (mu(s_o) F_o - mu(s_i) F) - r_b mu_bb (H_b + H_(b+1))                      (2.11)
-    F_o           = F + r_m m gamma'^2                                                            (2.9)
+
+with F and F_o as in `bearings.pitch_circle`.
 
 Deviations from the source, each named where it acts:
 - (2.10) as printed has a further term mu r_b/r_m (F + F_o), which counts the contact moment twice;
   `as_printed` adds it (a passive bearing then loses angular momentum to nowhere).
-- A ball driven into the narrowing gap resists with -F (e . t)/r_m; without it the model creates energy.
+- A ball driven into the narrowing gap resists with -F (e . t)/r_m.
+- (5.1), the pitch radius corrected for indentation, is an option (`corrected_pitch`); as printed its signs
+  take a loaded ball inwards, where the ring presses it outwards, into the outer race.
 - Friction on a ball reacts on the rings as a force, too, so that action equals reaction.
 - Neighbours push along the chord between their centres.
 - Balls have no inertia or weight across the race: what (2.9) adds at the outer race loads friction, not
@@ -34,9 +37,10 @@ import numpy as np
 
 from bearings import ring, seat
 from bearings.balls import MOST_BALLS, BallContacts, BallSet, Coordinates, watch_balls, watch_contacts
-from bearings.contact import ContactLaw, elastic_energy, elastic_force, normal_force
+from bearings.contact import ContactLaw, damped, elastic_energy, elastic_force, normal_force
 from bearings.friction import FrictionLaw, coefficient, prepared, slope
 from bearings.friction import problem as friction_problem
+from bearings.pitch_circle import between_races, note
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -56,6 +60,8 @@ BALLS = ring.NEXT  # three components a ball from here: attitude angle, its rate
 BALL_SPIN_SCALE = 1e3  # rad/s
 ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
 
+NOMINAL, CORRECTED, AS_PRINTED = range(3)
+
 
 @dataclass(frozen=True)
 class Parameters(RollingParameters):
@@ -66,6 +72,13 @@ class Parameters(RollingParameters):
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = integer(
         0, "1: (2.10) with its last friction term as printed, which breaks momentum", minimum=0, maximum=1
+    )
+    corrected_pitch: int = integer(
+        NOMINAL,
+        "radius on which balls run: 0 the pitch circle's, 1 corrected for indentation and play, "
+        "2 corrected with the signs of (5.1) as printed",
+        minimum=0,
+        maximum=2,
     )
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
@@ -94,12 +107,14 @@ class Derived(RollingDerived):
 
     race: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
+    ball_contact: ContactLaw = group(ContactLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)
     mass: float = real(0.0, "kg", "of a ball")
     inertia: float = real(0.0, "kg.m2", "of a ball")
     ball_radius: float = real(0.0, "m", "of a ball")
     pitch_radius: float = real(0.0, "m", "where ball centres run")
     touch_angle: float = real(0.0, "rad", "between neighbours that just touch")
+    outer_share: float = real(0.0, "1", "of the rings' approach, at the outer race")
     angles: tuple = array(MOST_BALLS)
 
 
@@ -128,53 +143,43 @@ MEMORY = memory_layout(
 
 
 @kernel
+def _pitch_radius(gap, c, sn, m):
+    """Radius on which a ball's centre runs (m): the pitch circle's, or as (5.1) corrects it."""
+    p, d = m.p, m.d
+    if p.corrected_pitch == NOMINAL:
+        return d.pitch_radius
+    approach = max(gap.ex * c + gap.ey * sn - p.balls.play, 0.0)
+    if p.corrected_pitch == AS_PRINTED:
+        return d.pitch_radius - 0.5 * approach
+    return d.pitch_radius + 0.5 * p.balls.play + d.outer_share * approach
+
+
+@kernel
 def _race_forces(y, dy, m):
     """Ring against balls against housing: (force on the ring x, y; moment on it; heat).
 
     Sets the derivatives of the balls' angles, speeds and spins as far as races and gravity go.
     """
-    p, d, s = m.p, m.d, m.s.balls
-    law, play, rm, rb, ri = d.race, p.balls.play, d.pitch_radius, d.ball_radius, d.inner_radius
-    ex, ey = y[ring.RX] - y[seat.HX], y[ring.RY] - y[seat.HY]
-    ux, uy = y[ring.RVX] - y[seat.HVX], y[ring.RVY] - y[seat.HVY]
-    reach = play <= 0.0 or ex * ex + ey * ey > play * play
+    p, d = m.p, m.d
+    gap = ring.gap(y)
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     for b in range(p.balls.count):
         i = BALLS + 3 * b
         c, sn = math.cos(y[i]), math.sin(y[i])
-        orbit, spin = y[i + 1], y[i + 2]
-        v = rm * orbit
-        elastic, force, inner, wedge = 0.0, 0.0, 0.0, 0.0
-        if reach:
-            indentation = ex * c + ey * sn - play
-            if indentation > 0.0:
-                rate = ux * c + uy * sn
-                elastic = elastic_force(indentation, law)
-                force = max(elastic + law.damping * indentation * rate, 0.0)
-                lever = ri - ex * c - ey * sn  # from the ring's centre, which stands off by e
-                sliding = y[ring.RW] * lever + uy * c - ux * sn - v + rb * spin
-                inner = coefficient(sliding, d.race_friction) * force
-                wedge = elastic * (ey * c - ex * sn) / rm
-                fx -= force * c - inner * sn
-                fy -= force * sn + inner * c
-                moment -= inner * lever
-                heat += inner * sliding + (force - elastic) * rate
-                s.loaded += 1.0
-                s.energy += 0.4 * elastic * indentation
-                if force > s.force:
-                    s.force = force
-                if indentation > s.indentation:
-                    s.indentation = indentation
-        pressed = force + rm * d.mass * orbit * orbit
-        back = -(v + rb * spin)
-        outer = coefficient(back, d.race_friction) * pressed
-        heat += outer * back
-        along = inner + outer - wedge - p.gravity * d.mass * c
+        rm = _pitch_radius(gap, c, sn, m)
+        ball = between_races(gap, c, sn, y[i + 1], y[i + 2], rm, m)
+        if ball.indentation > 0.0:
+            note(m.s.balls, ball)
+            fx -= ball.force * c - ball.inner * sn
+            fy -= ball.force * sn + ball.inner * c
+            moment -= ball.inner * ball.lever
+        heat += ball.heat
+        along = ball.inner + ball.outer - ball.wedge - p.gravity * d.mass * c
         if p.as_printed == 1:
-            along += (outer - inner) * rb / rm
-        dy[i] = orbit
+            along += (ball.outer - ball.inner) * d.ball_radius / rm
+        dy[i] = y[i + 1]
         dy[i + 1] = along / (rm * d.mass)
-        dy[i + 2] = rb * (outer - inner) / d.inertia
+        dy[i + 2] = d.ball_radius * (ball.outer - ball.inner) / d.inertia
     return fx, fy, moment, heat
 
 
@@ -195,7 +200,7 @@ def _neighbour_forces(y, dy, m):
         lever = rm * math.cos(half)
         rate = lever * (y[i + 1] - y[k + 1])
         elastic = elastic_force(overlap, p.ball_contact)
-        force = normal_force(overlap, rate, p.ball_contact)
+        force = normal_force(overlap, rate, d.ball_contact)
         sliding = rb * (y[i + 2] + y[k + 2])
         rub = coefficient(sliding, d.ball_friction) * force
         push = force * lever / (rm * rm * d.mass)
@@ -264,11 +269,8 @@ def report(y, m):
         spin += abs(y[i + 2])
     o.speed.orbit = orbit / p.balls.count * d.pitch_radius
     o.speed.ball = spin / p.balls.count * d.ball_radius
-    speed2 = y[ring.RVX] ** 2 + y[ring.RVY] ** 2
-    o.energy.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * p.ring.inertia * y[ring.RW] ** 2
-    stored = s.energy + elastic_energy(m.s.ring.indentation, p.contact)
-    o.energy.potential = stored + p.gravity * (p.ring.mass * y[ring.RY] + d.mass * height)
-    o.energy.dissipated = y[ring.LOSS]
+    height *= p.gravity * d.mass
+    ring.report_energy(y, m, kinetic, s.energy + height, p.ring.inertia)
 
 
 @kernel
@@ -387,10 +389,12 @@ def derive(p: Parameters) -> Derived:
     b = p.balls
     rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
     return Derived(
+        contact=damped(p.contact, p.ring.mass),
         friction=prepared(p.friction),
         race_friction=prepared(p.race_friction),
+        ball_contact=damped(p.ball_contact, b.ball_mass),
         ball_friction=prepared(p.ball_friction),
-        race=ContactLaw(stiffness=b.series_stiffness(), damping=b.damping),
+        race=b.race_law(b.series_stiffness()),
         stiffness=race_stiffness(b),
         size=Coordinates(coordinates=5 + 2 * b.count, ball_ball=b.count, rings=b.count),
         mass=b.ball_mass,
@@ -399,6 +403,7 @@ def derive(p: Parameters) -> Derived:
         pitch_radius=b.pitch_radius,
         inner_radius=b.inner_radius,
         touch_angle=b.touch_angle,
+        outer_share=b.outer_share,
         rest_x=rest_x,
         rest_y=rest_y,
         angles=tuple(b.angles() + [0.0] * (MOST_BALLS - b.count)),

@@ -65,6 +65,16 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--quiet", action="store_true", help="no progress bar")
     run.set_defaults(run=_run)
 
+    bearings = verbs.add_parser(
+        "compare-bearings", help="the four bearing models side by side, against the source's Tables 5 to 7"
+    )
+    bearings.add_argument("--duration", default="5 s", help='of each drop (default: "5 s")')
+    bearings.add_argument("--ensemble", default="5", metavar="N", help="drops per model (default: 5)")
+    bearings.add_argument("--options", action="store_true", help="also what the models' options change")
+    bearings.add_argument("-o", "--output", type=Path, default=Path("runs/bearings"), help="folder")
+    bearings.add_argument("--quiet", action="store_true", help="no progress bar")
+    bearings.set_defaults(run=_compare_bearings)
+
     build = verbs.add_parser("build", help="build the FMUs")
     build.add_argument("names", nargs="*", help="FMUs to build (default: all)")
     build.add_argument("-o", "--output", type=Path, default=Path("build"), help="folder (default: build)")
@@ -133,6 +143,28 @@ def _run(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return 130 if result.stopped_because == "interrupted" else STOPPED
+    return 0
+
+
+def _compare_bearings(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from master.bearing_comparison import OPTIONS, SCENES, compare
+    from master.run import make_writable
+    from master.units import to_si
+
+    duration = to_si(options.duration, "s", "--duration")
+    members = to_si(options.ensemble, "1", "--ensemble")
+    if duration <= 0.0:
+        raise TouchdownError(f"--duration {options.duration} must be above 0 s")
+    if members < 1.0 or members != int(members):
+        raise TouchdownError(f"--ensemble {options.ensemble} must be a whole number above 0")
+    make_writable(options.output)
+    total = int(members) * len(SCENES) + (len(OPTIONS) if options.options else 0)
+    with tqdm(total=total, desc="drops", disable=options.quiet, leave=False) as bar:
+        text = compare(duration, int(members), options.options, options.output, bar.update)
+    print(text, end="")
+    print(f"results in {options.output}")
     return 0
 
 

@@ -24,6 +24,7 @@ class Solution:
     time: np.ndarray  # s, from the scene's zero
     series: dict[str, np.ndarray]
     evaluations: int
+    states: dict[str, np.ndarray]  # of each component, one row per time
 
 
 class Monolith:
@@ -142,4 +143,6 @@ class Monolith:
             for name in watched:
                 component, _, variable = name.partition(".")
                 series[name].append(self._twins[component].read([variable])[0])
-        return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations)
+        rows = np.array(states)
+        parts = {name: rows[:, part] for name, part in self._parts.items()}
+        return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations, parts)

@@ -41,7 +41,7 @@ def run_scene(
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
     """
-    _make_writable(folder)
+    make_writable(folder)
     with interrupts_noted():
         system = open_system(scene, in_process)
         try:
@@ -82,7 +82,8 @@ def _write_results(
         recording.close()
 
 
-def _make_writable(folder: Path) -> None:
+def make_writable(folder: Path) -> None:
+    """Make `folder` and see that files can be written into it. Raises TouchdownError where not."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         probe = folder / ".touchdown"

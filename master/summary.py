@@ -34,11 +34,18 @@ FIGURES = (
     Figure("peak_contact_force_N", "contact.peak_force"),
     Figure("peak_indentation_rotor_ring_um", "contact.peak_indentation", 1e6),
     Figure("peak_indentation_rings_um", "balls.peak_indentation", 1e6),
-    Figure("peak_ball_force_N", "balls.peak_force"),
+    Figure("peak_indentation_ball_inner_um", "inner.peak_indentation", 1e6),
+    Figure("peak_indentation_ball_outer_um", "outer.peak_indentation", 1e6),
     Figure("peak_indentation_ball_ball_um", "neighbours.peak_indentation", 1e6),
+    Figure("peak_indentation_ball_cage_um", "pockets.peak_indentation", 1e6),
+    Figure("peak_ball_force_N", "balls.peak_force"),
+    Figure("first_impact_ball_force_N", "balls.first_impact_force"),
+    Figure("peak_neighbour_force_N", "neighbours.peak_force"),
+    Figure("peak_cage_force_N", "pockets.peak_force"),
     Figure("ring_sync_time_s", "ring.sync_time", from_zero=True, missing=-1.0),
     Figure("loaded_balls_end", "balls.loaded"),
 )
+LAST_PART = 0.2  # of a run, for means
 
 
 ENERGIES = (
@@ -112,7 +119,12 @@ def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dic
         first = touched - outcome.zero
         settled = time >= first + 0.2 * (outcome.end - outcome.zero - first)
         frequency = dominant_frequency(time[settled], x[settled])
-    return {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
+    loaded = None
+    if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
+        last = time >= outcome.end - outcome.zero - LAST_PART * outcome.end
+        loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
+    found: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
+    return found if loaded is None else {"loaded_balls_mean": loaded} | found
 
 
 def dominant_frequency(
