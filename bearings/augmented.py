@@ -145,6 +145,6 @@ class AugmentedBearing:
             journal["mz"],
             housing["fx"] + support[0],
             housing["fy"] + support[1],
-            float(np.sum(m["s"]["outer"]["moment"])),
+            float(m["s"]["outer_moment"]),
         ]
         return np.concatenate([outside, self.mass[6:] * dy[self._rates]])

@@ -19,6 +19,7 @@ from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
 from bearings.pair import INSIDE, OUTSIDE
 from bearings.race_contacts import (
+    LANES,
     Balls,
     Contacts,
     Race,
@@ -26,6 +27,7 @@ from bearings.race_contacts import (
     find_on_curve,
     loss_now,
     press_race,
+    rounded,
 )
 from bearings.race_profile import RaceProfile
 from bearings.rolling import (
@@ -42,7 +44,7 @@ from modelkit.variables import array, group, groups, integer, real
 BALLS = ring.NEXT  # from here each component of all balls in turn,
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # in this order
 SIZE = 6
-MOST_STATES = BALLS + SIZE * (MOST_BALLS + 1)  # with a cage
+MOST_STATES = BALLS + SIZE * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
 
 
 @dataclass(frozen=True)
@@ -133,9 +135,10 @@ class BallBodiesMemory(RollingMemory):
     inner: Contacts = group(Contacts)
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)
-    step: float = real(0.0, "s", "length of the micro-step, for grip; 0: friction as it stands")
+    step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
     race_loss: float = real(0.0, "W", "heat of the race contacts at the last evaluation")
     outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
+    outer_moment: float = real(0.0, "N.m", "of the balls on the outer ring, about its centre")
     inner_starts: tuple = array(2 * MOST_BALLS)
     outer_starts: tuple = array(2 * MOST_BALLS)
     search: SearchReport = group(SearchReport)
@@ -174,7 +177,7 @@ def note(contacts, b, normal, tangential, indentation):
 
 @kernel
 def _one_race(balls, body, angle, race, profile, starts, contacts, m):
-    n = m.p.balls.count
+    n = rounded(m.p.balls.count)
     if m.d.searched == 1:
         find_on_curve(balls, body, angle, race, profile, starts, m.s.search, contacts)
     else:
@@ -201,6 +204,7 @@ def race_contacts(y, dy, m):
     angle = y[ring.RANGLE]
     inner = _one_race(balls, inner_ring, angle, at_inner, p.inner_profile, s.inner_starts, s.inner, m)
     s.race_loss = inner.loss + outer.loss
+    s.outer_moment = outer.moment
     _accelerate(balls, dy, m)
     return inner, outer
 

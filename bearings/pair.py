@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from bearings.contact import normal_and_elastic
-from bearings.friction import coefficient_and_slope
+from bearings.friction import coefficient
 from modelkit.kernel import kernel, woven
 
 INSIDE = 1.0  # the first body lies in a hollow of the second: it presses outwards
@@ -55,30 +55,26 @@ def slip(first, second, place, side):
 
 
 @woven
-def softened(mu, slope, normal, grip):
-    """Friction (N) along t that an explicit step can follow.
+def friction_force(sliding, mu, normal, grip):
+    """Friction (N) along t: the law's, -mu N (2.39), but no more than stops the sliding within a step.
 
-    A contact whose sliding speed answers a tangential force with the acceleration w (1/kg) gets, with
-    grip = h w (s/kg) for a step of h seconds,
-
-        T = -mu(v) N / (1 + grip mu'(v) N)
-
-    which takes the speed to zero where the law would overshoot, and is the law itself for h to 0. With
-    grip = 0 the law holds as it stands (2.39).
+    A contact whose sliding speed v answers a tangential force with the acceleration w (1/kg) is stopped
+    in h seconds by |v|/(h w); `grip` is h w (s/kg). What an explicit step would take past zero sticks
+    instead, however steep the law; where the step resolves it, the law holds. With grip = 0 it always does.
     """
-    return -mu * normal / (1.0 + grip * slope * normal)
+    force = -mu * normal
+    return force if grip * abs(force) <= abs(sliding) else -sliding / grip
 
 
 @kernel
 def press(first, second, place, side, law, friction, grip):
     """Contact of two bodies (Motion) at `place`, for an indentation above zero.
 
-    side: INSIDE or OUTSIDE; law, friction: records; grip: as for `softened`. Returns a `Press`.
+    side: INSIDE or OUTSIDE; law, friction: records; grip: as for `friction_force`. Returns a `Press`.
     """
     sliding, rate = slip(first, second, place, side)
     normal, elastic = normal_and_elastic(place.indentation, rate, law)
-    mu, slope = coefficient_and_slope(sliding, friction)
-    tangential = softened(mu, slope, normal, grip)
+    tangential = friction_force(sliding, coefficient(sliding, friction), normal, grip)
     along = -side * normal
     return Press(
         along * place.nx - tangential * place.ny,

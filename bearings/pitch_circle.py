@@ -13,11 +13,13 @@ the model creates energy.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from bearings.contact import elastic_force
 from bearings.friction import coefficient
 from modelkit.kernel import kernel
+from modelkit.variables import real
 
 
 class Gap(NamedTuple):
@@ -41,6 +43,16 @@ class Pressed(NamedTuple):
     wedge: float  # of the narrowing gap on the ball, against t
     lever: float  # of the inner contact from the ring's centre, m
     heat: float
+
+
+@dataclass(frozen=True)
+class LoadedBalls:
+    """Balls pressed by both rings, at the last evaluation."""
+
+    loaded: float = real(0.0, "1", "how many")
+    force: float = real(0.0, "N", "largest")
+    indentation: float = real(0.0, "m", "largest")
+    energy: float = real(0.0, "J", "stored in the contacts")
 
 
 @kernel
@@ -67,10 +79,16 @@ def between_races(gap, c, s, orbit, spin, rm, m):
 
 @kernel
 def note(s, ball):
-    """Count a loaded ball in the memory `s`: how many, energy, largest force and approach."""
+    """Count a loaded ball in `s` (LoadedBalls); ball: Pressed."""
     s.loaded += 1.0
     s.energy += 0.4 * ball.elastic * ball.indentation
     if ball.force > s.force:
         s.force = ball.force
     if ball.indentation > s.indentation:
         s.indentation = ball.indentation
+
+
+@kernel
+def clear(s):
+    """Forget the loaded balls."""
+    s.loaded, s.force, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0

@@ -2,7 +2,8 @@
 
 The same contact as `bearings.pair.press`, for all balls at once: the loops below hold no branches and no
 calls of the mathematical library, so that the compiler turns them into vector code. They make up most
-of a detailed bearing's cost.
+of a detailed bearing's cost. Vector code takes `LANES` balls at a time and is slow on what is left over,
+so the loops may run past the last ball (`rounded`); what lies there does not matter.
 """
 
 from __future__ import annotations
@@ -15,10 +16,13 @@ from bearings.balls import MOST_BALLS
 from bearings.contact import hertz
 from bearings.contact_search import race_place
 from bearings.friction import MAKKAR, coefficient_and_slope, curve, makkar
-from bearings.pair import Place, slip, softened
+from bearings.pair import Place, friction_force, slip
 from modelkit.kernel import inlined, kernel
 from modelkit.ports import Motion
 from modelkit.variables import array
+
+LANES = 16  # as compiled for 512 bit; half of it is in use at 256
+SPARE = 2  # balls left over that are quicker alone than with company
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,13 @@ class Total(NamedTuple):
 
 
 @kernel
+def rounded(count):
+    """How many balls the loops run over for `count`; all arrays have room for `MOST_BALLS`."""
+    left = count % LANES
+    return count if left <= SPARE else count - left + LANES
+
+
+@kernel
 def find_on_circle(balls, ring, race, nx, ny, indentation, second, across):
     """Places of all balls on a circular race around `ring` (Motion)."""
     reach = race.side * balls.radius
@@ -105,8 +116,8 @@ def _press_all(law, balls, ring, race, friction, nx, ny, indentation, second, ac
         place = Place(nx[b], ny[b], indentation[b], reach, second[b], across[b])
         sliding, rate = slip(ball, ring, place, race.side)
         normal, elastic, stiff = hertz(place.indentation, rate, race.stiffness, race.damping)
-        mu, slope = law(sliding, friction)
-        tangential = softened(mu, slope, normal, race.grip)
+        mu, _ = law(sliding, friction)
+        tangential = friction_force(sliding, mu, normal, race.grip)
         along = -race.side * normal
         fx[b] = along * place.nx - tangential * place.ny
         fy[b] = along * place.ny + tangential * place.nx
@@ -131,7 +142,7 @@ def _press_any(balls, ring, race, friction, nx, ny, indentation, second, across,
 @kernel
 def press_race(balls, ring, race, friction, s):
     """Forces of all balls on a race around `ring` (Motion), from the places in `s` (Contacts)."""
-    n = len(balls.x)
+    n = rounded(len(balls.x))
     nx, ny, indentation, second, across = s.nx[:n], s.ny[:n], s.indentation[:n], s.second[:n], s.across[:n]
     forces = s.fx[:n], s.fy[:n], s.moment[:n], s.normal[:n], s.tangential[:n]
     out = (*forces, s.stiffness[:n], s.damped[:n], s.loss[:n])
@@ -140,7 +151,7 @@ def press_race(balls, ring, race, friction, s):
     else:
         _press_any(balls, ring, race, friction, nx, ny, indentation, second, across, out)
     fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
-    for b in range(n):
+    for b in range(len(balls.x)):
         fx -= s.fx[b]
         fy -= s.fy[b]
         moment += s.moment[b]

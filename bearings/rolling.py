@@ -76,7 +76,9 @@ GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls
 
 def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:
     """Initial dependencies of a rolling bearing's outputs; `counted`: what of `Coordinates` it counts."""
-    known = {f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")}
+    known: dict[str, tuple[str, ...]] = {
+        f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")
+    }
     return known | {f"size.{name}": ("balls.count",) for name in counted}
 
 

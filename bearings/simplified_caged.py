@@ -28,7 +28,7 @@ from bearings.cage import Cage
 from bearings.contact import ContactLaw, damped, elastic_force
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import Pressed, between_races, note
+from bearings.pitch_circle import LoadedBalls, Pressed, between_races, clear, note
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -108,20 +108,10 @@ class Derived(RollingDerived):
 
 
 @dataclass(frozen=True)
-class BallMemory:
-    """Loaded balls at the last evaluation."""
-
-    loaded: float = real(0.0, "1", "how many")
-    force: float = real(0.0, "N", "largest")
-    indentation: float = real(0.0, "m", "largest")
-    energy: float = real(0.0, "J", "stored in them")
-
-
-@dataclass(frozen=True)
 class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
-    balls: BallMemory = group(BallMemory)
+    balls: LoadedBalls = group(LoadedBalls)
 
 
 MEMORY = memory_layout(
@@ -199,8 +189,8 @@ def _slipping(y, dy, gap, m):
 @kernel
 def react(t, y, dy, m):
     """Derivative of what is inside, and the load on journal and housing."""
-    p, s = m.p, m.s.balls
-    s.loaded, s.force, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0
+    p = m.p
+    clear(m.s.balls)
     j = ring.journal_on_ring(y, m)
     gap = ring.gap(y)
     bx, by, heat = _slipping(y, dy, gap, m) if p.slip == 1 else _rolling(y, dy, gap, m)

@@ -40,7 +40,7 @@ from bearings.balls import MOST_BALLS, BallContacts, BallSet, Coordinates, watch
 from bearings.contact import ContactLaw, damped, elastic_energy, elastic_force, normal_force
 from bearings.friction import FrictionLaw, coefficient, prepared, slope
 from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import between_races, note
+from bearings.pitch_circle import LoadedBalls, between_races, clear, note
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -119,22 +119,20 @@ class Derived(RollingDerived):
 
 
 @dataclass(frozen=True)
-class BallMemory:
-    """Balls at the last evaluation."""
+class PushedBalls:
+    """Balls that push each other, at the last evaluation."""
 
-    loaded: float = real(0.0, "1", "how many")
     force: float = real(0.0, "N", "largest")
-    indentation: float = real(0.0, "m", "largest")
+    overlap: float = real(0.0, "m", "largest")
     energy: float = real(0.0, "J", "stored in the contacts")
-    pushed: float = real(0.0, "N", "largest between neighbours")
-    overlap: float = real(0.0, "m", "largest between neighbours")
 
 
 @dataclass(frozen=True)
 class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
-    balls: BallMemory = group(BallMemory)
+    balls: LoadedBalls = group(LoadedBalls)
+    pushed: PushedBalls = group(PushedBalls)
 
 
 MEMORY = memory_layout(
@@ -186,7 +184,7 @@ def _race_forces(y, dy, m):
 @kernel
 def _neighbour_forces(y, dy, m):
     """Each ball against the next one; adds to the derivatives, returns the heat."""
-    p, d, s = m.p, m.d, m.s.balls
+    p, d, s = m.p, m.d, m.s.pushed
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
     heat = 0.0
     for b in range(count):
@@ -210,8 +208,8 @@ def _neighbour_forces(y, dy, m):
         dy[k + 2] -= rb * rub / d.inertia
         heat += rub * sliding + (force - elastic) * rate
         s.energy += elastic_energy(overlap, p.ball_contact)
-        if force > s.pushed:
-            s.pushed = force
+        if force > s.force:
+            s.force = force
         if overlap > s.overlap:
             s.overlap = overlap
     return heat
@@ -220,9 +218,9 @@ def _neighbour_forces(y, dy, m):
 @kernel
 def react(t, y, dy, m):
     """Derivative of ring and balls, and the load on journal and housing."""
-    p, s = m.p, m.s.balls
-    s.loaded, s.force, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0
-    s.pushed, s.overlap = 0.0, 0.0
+    p, s = m.p, m.s.pushed
+    clear(m.s.balls)
+    s.force, s.overlap, s.energy = 0.0, 0.0, 0.0
     j = ring.journal_on_ring(y, m)
     bx, by, moment, heat = _race_forces(y, dy, m)
     heat += _neighbour_forces(y, dy, m)
@@ -246,9 +244,8 @@ def rhs(t, y, dy, m):
 def observe(t, y, m):
     """Peaks and events, after each accepted micro-step."""
     ring.watch(t, y, m)
-    s = m.s.balls
-    watch_balls(s.force, s.indentation, m)
-    watch_contacts(s.pushed, s.overlap, m.o.neighbours)
+    watch_balls(m.s.balls.force, m.s.balls.indentation, m)
+    watch_contacts(m.s.pushed.force, m.s.pushed.overlap, m.o.neighbours)
 
 
 @kernel
@@ -258,7 +255,7 @@ def report(y, m):
     ring.report(y, m, d.inner_radius)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force, s.indentation
-    o.neighbours.force, o.neighbours.indentation = s.pushed, s.overlap
+    o.neighbours.force, o.neighbours.indentation = m.s.pushed.force, m.s.pushed.overlap
     moving = d.mass * d.pitch_radius**2
     kinetic, height, orbit, spin = 0.0, 0.0, 0.0, 0.0
     for b in range(p.balls.count):
@@ -270,7 +267,7 @@ def report(y, m):
     o.speed.orbit = orbit / p.balls.count * d.pitch_radius
     o.speed.ball = spin / p.balls.count * d.ball_radius
     height *= p.gravity * d.mass
-    ring.report_energy(y, m, kinetic, s.energy + height, p.ring.inertia)
+    ring.report_energy(y, m, kinetic, s.energy + m.s.pushed.energy + height, p.ring.inertia)
 
 
 @kernel

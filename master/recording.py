@@ -138,8 +138,8 @@ class Recording:
         """Last value of COMPONENT.VARIABLE, also of an array's element. KeyError where there is none."""
         component, _, variable = name.partition(".")
         group = self._file.get(f"{END}/{component}")
-        if group is not None and variable in group.attrs:
-            return float(group.attrs[variable])
+        if isinstance(group, h5py.Group) and variable in group.attrs:
+            return float(np.asarray(group.attrs[variable]))
         return float(self[name][-1])
 
     def columns(self) -> list[tuple[str, str]]:

@@ -145,6 +145,8 @@ def dominant_frequency(
     spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
     frequency = np.fft.rfftfreq(count, step)
     band = np.flatnonzero((frequency >= low) & (frequency <= high))
+    if len(band) < 3:
+        return None
     peak = int(band[np.argmax(spectrum[band])])
     alone = spectrum[peak] > STANDS_OUT * np.median(spectrum[band])
     if peak in (band[0], band[-1]) or not alone or frequency[peak] * (time[-1] - time[0]) < 4.0:

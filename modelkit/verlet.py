@@ -3,8 +3,8 @@
     v_half = v + h/2 a        q' = q + h v_half        a' = a(q', v_half)        v' = v_half + h/2 a'
 
 Undamped contacts neither gain nor lose energy in the long run. What depends on velocity is evaluated at
-v_half, so a friction force T(v) that a model softens to T / (1 + h w |dT/dv|) (w: acceleration of the
-sliding speed per force) takes v_half to v_half' as the implicit Euler method does, however steep it is.
+v_half; a friction force that a model limits to what stops the sliding within a step takes it to zero, as
+an implicit step would, however steep the law.
 The step is bounded from above, and by the fastest contact: h w <= `RESOLUTION`, w its angular frequency
 (the method is stable up to 2).
 """

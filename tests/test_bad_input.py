@@ -165,6 +165,50 @@ def test_a_value_that_cannot_be(arguments: tuple[str, ...], named: str, run: Com
     assert not (tmp_path / "out" / "result.h5").exists()
 
 
+@pytest.mark.parametrize(
+    ("bearing", "setting", "named"),
+    [
+        ("detailed_caged", "balls.pitch_diameter=16 mm", "balls of 0.0064 m do not fit"),
+        ("detailed_caged", "balls.count=31", "do not fit balls.pitch_diameter"),
+        ("detailed_caged", "cage.clearance=-1 um", "smaller than its ball"),
+        ("detailed_caged", "balls.spread=0.99", "balls.spread = 0.99 must be 1"),
+        ("detailed_caged", "cage.mass=0", "cage.mass = 0 kg"),
+        ("detailed_caged", "inner_profile.amplitude=0.01", "inner_profile.amplitude = 0.01 m"),
+        ("detailed_caged", "micro_step=-1 us", "micro_step = -1e-06 s"),
+        ("detailed_cageless", "balls.spread=0.5", "balls.spread = 0.5 lets neighbouring balls overlap"),
+        (
+            "detailed_cageless",
+            "outer_profile.wear=0.5 mm,outer_profile.wear_width=0.05",
+            "outer_profile.wear = 0.0005 m bends the race",
+        ),
+        ("detailed_cageless", "race_friction.g2=5", "race_friction.g2 = 5"),
+        ("simplified_caged", "slip=2", "slip = 2"),
+        ("bushing", "contact.damping_ratio=0.1", "needs contact.mass"),
+    ],
+)
+def test_a_bearing_that_cannot_be_built(
+    bearing: str, setting: str, named: str, run: Command, tmp_path: Path
+):
+    settings = [part for one in setting.split(",") for part in ("--set", f"bearing.{one}")]
+    ended = run("disk-caged-detailed", *SHORT, "--swap", f"bearing={bearing}", "--in-process", *settings)
+    assert named in ended.line
+    assert ended.status == FAILED
+    assert not (tmp_path / "out" / "result.h5").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("--duration", "-1 s"), "--duration -1 s must be above 0 s"),
+        (("--duration", "5 kg"), "--duration = '5 kg' has the unit kg"),
+        (("--ensemble", "0"), "--ensemble 0 must be a whole number above 0"),
+        (("--ensemble", "1.5"), "--ensemble 1.5"),
+    ],
+)
+def test_a_comparison_that_cannot_be(arguments: tuple[str, ...], named: str, touchdown: Command):
+    assert named in touchdown("compare-bearings", *arguments).line
+
+
 def test_a_negative_macro_step_with_an_exponent(run: Command):
     """Written apart from its option it must not be taken for another option."""
     assert "macro" in run(SCENE, *SHORT, "--macro-step", "-1e-5").line

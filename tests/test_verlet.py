@@ -15,9 +15,10 @@ STIFFNESS, FRICTION, GRIP, FASTEST = range(4)
 
 @kernel
 def rhs(t, y, dy, m):
-    """Mass 1 kg on a spring, braked by -c v softened over the step in m; y[2] is the work of the spring."""
+    """Mass 1 kg on a spring, braked by no more than stops it in a step; y[2] is the work of the spring."""
+    braking = m[FRICTION] if m[GRIP] * m[FRICTION] <= 1.0 else 1.0 / m[GRIP]
     dy[0] = y[1]
-    dy[1] = -m[STIFFNESS] * y[0] - m[FRICTION] * y[1] / (1.0 + m[GRIP] * m[FRICTION])
+    dy[1] = -m[STIFFNESS] * y[0] - braking * y[1]
     dy[2] = -m[STIFFNESS] * y[0] * y[1]
 
 

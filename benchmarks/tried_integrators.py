@@ -1,0 +1,131 @@
+"""Integrators that were tried inside the detailed bearings and not kept; used by `detailed_speed.py`.
+
+Each is a kernel tried(m, rows, span, step, tolerance) -> evaluations that advances a bearing's memory m by
+`span` (s); journal and housing are then the copies the bearing carries.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+
+import numba
+
+from bearings import ball_bodies
+from bearings.friction import slope
+from modelkit import dopri, rosenbrock, verlet
+
+
+def make(module: ModuleType) -> dict[str, Callable]:
+    """All tried integrators for a detailed model's module."""
+    return {
+        "leapfrog, friction as it stands": _plain_leapfrog(module),
+        "Bogacki-Shampine 3(2), adaptive": _bogacki_shampine(module),
+        "Dormand-Prince 5(4), adaptive": _dormand_prince(module),
+        "order 3, ball spin implicit, adaptive": _implicit_spin(module),
+    }
+
+
+def _plain_leapfrog(module: ModuleType) -> Callable:
+    """Velocity Verlet with friction that may overshoot."""
+    rhs, observe = module.rhs, module.observe
+    drift, settle, fastest = ball_bodies.drift, ball_bodies.settle, ball_bodies.fastest
+    forecast = ball_bodies.forecast
+
+    @numba.njit(error_model="numpy")
+    def unlimited(x, dy, h, m):
+        forecast(x, dy, h, m)
+        m.s.step = 0.0
+
+    @numba.njit(error_model="numpy")
+    def tried(m, rows, span, step, tolerance):
+        return verlet.integrate(
+            rhs, drift, unlimited, settle, fastest, observe, m, m.y, m.n, rows, span, step
+        )[1]
+
+    return tried
+
+
+def _dormand_prince(module: ModuleType) -> Callable:
+    rhs, observe = module.rhs, module.observe
+
+    @numba.njit(error_model="numpy")
+    def tried(m, rows, span, step, tolerance):
+        m.s.step = 0.0
+        return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
+
+    return tried
+
+
+def _bogacki_shampine(module: ModuleType) -> Callable:
+    rhs, observe = module.rhs, module.observe
+
+    @numba.njit(error_model="numpy")
+    def tried(m, rows, span, step, tolerance):
+        m.s.step = 0.0
+        y, n, weight = m.y, m.n, m.weight
+        a, b, c, d, w = rows[0], rows[1], rows[2], rows[3], rows[4]
+        t, h, evaluations = 0.0, 1e-7, 1
+        rhs(t, y, a, m)
+        while t < span:
+            last = t + h >= span
+            k = span - t if last else h
+            for i in range(n):
+                w[i] = y[i] + 0.5 * k * a[i]
+            rhs(t + 0.5 * k, w, b, m)
+            for i in range(n):
+                w[i] = y[i] + 0.75 * k * b[i]
+            rhs(t + 0.75 * k, w, c, m)
+            for i in range(n):
+                w[i] = y[i] + k * (2 / 9 * a[i] + 1 / 3 * b[i] + 4 / 9 * c[i])
+            rhs(t + k, w, d, m)
+            evaluations += 3
+            error = 0.0
+            for i in range(n):
+                e = k * abs(-5 / 72 * a[i] + 1 / 12 * b[i] + 1 / 9 * c[i] - 1 / 8 * d[i]) * weight[i]
+                error = max(error, e)
+            error /= tolerance
+            if error <= 1.0:
+                t = span if last else t + k
+                for i in range(n):
+                    y[i] = w[i]
+                    a[i] = d[i]
+                observe(t, y, m)
+            h = k * min(4.0, max(0.2, 0.9 / max(error, 1e-6) ** (1.0 / 3.0)))
+        return evaluations
+
+    return tried
+
+
+def _implicit_spin(module: ModuleType) -> Callable:
+    """The linearly implicit method of the simplified cageless bearing, for the spin of each ball alone."""
+    rhs, observe = module.rhs, module.observe
+    part = ball_bodies.part
+    spin = ball_bodies.SPIN
+
+    @numba.njit(error_model="numpy")
+    def linearise(y, j, m):
+        d, s = m.d, m.s
+        at = part(j, spin, m)
+        for b in range(m.p.balls.count):
+            steep = slope(0.0, d.race_friction)
+            held = steep * (s.inner.normal[b] + s.outer.normal[b])
+            at[b] = held * d.ball_radius**2 / d.inertia
+
+    @numba.njit(error_model="numpy")
+    def solve(j, s, r, m):
+        first = ball_bodies.BALLS + spin * m.p.balls.count
+        for i in range(m.n):
+            if first <= i < first + m.p.balls.count:
+                r[i] /= s + j[i]
+            else:
+                r[i] /= s
+
+    @numba.njit(error_model="numpy")
+    def tried(m, rows, span, step, tolerance):
+        m.s.step = 0.0
+        return rosenbrock.integrate(
+            rhs, linearise, solve, observe, m, m.y, m.n, m.weight, rows, span, 1e-7, tolerance
+        )[2]
+
+    return tried
