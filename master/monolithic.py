@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 
 from master.scene import Scene
 from master.simulation import open_system
+from master.system import System
 from master.twin import TwinComponent
 
 
@@ -81,6 +82,31 @@ class Monolith:
         parts = [self._twins[n].instance.record["y"][: p.stop - p.start] for n, p in self._parts.items()]
         return np.concatenate(parts)
 
+    def state_of(self, system: System) -> np.ndarray:
+        """The present state of another system of the same scene, stepped in process."""
+        parts = []
+        for name, part in self._parts.items():
+            component = system.components[name]
+            assert isinstance(component, TwinComponent)
+            parts.append(component.instance.record["y"][: part.stop - part.start])
+        return np.concatenate(parts)
+
+    def jacobian(self, t: float, state: np.ndarray) -> np.ndarray:
+        """Derivative of the right-hand side by the state, by central differences on the models' scales."""
+        weight = self._weights()
+        steps = np.where(weight > 0.0, 1e-6 / np.where(weight > 0.0, weight, 1.0), 0.0)
+        found = np.zeros((self._size, self._size))
+        for i in np.flatnonzero(steps):
+            off = np.zeros(self._size)
+            off[i] = steps[i]
+            found[:, i] = (self.rhs(t, state + off) - self.rhs(t, state - off)) / (2.0 * steps[i])
+        return found
+
+    def _weights(self) -> np.ndarray:
+        return np.concatenate(
+            [self._twins[n].instance.record["weight"][: p.stop - p.start] for n, p in self._parts.items()]
+        )
+
     def rhs(self, t: float, state: np.ndarray) -> np.ndarray:
         """Derivative of the whole state."""
         self.evaluations += 1
@@ -108,9 +134,7 @@ class Monolith:
 
         `tolerance` is the error over the models' own scales, as in the FMUs' micro-steps.
         """
-        weight = np.concatenate(
-            [self._twins[n].instance.record["weight"][: p.stop - p.start] for n, p in self._parts.items()]
-        )
+        weight = self._weights()
         atol = tolerance / np.where(weight > 0.0, weight, np.inf)
         atol[weight == 0.0] = 1e3  # quadratures: nothing depends on them
         state, now = self.initial(), 0.0
