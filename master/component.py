@@ -9,7 +9,7 @@ error; what a user can cause raises TouchdownError.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,8 +92,14 @@ class Component(ABC):
         """Advance from `time` by `step` (s)."""
 
     @abstractmethod
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        """A function that fetches the values of any variables, for many calls; its array is its own."""
+
     def read(self, names: Sequence[str]) -> list[float]:
-        """Values of any variables."""
+        """Values of any variables, integers as such."""
+        values = self.reader(names)()
+        kinds = [self.variable(name).kind for name in names]
+        return [int(v) if k == "Integer" else float(v) for v, k in zip(values, kinds, strict=True)]
 
     @abstractmethod
     def save(self) -> object:

@@ -13,7 +13,7 @@ import shutil
 import tempfile
 import zipfile
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -218,18 +218,24 @@ class FmuComponent(Component):
         if status > WARNING:
             self._check(status, "reading outputs")
 
-    def read(self, names: Sequence[str]) -> list[float]:
-        found: dict[str, float] = {}
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        values = np.zeros(len(names))
+        parts = []
         for kind, call, dtype in (("Real", self._get_real, "f8"), ("Integer", self._get_integer, "i4")):
-            chosen = [n for n in names if self.variable(n).kind == kind]
-            if chosen:
-                references = self._references(chosen)
-                data = np.zeros(len(chosen), dtype)
-                self._check(
-                    call(self._component, references.ctypes.data, len(chosen), data.ctypes.data), "reading"
-                )
-                found.update(zip(chosen, data.tolist(), strict=True))
-        return [found[n] for n in names]
+            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind == kind], dtype=np.intp)
+            if len(at):
+                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
+                parts.append((call, references, references.ctypes.data, data, data.ctypes.data, at))
+
+        def fetch() -> np.ndarray:
+            for call, references, address, data, into, at in parts:
+                status = call(self._component, address, len(references), into)
+                if status > WARNING:
+                    self._check(status, "reading")
+                values[at] = data
+            return values
+
+        return fetch
 
     # -- life cycle ----------------------------------------------------------------------------------
 

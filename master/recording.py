@@ -49,6 +49,7 @@ class Recorder:
             for name, variables in self.names.items()
             for variable in variables
         }
+        self._readers = [components[name].reader(variables) for name, variables in self.names.items()]
         self._block = np.zeros((BLOCK, 1 + len(self._datasets)))
         self._filled = 0
         self.rows = 0
@@ -72,8 +73,8 @@ class Recorder:
         row = self._block[self._filled]
         row[0] = time
         column = 1
-        for name, variables in self.names.items():
-            values = self._components[name].read(variables)
+        for fetch in self._readers:
+            values = fetch()
             row[column : column + len(values)] = values
             column += len(values)
         self._filled += 1

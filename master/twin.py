@@ -5,7 +5,7 @@ It drives the same instance class as the FMU's slave through the same calls, so 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 
 import numpy as np
@@ -90,14 +90,23 @@ class TwinComponent(Component):
         except ModelError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None
 
-    def read(self, names: Sequence[str]) -> list[float]:
-        if self._initialising:
-            self._start()
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        values = np.zeros(len(names))
         variables = [self.variable(n) for n in names]
-        return [
-            self.instance.reals[v.reference] if v.kind == "Real" else self.instance.integers[v.reference]
-            for v in variables
-        ]
+        integers = self._words.view("i8")
+        parts = []
+        for kind, store in (("Real", self._words), ("Integer", integers)):
+            at = np.array([i for i, v in enumerate(variables) if v.kind == kind], dtype=np.intp)
+            parts.append((store, np.array([variables[i].reference for i in at], dtype=np.intp), at))
+
+        def fetch() -> np.ndarray:
+            if self._initialising:
+                self._start()
+            for store, references, at in parts:
+                values[at] = store[references]
+            return values
+
+        return fetch
 
     def save(self) -> object:
         return self.instance.save()
