@@ -105,7 +105,7 @@ def is_contact(sp, sq, side, ball, race, profile, dent):
     """Whether the solution is where ball and race meet, and not one of (2.36)'s others.
 
     Seen from the ball's centre the race's point must be the nearest one around, on the side of the
-    ball's point.
+    ball's point; and not behind the race's centre, where a hollow of the far side is nearest, too.
     """
     bx, by, _ = ball
     rx, ry, angle, radius = race
@@ -114,7 +114,8 @@ def is_contact(sp, sq, side, ball, race, profile, dent):
     nearest = q.tx * q.tx + q.ty * q.ty + dx * q.cx + dy * q.cy > 0.0
     facing = dx * math.cos(sp) + dy * math.sin(sp) > 0.0
     outward = side * ((bx - rx) * (q.x - bx) + (by - ry) * (q.y - by)) > 0.0
-    return nearest and facing and outward
+    before = (bx - rx) * (q.x - rx) + (by - ry) * (q.y - ry) > 0.0
+    return nearest and facing and outward and before
 
 
 @kernel
