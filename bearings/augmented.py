@@ -73,7 +73,6 @@ class AugmentedBearing:
         self.alpha, self.beta, self.eliminated = alpha, beta, eliminated
         m = instance.record
         self.radius = float(m["d"]["outer_radius"])
-        self.size = int(m["n"])
         self._positions, self._rates, inside = self._indices(int(m["p"]["balls"]["count"]))
         a = around
         outside = [(a.journal_mass, a.journal_inertia), (a.outer_mass, a.outer_inertia)]
@@ -128,7 +127,7 @@ class AugmentedBearing:
     def _forces(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Generalised applied forces Q_a of all bodies, by the model's own kernels."""
         m, a = self.instance.record, self.around
-        y, dy = np.zeros(self.size), np.zeros(self.size)
+        y, dy = np.zeros(len(m["y"])), np.zeros(len(m["y"]))
         y[self._positions], y[self._rates] = q[6:], v[6:]
         for part, at in (("journal", 0), ("housing", 3)):
             motion = m["u"][part]

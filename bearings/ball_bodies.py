@@ -9,6 +9,7 @@ stiffness (2.45) and with friction (2.39). Races are circles, or curves where a 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bearings import race_profile, ring, seat
@@ -25,7 +26,6 @@ from bearings.race_contacts import (
     Race,
     find_on_circle,
     find_on_curve,
-    loss_now,
     press_race,
     rounded,
 )
@@ -44,6 +44,7 @@ from modelkit.variables import array, group, groups, integer, real
 BALLS = ring.NEXT  # from here each component of all balls in turn,
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # in this order
 SIZE = 6
+STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step
 MOST_STATES = BALLS + SIZE * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
 
 
@@ -111,10 +112,12 @@ class BallBodiesDerived(RollingDerived):
     inertia: float = real(0.0, "kg.m2", "of a ball")
     ball_radius: float = real(0.0, "m", "of a ball")
     outer_radius: float = real(0.0, "m", "outer race")
+    micro_step: float = real(0.0, "s", "longest step inside")
     searched: int = integer(0, "1: contacts with races are searched for")
     bore_grip: float = real(0.0, "1/kg", "answer of the sliding speed to a force: journal on ring")
     race_grip: float = real(0.0, "1/kg", "ball on race, with all that hangs together")
     side_grip: float = real(0.0, "1/kg", "ball on ball, or on the cage")
+    cage_grip: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
     x: tuple = array(MOST_BALLS)  # where the balls start, from the middle
     y: tuple = array(MOST_BALLS)
 
@@ -126,6 +129,7 @@ class SideContacts:
     normal: tuple = array(MOST_BALLS)
     tangential: tuple = array(MOST_BALLS)
     indentation: tuple = array(MOST_BALLS)
+    stiffness: tuple = array(MOST_BALLS)
 
 
 @dataclass(frozen=True)
@@ -136,7 +140,6 @@ class BallBodiesMemory(RollingMemory):
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)
     step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
-    race_loss: float = real(0.0, "W", "heat of the race contacts at the last evaluation")
     outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
     outer_moment: float = real(0.0, "N.m", "of the balls on the outer ring, about its centre")
     inner_starts: tuple = array(2 * MOST_BALLS)
@@ -168,11 +171,19 @@ def push(dy, b, fx, fy, moment, m):
 
 
 @kernel
-def note(contacts, b, normal, tangential, indentation):
+def note(contacts, b, press, indentation, law):
     """Remember the side contact of ball `b`."""
-    contacts.normal[b] = normal
-    contacts.tangential[b] = tangential
+    contacts.normal[b] = press.normal
+    contacts.tangential[b] = press.tangential
     contacts.indentation[b] = indentation
+    contacts.stiffness[b] = law.exponent * press.normal / indentation
+
+
+@kernel
+def note_apart(contacts, b):
+    """Remember that ball `b` has no side contact."""
+    contacts.normal[b], contacts.tangential[b] = 0.0, 0.0
+    contacts.indentation[b], contacts.stiffness[b] = -1.0, 0.0
 
 
 @kernel
@@ -203,7 +214,6 @@ def race_contacts(y, dy, m):
     outer = _one_race(balls, housing, 0.0, at_outer, p.outer_profile, s.outer_starts, s.outer, m)
     angle = y[ring.RANGLE]
     inner = _one_race(balls, inner_ring, angle, at_inner, p.inner_profile, s.inner_starts, s.inner, m)
-    s.race_loss = inner.loss + outer.loss
     s.outer_moment = outer.moment
     _accelerate(balls, dy, m)
     return inner, outer
@@ -269,30 +279,19 @@ def balls_of(y, m):
 
 
 @kernel
-def settle(y, dy, half, h, m):
-    """Heat of the race contacts with the velocities at the end of a micro-step of h seconds.
-
-    Where balls stick, the friction that holds them was found at speeds that it has since taken to zero.
-    """
-    s, balls = m.s, balls_of(y, m)
-    loss = loss_now(balls, seat.housing_motion(y), INSIDE, s.outer)
-    loss += loss_now(balls, ring.ring_motion(y), OUTSIDE, s.inner)
-    dy[ring.LOSS] += loss - s.race_loss
-    y[ring.LOSS] = half[ring.LOSS] + 0.5 * h * dy[ring.LOSS]
-
-
-@kernel
 def fastest(m):
-    """Largest angular frequency of a ball or the ring on their contacts, at the last evaluation (rad/s)."""
-    inner, outer = m.s.inner.stiffness, m.s.outer.stiffness
-    stiffest, below = 0.0, 0.0
+    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
+    d, s = m.d, m.s
+    stiffest, below, side, sides = 0.0, 0.0, 0.0, 0.0
     for b in range(m.p.balls.count):
-        below += inner[b]
-        stiffest = max(stiffest, inner[b] + outer[b])
-    r = m.s.ring
-    if r.indentation > 0.0:
-        below += m.p.contact.exponent * r.normal / r.indentation
-    return math.sqrt(max(stiffest / m.d.mass, below / m.p.ring.mass))
+        below += s.inner.stiffness[b]
+        stiffest = max(stiffest, s.inner.stiffness[b] + s.outer.stiffness[b])
+        side = max(side, s.side.stiffness[b])
+        sides += s.side.stiffness[b]
+    if s.ring.indentation > 0.0:
+        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
+    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
+    return math.sqrt(max(of_ball, of_ring, sides * d.cage_grip))
 
 
 @kernel
@@ -413,9 +412,14 @@ def place(y, m):
     m.s.outer_starts[:] = math.nan
 
 
-def derived(p: BallBodiesParameters) -> dict[str, object]:
-    """Fields of `BallBodiesDerived`, those of `side_grip` and `size` left to the model."""
+def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[str, object]:
+    """Fields of `BallBodiesDerived`, those of `side_grip` and `size` left to the model.
+
+    side, lighter: law and mass (kg) of the balls' contacts with each other or the cage.
+    """
     b = p.balls
+    inner, outer = b.race_law(b.inner_stiffness()), b.race_law(b.outer_stiffness())
+    hit = [(p.contact, p.ring.mass), (inner, b.ball_mass), (outer, b.ball_mass), (side, lighter)]
     rest = b.resting_place(p.ring.mass * p.gravity)
     places = b.starting_places(rest)
     unused = [0.0] * (MOST_BALLS - b.count)
@@ -428,8 +432,9 @@ def derived(p: BallBodiesParameters) -> dict[str, object]:
         "friction": prepared(p.friction),
         "race_friction": prepared(p.race_friction),
         "stiffness": race_stiffness(b),
-        "inner": b.race_law(b.inner_stiffness()),
-        "outer": b.race_law(b.outer_stiffness()),
+        "inner": inner,
+        "outer": outer,
+        "micro_step": resolved_step(p, hit),
         "mass": b.ball_mass,
         "inertia": b.ball_inertia,
         "ball_radius": b.ball_radius,
@@ -445,6 +450,20 @@ def derived(p: BallBodiesParameters) -> dict[str, object]:
     }
 
 
+def resolved_step(p: BallBodiesParameters, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
+    """Longest step (s) of the leapfrog method: as asked for, and short enough for every contact.
+
+    contacts: (law, mass in kg of the lighter body). A body that hits at the landing's speed v must not fly
+    past the contact: it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
+    """
+    steps = [p.micro_step]
+    for law, mass in contacts:
+        power = 1.0 / (law.exponent + 1.0)
+        depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2 / law.stiffness) ** power
+        steps.append(STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE)
+    return min(steps)
+
+
 def problem(p: BallBodiesParameters) -> str | None:
     """What is wrong between the parameters of balls and races, or None."""
     b = p.balls
@@ -457,6 +476,14 @@ def problem(p: BallBodiesParameters) -> str | None:
         race_profile.problem("outer_profile", p.outer_profile, outer, b.ball_radius, hollow=True),
     )
     return next((text for text in found if text), None)
+
+
+def ring_weights(p: BallBodiesParameters) -> list[float]:
+    """Error weights of the ring's components; its angle matters where its race is no circle."""
+    weights = ring.error_weights()
+    if p.inner_profile.active:
+        weights[ring.RANGLE - ring.RX] = p.balls.inner_radius / seat.POSITION_SCALE
+    return weights
 
 
 def ball_weights(count: int) -> list[float]:

@@ -29,22 +29,20 @@ class BallSet:
     poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
     density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
     first_angle: float = real(-math.pi / 2, "rad", "attitude angle of the first ball at the start")
-    spread: float = real(
-        1.0,
-        "1",
-        "spacing of the balls at the start over even spacing; below 1 they are bunched around the first",
-        above=0.0,
-        maximum=1.0,
-    )
     damping: float = real(
         0.0, "N.s/m2", "damping of the race contacts, proportional to indentation (2.38)", minimum=0.0
     )
     damping_ratio: float = real(
-        0.0, "1", "damping ratio (2.47) of the race contacts, added to `damping`", minimum=0.0
+        0.0, "1", "damping ratio (2.47) of a ball on a race, added to `damping`", minimum=0.0
     )
     expected_indentation: float = real(
         3e-6, "m", "peak indentation for which the damping ratio holds", above=0.0
     )
+
+    @property
+    def spread(self) -> float:
+        """Spacing of the balls at the start over even spacing."""
+        return 1.0
 
     @property
     def ball_radius(self) -> float:
@@ -185,18 +183,37 @@ class BallSet:
                 f"balls.count = {self.count} balls of {self.diameter:g} m do not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"
             )
-        if self.count * self.touch_angle > 2.0 * math.pi * self.spread * (1.0 + 1e-12):
-            needed = self.count * self.touch_angle / (2.0 * math.pi)
-            return (
-                f"balls.spread = {self.spread:g} lets neighbouring balls overlap; "
-                f"it must be at least {math.ceil(1e6 * needed) / 1e6:g}"
-            )
         if -self.play >= self.diameter:
             return (
                 f"balls.play = {self.play:g} m presses the balls flat; "
                 f"it must be above {-self.diameter:g} m"
             )
         return None
+
+
+@dataclass(frozen=True)
+class FreeBallSet(BallSet):
+    """Balls without a cage, which need not be evenly spaced. Defaults: Koyo 6904 of the source's Table 1,
+    its pitch diameter corrected to 28.5 mm.
+    """
+
+    count: int = integer(17, "number of balls", minimum=3, maximum=MOST_BALLS)
+    diameter: float = real(4.8e-3, "m", "ball diameter", above=0.0)
+    pitch_diameter: float = real(28.5e-3, "m", "pitch diameter", above=0.0)
+    play: float = real(0.0, "m", "radial play between balls and races; negative: preload")
+    bunching: float = real(
+        0.0,
+        "1",
+        "how far the balls start bunched around the first: 0 evenly spaced, 1 touching",
+        minimum=0.0,
+        maximum=1.0,
+    )
+
+    @property
+    def spread(self) -> float:
+        """Spacing of the balls at the start over even spacing."""
+        touching = self.count * self.touch_angle / (2.0 * math.pi)
+        return 1.0 + self.bunching * (touching - 1.0)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass
 
 from bearings import seat
-from bearings.ball_bodies import ANGLE, BALLS, SIZE, SPIN, VX, VY, X, Y, ball_motion, note, push
+from bearings.ball_bodies import ANGLE, BALLS, SIZE, SPIN, VX, VY, X, Y, ball_motion, note, note_apart, push
+from bearings.balls import BallSet
 from bearings.pair import INSIDE, Place, press
 from modelkit.kernel import kernel
 from modelkit.ports import Motion
@@ -80,13 +81,13 @@ def pocket_contacts(y, dy, m):
         ex, ey = ball.x - y[i + X] - rx, ball.y - y[i + Y] - ry
         square = ex * ex + ey * ey
         if square <= clearance * clearance:
-            note(m.s.side, b, 0.0, 0.0, -1.0)
+            note_apart(m.s.side, b)
             continue
         distance = math.sqrt(square)
         at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
         pocket = Motion(y[i + X] + rx, y[i + Y] + ry, vx - spin * ry, vy + spin * rx, spin)
         push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, grip)
-        note(m.s.side, b, push_out.normal, push_out.tangential, at.indentation)
+        note(m.s.side, b, push_out, at.indentation, d.cage_contact)
         push(dy, b, push_out.fx, push_out.fy, push_out.first_moment, m)
         fx -= push_out.fx
         fy -= push_out.fy
@@ -109,7 +110,7 @@ def report(y, m):
     return kinetic, p.gravity * p.cage.mass * o.y
 
 
-def cage_weights() -> list[float]:
-    """Error weights of the cage's components."""
+def cage_weights(balls: BallSet) -> list[float]:
+    """Error weights of the cage's components; its angle matters where the pockets are."""
     length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
-    return [length, length, speed, speed, spin, spin]
+    return [length, length, speed, speed, length * balls.pitch_radius, spin]

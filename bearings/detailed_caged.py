@@ -24,7 +24,6 @@ from bearings.ball_bodies import (
     fastest,
     forecast,
     race_contacts,
-    settle,
 )
 from bearings.balls import MOST_BALLS, BallContacts, Coordinates
 from bearings.contact import ContactLaw, damped
@@ -126,7 +125,7 @@ def start(words):
     ring.place(m.y, m.d.rest_x, m.d.rest_y)
     ball_bodies.place(m.y, m)
     cage.place(m.y, m)
-    m.s.step = m.p.micro_step
+    m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
@@ -134,10 +133,10 @@ def start(words):
 @kernel
 def integrate(m, work, span):
     """Advance the state by `span` (s)."""
-    p = m.p
-    if p.micro_step > 0.0:
+    p, longest = m.p, m.d.micro_step
+    if longest > 0.0:
         status, evaluations = verlet.integrate(
-            rhs, drift, forecast, settle, fastest, observe, m, m.y, m.n, work, span, p.micro_step
+            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
         )
         return m.h, status, evaluations
     return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
@@ -164,13 +163,14 @@ def derive(p: Parameters) -> Derived:
     inertia = p.cage.inertia or p.cage.mass * b.pitch_radius**2
     of_ball = 1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia
     of_cage = 1.0 / p.cage.mass + b.pitch_radius**2 / inertia
-    fields = ball_bodies.derived(p)
+    fields = ball_bodies.derived(p, p.cage_contact, min(b.ball_mass, p.cage.mass))
     return Derived(
         **fields,  # type: ignore[arg-type]
-        cage_contact=damped(p.cage_contact, b.ball_mass),
+        cage_contact=damped(p.cage_contact, min(b.ball_mass, p.cage.mass)),
         cage_friction=prepared(p.cage_friction),
         cage_inertia=inertia,
         side_grip=2.0 * of_ball + 0.5 * b.count * of_cage,
+        cage_grip=of_cage,
         size=Coordinates(
             coordinates=9 + 3 * b.count,
             constraints=1,
@@ -191,15 +191,13 @@ def check(p: Parameters) -> str | None:
             f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
             f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
         )
-    if p.balls.spread < 1.0:
-        return f"balls.spread = {p.balls.spread:g} must be 1; the cage keeps the balls evenly spaced"
     return ball_bodies.problem(p) or friction_problem(p.cage_friction, "cage_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
     return seat.weights(
-        ring.error_weights() + ball_bodies.ball_weights(p.balls.count) + cage.cage_weights()
+        ball_bodies.ring_weights(p) + ball_bodies.ball_weights(p.balls.count) + cage.cage_weights(p.balls)
     )
 
 

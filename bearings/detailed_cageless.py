@@ -29,12 +29,12 @@ from bearings.ball_bodies import (
     fastest,
     forecast,
     note,
+    note_apart,
     part,
     push,
     race_contacts,
-    settle,
 )
-from bearings.balls import BallContacts, BallSet, Coordinates
+from bearings.balls import BallContacts, Coordinates, FreeBallSet
 from bearings.contact import ContactLaw, damped
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
@@ -51,7 +51,7 @@ from modelkit.variables import group, real
 class Parameters(BallBodiesParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
-    balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
+    balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -100,14 +100,14 @@ def _neighbour_contacts(y, dy, m):
         ex, ey = x[k] - x[b], z[k] - z[b]
         square = ex * ex + ey * ey
         if square >= apart * apart:
-            note(m.s.side, b, 0.0, 0.0, -1.0)
+            note_apart(m.s.side, b)
             continue
         distance = math.sqrt(square)
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
         this, following = ball_motion(y, b, m), ball_motion(y, k, m)
         c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, grip)
-        note(m.s.side, b, c.normal, c.tangential, at.indentation)
+        note(m.s.side, b, c, at.indentation, d.ball_contact)
         push(dy, k, c.fx, c.fy, c.first_moment, m)
         push(dy, b, -c.fx, -c.fy, c.second_moment, m)
         loss += c.loss
@@ -156,7 +156,7 @@ def start(words):
     seat.take_inputs(m.y, m)
     ring.place(m.y, m.d.rest_x, m.d.rest_y)
     ball_bodies.place(m.y, m)
-    m.s.step = m.p.micro_step
+    m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
@@ -164,10 +164,10 @@ def start(words):
 @kernel
 def integrate(m, work, span):
     """Advance the state by `span` (s)."""
-    p = m.p
-    if p.micro_step > 0.0:
+    p, longest = m.p, m.d.micro_step
+    if longest > 0.0:
         status, evaluations = verlet.integrate(
-            rhs, drift, forecast, settle, fastest, observe, m, m.y, m.n, work, span, p.micro_step
+            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
         )
         return m.h, status, evaluations
     return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
@@ -190,7 +190,7 @@ def advance(words, work, time, step):
 def derive(p: Parameters) -> Derived:
     """Stiffness and masses from geometry, and where everything starts."""
     b = p.balls
-    fields = ball_bodies.derived(p)
+    fields = ball_bodies.derived(p, p.ball_contact, 0.5 * b.ball_mass)
     return Derived(
         **fields,  # type: ignore[arg-type]
         ball_contact=damped(p.ball_contact, b.ball_mass),
@@ -213,7 +213,7 @@ def check(p: Parameters) -> str | None:
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    return seat.weights(ring.error_weights() + ball_bodies.ball_weights(p.balls.count))
+    return seat.weights(ball_bodies.ring_weights(p) + ball_bodies.ball_weights(p.balls.count))
 
 
 MODEL = Model(

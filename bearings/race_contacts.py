@@ -40,7 +40,6 @@ class Contacts:
     normal: tuple = array(MOST_BALLS)
     tangential: tuple = array(MOST_BALLS)
     stiffness: tuple = array(MOST_BALLS)
-    damped: tuple = array(MOST_BALLS)  # part of the normal force that is not elastic
     loss: tuple = array(MOST_BALLS)
 
 
@@ -109,7 +108,7 @@ def find_on_curve(balls, ring, angle, race, profile, starts, search, s):
 @inlined
 def _press_all(law, balls, ring, race, friction, nx, ny, indentation, second, across, out):
     """Forces of all balls at their places; law(speed, friction) gives coefficient and slope."""
-    fx, fy, moment, normals, tangentials, stiffness, damped, loss = out
+    fx, fy, moment, normals, tangentials, stiffness, loss = out
     reach = race.side * balls.radius
     for b in range(len(nx)):
         ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
@@ -125,8 +124,7 @@ def _press_all(law, balls, ring, race, friction, nx, ny, indentation, second, ac
         normals[b] = normal
         tangentials[b] = tangential
         stiffness[b] = stiff
-        damped[b] = normal - elastic
-        loss[b] = damped[b] * rate - tangential * sliding
+        loss[b] = (normal - elastic) * rate - tangential * sliding
 
 
 @kernel
@@ -145,7 +143,7 @@ def press_race(balls, ring, race, friction, s):
     n = rounded(len(balls.x))
     nx, ny, indentation, second, across = s.nx[:n], s.ny[:n], s.indentation[:n], s.second[:n], s.across[:n]
     forces = s.fx[:n], s.fy[:n], s.moment[:n], s.normal[:n], s.tangential[:n]
-    out = (*forces, s.stiffness[:n], s.damped[:n], s.loss[:n])
+    out = (*forces, s.stiffness[:n], s.loss[:n])
     if friction.kind == MAKKAR:
         _press_makkar(balls, ring, race, curve(friction), nx, ny, indentation, second, across, out)
     else:
@@ -157,16 +155,3 @@ def press_race(balls, ring, race, friction, s):
         moment += s.moment[b]
         loss += s.loss[b]
     return Total(fx, fy, moment, loss)
-
-
-@kernel
-def loss_now(balls, ring, side, s):
-    """Heat (W) of the forces in `s` (Contacts) at other velocities than those they were found with."""
-    reach = side * balls.radius
-    loss = 0.0
-    for b in range(len(balls.x)):
-        ball = Motion(0.0, 0.0, balls.vx[b], balls.vy[b], balls.spin[b])
-        place = Place(s.nx[b], s.ny[b], 0.0, reach, s.second[b], s.across[b])
-        sliding, rate = slip(ball, ring, place, side)
-        loss += s.damped[b] * rate - s.tangential[b] * sliding
-    return loss

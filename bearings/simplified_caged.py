@@ -303,8 +303,6 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    if p.balls.spread < 1.0:
-        return f"balls.spread = {p.balls.spread:g} must be 1; the cage keeps the balls evenly spaced"
     return (
         p.balls.problem()
         or friction_problem(p.friction, "friction")
@@ -321,7 +319,7 @@ def weights(p: Parameters) -> np.ndarray:
 MODEL = Model(
     name="simplified_caged",
     title="Simplified caged touchdown bearing",
-    about="Ball bearing with cage as one ring on springs at the balls, which follow it without slip",
+    about="Ball bearing with cage as one ring on springs at the balls, which follow it, or may slip",
     parameters=Parameters,
     inputs=seat.BearingInputs,
     outputs=Outputs,
@@ -334,5 +332,5 @@ MODEL = Model(
     derive=derive,
     check=check,
     instant=instant,
-    starts_from=starts_from("rings"),
+    starts_from=starts_from("rings") | {"size.coordinates": ("slip",)},
 )

@@ -36,7 +36,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import ring, seat
-from bearings.balls import MOST_BALLS, BallContacts, BallSet, Coordinates, watch_balls, watch_contacts
+from bearings.balls import MOST_BALLS, BallContacts, Coordinates, FreeBallSet, watch_balls, watch_contacts
 from bearings.contact import ContactLaw, damped, elastic_energy, elastic_force, normal_force
 from bearings.friction import FrictionLaw, coefficient, prepared, slope
 from bearings.friction import problem as friction_problem
@@ -68,7 +68,7 @@ class Parameters(RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     interface: Interface = group(Interface, tolerance=2e-5)
-    balls: BallSet = group(BallSet, count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0)
+    balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = integer(
         0, "1: (2.10) with its last friction term as printed, which breaks momentum", minimum=0, maximum=1

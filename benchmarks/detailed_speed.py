@@ -94,7 +94,7 @@ def kept(module: ModuleType) -> Callable:
     def carry(words, work, span, step, tolerance):
         m = words.view(memory)[0]
         rows = work.ravel().view(scratch)[0].rows
-        m.p.micro_step = step
+        m.d.micro_step = step
         m.s.step = step
         m.p.interface.tolerance = max(tolerance, 1e-12)
         evaluations = 0

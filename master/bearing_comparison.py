@@ -174,6 +174,8 @@ def row_lines(rows: Sequence[Row], ensembles: Mapping[str, Sequence[Mapping[str,
                 continue
             middle = statistics.median(values)
             spread = f"{min(values):.4g} to {max(values):.4g}"
+            if len(values) < len(ensemble):
+                spread += f" ({len(values)} of {len(ensemble)})"
             source, deviation = "", ""
             if model in row.source:
                 source = f"{row.source[model]:g}"
@@ -199,17 +201,24 @@ def count_lines() -> list[str]:
     return lines
 
 
-def option_lines(duration: float, plain: Mapping[str, Mapping[str, object]], done) -> list[str]:
-    """What each option of section 5.3, and damping by ratio, changes in Table 7."""
-    scenes = [member(model, 0, duration, settings) for _, model, settings in OPTIONS]
+def option_lines(
+    duration: float,
+    members: int,
+    plain: Mapping[str, Sequence[Mapping[str, object]]],
+    done: Callable[[], object],
+) -> list[str]:
+    """What each option of section 5.3, and damping by ratio, changes in Table 7: medians of ensembles."""
+    scenes = [member(m, k, duration, settings) for _, m, settings in OPTIONS for k in range(members)]
+    found = summaries(scenes, done)
     lines = []
-    for (label, model, _), found in zip(OPTIONS, summaries(scenes, done), strict=True):
-        changes = []
+    for i, (label, model, _) in enumerate(OPTIONS):
+        changed, changes = found[i * members : (i + 1) * members], []
         for row in TABLE_7:
-            before, after = values_of([plain[model]], row.key), values_of([found], row.key)
+            before, after = values_of(plain[model], row.key), values_of(changed, row.key)
             if before and after:
                 short = row.key.removeprefix("peak_indentation_").removesuffix("_um").replace("_", "-")
-                changes.append(f"{short} {before[0]:.4g} -> {after[0]:.4g}")
+                change = f"{statistics.median(before):.4g} -> {statistics.median(after):.4g}"
+                changes.append(f"{short} {change}")
         lines.append(f"  {label + ', ' + model:<56}{', '.join(changes)}")
     return lines
 
@@ -236,8 +245,8 @@ def compare(
         *_ratio_lines(ensembles),
     ]
     if options:
-        plain = {model: ensemble[0] for model, ensemble in ensembles.items()}
-        lines += ["", "Options: Table 7 without -> with [um]", *option_lines(duration, plain, done)]
+        lines += ["", "Options: Table 7 without -> with [um], medians"]
+        lines += option_lines(duration, members, ensembles, done)
     text = "\n".join(lines) + "\n"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "bearings.txt").write_text(text, encoding="utf-8")
@@ -249,8 +258,8 @@ def _ratio_lines(ensembles: Mapping[str, Sequence[Mapping[str, object]]]) -> lis
     lines = ["first-impact ball force, caged over cageless (source: about 2)"]
     for kind in ("detailed", "simplified"):
         key = "first_impact_ball_force_N"
-        caged, cageless = (
-            statistics.median(values_of(ensembles[f"{cage} {kind}"], key)) for cage in ("caged", "cageless")
-        )
-        lines.append(f"  {kind:<20}{caged / cageless:>9.3g}")
+        forces = [values_of(ensembles[f"{cage} {kind}"], key) for cage in ("caged", "cageless")]
+        if all(forces):
+            ratio = statistics.median(forces[0]) / statistics.median(forces[1])
+            lines.append(f"  {kind:<20}{ratio:>9.3g}")
     return lines

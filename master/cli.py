@@ -160,7 +160,7 @@ def _compare_bearings(options: argparse.Namespace) -> int:
     if members < 1.0 or members != int(members):
         raise TouchdownError(f"--ensemble {options.ensemble} must be a whole number above 0")
     make_writable(options.output)
-    total = int(members) * len(SCENES) + (len(OPTIONS) if options.options else 0)
+    total = int(members) * (len(SCENES) + (len(OPTIONS) if options.options else 0))
     with tqdm(total=total, desc="drops", disable=options.quiet, leave=False) as bar:
         text = compare(duration, int(members), options.options, options.output, bar.update)
     print(text, end="")

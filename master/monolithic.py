@@ -55,6 +55,10 @@ class Monolith:
         self._loads = self._copies(system, self._bearings)
         for name in self._bodies:
             self._twins[name].instance.memory["half"] = 0.0
+        self._room: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        for name in self._bearings:
+            longest = len(self._twins[name].instance.record["y"])
+            self._room[name] = np.zeros(longest), np.zeros(longest)
         self.evaluations = 0
 
     def _copies(self, system, sources) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
@@ -116,7 +120,10 @@ class Monolith:
             target[into] = source[out]
         for name in self._bearings:
             instance, part = self._twins[name].instance, self._parts[name]
-            instance.model.instant(t, state[part].copy(), derivative[part], instance.record)  # type: ignore[misc]
+            inside, rates = self._room[name]  # as long as the model's own state, which loops may run into
+            inside[: part.stop - part.start] = state[part]
+            instance.model.instant(t, inside, rates, instance.record)  # type: ignore[misc]
+            derivative[part] = rates[: part.stop - part.start]
         for source, out, target, into in self._loads:
             target[into] = source[out]
         for name in self._bodies:

@@ -121,7 +121,7 @@ def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dic
         frequency = dominant_frequency(time[settled], x[settled])
     loaded = None
     if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
-        last = time >= outcome.end - outcome.zero - LAST_PART * outcome.end
+        last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
         loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
     found: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
     return found if loaded is None else {"loaded_balls_mean": loaded} | found

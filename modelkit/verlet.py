@@ -13,28 +13,28 @@ from __future__ import annotations
 
 import math
 
-from modelkit.dopri import MOST_STEPS
+from modelkit.dopri import MOST_STEPS, SMALLEST_STEP
 from modelkit.kernel import inlined
-from modelkit.status import OK, TOO_MANY_STEPS
+from modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 RESOLUTION = 0.8
+GROWTH = 1.25  # of the step; friction was limited for the step before
 
 
 @inlined
-def integrate(rhs, drift, forecast, settle, fastest, observe, m, y, n, k, span, longest):
+def integrate(rhs, drift, forecast, fastest, observe, m, y, n, k, span, longest):
     """Advance y[:n] over `span` seconds in place, in steps of at most `longest` (s).
 
     rhs(t, y, dy, m) and observe(t, y, m) as for `dopri.integrate`. drift(x, y, v, h, m) sets each
     position in x to that in y plus h times its velocity in v. forecast(x, dy, h, m) may add h/2 dy to
     velocities in x that are evaluated at the end of the step, not in its middle, and notes h.
-    settle(y, dy, half, h, m) may correct quadratures once the velocities at the end of the step are
-    known: forces act on velocities from v_half to the next v_half, so their work goes with v'.
     fastest(m) is the largest angular frequency at the last evaluation (rad/s).
     Returns (status, number of evaluations).
     """
     t = 0.0
     status = OK
     steps = 0
+    before = longest
     old, new, half, x = k[0], k[1], k[2], k[3]
     rhs(t, y, old, m)
     while t < span:
@@ -44,6 +44,11 @@ def integrate(rhs, drift, forecast, settle, fastest, observe, m, y, n, k, span, 
             break
         w = fastest(m)
         h = longest if w * longest <= RESOLUTION else RESOLUTION / w
+        h = min(h, GROWTH * before)
+        if not h >= SMALLEST_STEP:  # a NaN is not
+            status = STEP_UNDERFLOW
+            break
+        before = h
         left = span - t
         if h < left:
             h = left / math.ceil(left / h - 1e-6)  # even steps, so that none is a sliver
@@ -60,7 +65,6 @@ def integrate(rhs, drift, forecast, settle, fastest, observe, m, y, n, k, span, 
         for i in range(n):
             y[i] = half[i] + 0.5 * h * new[i]
         drift(y, x, half, 0.0, m)
-        settle(y, new, half, h, m)
         for i in range(n):
             old[i] = new[i]
         observe(t, y, m)

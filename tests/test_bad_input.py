@@ -171,11 +171,10 @@ def test_a_value_that_cannot_be(arguments: tuple[str, ...], named: str, run: Com
         ("detailed_caged", "balls.pitch_diameter=16 mm", "balls of 0.0064 m do not fit"),
         ("detailed_caged", "balls.count=31", "do not fit balls.pitch_diameter"),
         ("detailed_caged", "cage.clearance=-1 um", "smaller than its ball"),
-        ("detailed_caged", "balls.spread=0.99", "balls.spread = 0.99 must be 1"),
         ("detailed_caged", "cage.mass=0", "cage.mass = 0 kg"),
         ("detailed_caged", "inner_profile.amplitude=0.01", "inner_profile.amplitude = 0.01 m"),
         ("detailed_caged", "micro_step=-1 us", "micro_step = -1e-06 s"),
-        ("detailed_cageless", "balls.spread=0.5", "balls.spread = 0.5 lets neighbouring balls overlap"),
+        ("detailed_cageless", "balls.bunching=2", "balls.bunching = 2"),
         (
             "detailed_cageless",
             "outer_profile.wear=0.5 mm,outer_profile.wear_width=0.05",

@@ -12,7 +12,7 @@ from bearings.balls import MOST_BALLS
 from bearings.contact import ContactLaw, elastic_energy, normal_force
 from bearings.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient, prepared
 from bearings.pair import INSIDE, OUTSIDE, Place, Press, friction_force, press, slip
-from bearings.race_contacts import Balls, Contacts, Race, Total, find_on_circle, loss_now, press_race
+from bearings.race_contacts import Balls, Contacts, Race, Total, find_on_circle, press_race
 from modelkit.ports import Motion
 from modelkit.variables import as_record, layout
 
@@ -334,16 +334,12 @@ def test_many_balls_are_many_pairs(side, friction, grip, damping):
                 found.fx, found.fy, found.second_moment, found.normal, found.tangential, found.loss
             ]  # fmt: skip
             np.testing.assert_allclose(many, one, rtol=1e-12, atol=1e-14 * found.normal)
-            elastic = 1.3e10 * max(place.indentation, 0.0) ** 1.5
-            assert c["damped"][b] == pytest.approx(found.normal - elastic, abs=1e-12 * (elastic + 1e-9))
             assert c["stiffness"][b] == pytest.approx(1.95e10 * max(place.indentation, 0.0) ** 0.5)
             sums += [-found.fx, -found.fy, found.second_moment, found.loss]
             size += found.normal
             apart += place.indentation < 0.0
             assert (found.normal > 0.0) <= (place.indentation > 0.0)
         np.testing.assert_allclose(total, sums, rtol=1e-12, atol=1e-14 * size)
-        loss = loss_now(bunch.balls, bunch.ring, side, c)
-        assert loss == pytest.approx(total.loss, rel=1e-12, abs=1e-14 * size)
     assert apart > 5
 
 
