@@ -29,7 +29,7 @@ def make(module: ModuleType) -> dict[str, Callable]:
 def _plain_leapfrog(module: ModuleType) -> Callable:
     """Velocity Verlet with friction that may overshoot."""
     rhs, observe = module.rhs, module.observe
-    drift, settle, fastest = ball_bodies.drift, ball_bodies.settle, ball_bodies.fastest
+    drift, fastest = ball_bodies.drift, ball_bodies.fastest
     forecast = ball_bodies.forecast
 
     @numba.njit(error_model="numpy")
@@ -39,9 +39,7 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        return verlet.integrate(
-            rhs, drift, unlimited, settle, fastest, observe, m, m.y, m.n, rows, span, step
-        )[1]
+        return verlet.integrate(rhs, drift, unlimited, fastest, observe, m, m.y, m.n, rows, span, step)[1]
 
     return tried
 
