@@ -1,0 +1,65 @@
+"""A rotor at rest on supports: deflection and stresses under gravity (Fig 19 of the source)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+
+from modelkit.model import ModelError
+from rotor import beam
+from rotor.assembly import assemble, translation
+from rotor.shaft import Shaft
+from rotor.stresses import bending_per_moment, end_nodes, shear_per_force
+
+
+@dataclass(frozen=True)
+class Rest:
+    """Deflection and stresses; signs as in `rotor.stresses`, so sagging is positive bending."""
+
+    deflection: np.ndarray  # (N,), m, upwards
+    slope: np.ndarray  # (N,)
+    reactions: np.ndarray  # (supports,), N, upwards
+    node: np.ndarray  # (R,), 1-based; R = 2 elements, start and end of each
+    position: np.ndarray  # (R,), m from node 1
+    bending: np.ndarray  # (R,), Pa
+    shear: np.ndarray  # (R,), Pa
+
+
+def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float = 9.81) -> Rest:
+    """The rotor on `supports`: (node counted from 1, stiffness in N/m; math.inf for a rigid one).
+
+    Stresses follow from the equilibrium of each element, exact under the weight along it.
+    """
+    nodes = [node for node, _ in supports]
+    if len(set(nodes)) < 2 or len(set(nodes)) != len(nodes):
+        raise ModelError(f"supports at nodes {nodes}: a rotor rests on two nodes or more, each named once")
+    matrices = assemble(shaft)
+    load = -gravity * matrices.mass @ translation(shaft)
+    stiffness = matrices.stiffness.copy()
+    for node, spring in supports:
+        if math.isfinite(spring):
+            stiffness[2 * node - 2, 2 * node - 2] += spring
+    held = [2 * node - 2 for node, spring in supports if math.isinf(spring)]
+    free = np.setdiff1d(np.arange(2 * shaft.nodes), held)
+    q = np.zeros(2 * shaft.nodes)
+    q[free] = linalg.solve(stiffness[np.ix_(free, free)], load[free], assume_a="pos")
+    reactions = (matrices.stiffness @ q - load)[[2 * node - 2 for node in nodes]]
+    bending, shear = _stresses(shaft, q, gravity)
+    node = end_nodes(shaft)
+    return Rest(q[0::2], q[1::2], reactions, node, shaft.positions()[node - 1], bending, shear)
+
+
+def _stresses(shaft: Shaft, q: np.ndarray, gravity: float) -> tuple[np.ndarray, np.ndarray]:
+    """Bending and shear stress (R,) from the forces at the element's ends."""
+    bending, shear = [], []
+    for i, element in enumerate(shaft.elements):
+        own = beam.matrices(element)
+        weight = -gravity * own.mass @ np.array([1.0, 0.0, 1.0, 0.0])
+        force1, moment1, force2, moment2 = own.stiffness @ q[2 * i : 2 * i + 4] - weight
+        bending += [bending_per_moment(element) * m for m in (-moment1, moment2)]
+        shear += [shear_per_force(element) * v for v in (force1, -force2)]
+    return np.array(bending), np.array(shear)
