@@ -246,7 +246,9 @@ def _elements(top: _Table, materials: dict[str, _Material]) -> tuple[Element, ..
         found += [element] * count
         end += count * element.length
     if not found:
-        raise top.error("element", "is missing; describe the shaft by one table [[element]] or more")
+        raise RotorFileError(
+            f"{top.file}: element is missing; describe the shaft by one table [[element]] or more"
+        )
     return tuple(found)
 
 
