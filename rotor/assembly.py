@@ -11,12 +11,20 @@ where q (2N,) holds (z, slope) node by node and e is a unit translation.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import linalg
 
+from modelkit.model import ModelError
 from rotor import beam
 from rotor.shaft import Shaft
+
+TOO_UNLIKE = (
+    "the elements of the rotor are too unlike each other to be calculated together; "
+    "look for very short or very thin ones"
+)
 
 
 @dataclass(frozen=True)
@@ -60,9 +68,30 @@ def tilt(shaft: Shaft) -> np.ndarray:
     return e
 
 
-def unit_forces(shaft: Shaft, nodes: tuple[int, ...]) -> np.ndarray:
+def unit_forces(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
     """A force of 1 N at each of `nodes` (1-based), a column each (2N, len(nodes))."""
+    check_nodes(shaft, nodes)
     forces = np.zeros((2 * shaft.nodes, len(nodes)))
     for column, node in enumerate(nodes):
         forces[2 * (node - 1), column] = 1.0
     return forces
+
+
+def check_nodes(shaft: Shaft, nodes: Sequence[int]) -> None:
+    """Raises ModelError where one of `nodes` (1-based) does not exist."""
+    for node in nodes:
+        if not 1 <= node <= shaft.nodes:
+            raise ModelError(f"node {node}: the rotor {shaft.title} has nodes 1 to {shaft.nodes}")
+
+
+def solve(stiffness: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Deflections of a held rotor, scaled first: deflections and slopes are of different size.
+
+    Raises ModelError where elements are too unlike each other to be calculated together.
+    """
+    scale = 1.0 / np.sqrt(np.diag(stiffness))
+    try:
+        factor = linalg.cho_factor(stiffness * np.outer(scale, scale))
+    except linalg.LinAlgError:
+        raise ModelError(TOO_UNLIKE) from None
+    return (scale * linalg.cho_solve(factor, (scale * loads.T).T).T).T

@@ -14,11 +14,12 @@ import numpy as np
 from scipy import linalg
 
 from modelkit.model import ModelError
-from rotor.assembly import Matrices, assemble, tilt, translation, unit_forces
+from rotor.assembly import TOO_UNLIKE, Matrices, assemble, solve, tilt, translation, unit_forces
 from rotor.shaft import Shaft
 
 RIGID = 2  # rigid modes per plane
 NOTHING = 1e-7  # a residual vector this small against its node's deflection is rounding error
+DROWNED = 1e-11  # squared frequency over the highest; below, rounding errors show in the third digit
 PARALLEL = 1e-10  # squared sine below which residual vectors count as one
 
 
@@ -76,14 +77,14 @@ def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
     By inertia relief: the force is balanced by the inertia of the rigid motion it causes, and the
     deflection holds no rigid motion.
     """
-    return _relieved(shaft, assemble(shaft), unit_forces(shaft, tuple(nodes)))
+    return _relieved(shaft, assemble(shaft), unit_forces(shaft, nodes))
 
 
 def residual_flexibility(shaft: Shaft, kept: Basis, nodes: Sequence[int]) -> np.ndarray:
     """What `flexibility` holds beyond the coordinates of `kept` (2N, len(nodes)), m/N."""
     deflection = flexibility(shaft, nodes)
     elastic, omega = kept.shapes[:, RIGID:], kept.omega[RIGID:]
-    return deflection - elastic @ (elastic.T @ unit_forces(shaft, tuple(nodes)) / omega[:, None] ** 2)
+    return deflection - elastic @ (elastic.T @ unit_forces(shaft, nodes) / omega[:, None] ** 2)
 
 
 def _relieved(shaft: Shaft, matrices: Matrices, forces: np.ndarray) -> np.ndarray:
@@ -93,7 +94,7 @@ def _relieved(shaft: Shaft, matrices: Matrices, forces: np.ndarray) -> np.ndarra
     balanced = forces - inertia @ (rigid.T @ forces)
     held = slice(2, None)  # balanced loads leave no reaction where node 1 is held
     deflection = np.zeros_like(balanced)
-    deflection[held] = linalg.solve(matrices.stiffness[held, held], balanced[held], assume_a="pos")
+    deflection[held] = solve(matrices.stiffness[held, held], balanced[held])
     return deflection - rigid @ (inertia.T @ deflection)
 
 
@@ -102,7 +103,10 @@ def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarra
     rigid = rigid_modes(shaft)
     if count == RIGID:
         return rigid, np.zeros(RIGID)
-    _, found = linalg.eigh(matrices.stiffness, matrices.mass, subset_by_index=[RIGID, count - 1])
+    square, found = linalg.eigh(matrices.stiffness, matrices.mass)
+    if square[RIGID] < DROWNED * square[-1]:
+        raise ModelError(TOO_UNLIKE)
+    found = found[:, RIGID:count]
     found = found - rigid @ (rigid.T @ (matrices.mass @ found))
     elastic, omega = _ritz(matrices, found)
     return np.hstack((rigid, elastic)), np.concatenate((np.zeros(RIGID), omega))

@@ -43,6 +43,7 @@ import tomllib
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 from modelkit.model import ModelError
@@ -55,6 +56,10 @@ CLOSE = 1e-7  # m; positions and sums of lengths this close agree
 EXAMPLES = {
     "m": "12.5 mm", "Pa": "207 GPa", "kg/m3": "7830 kg/m3", "kg": "0.5 kg", "kg.m2": "0.002 kg.m2",
     "kg.m": "3 g.mm", "rad": "90 deg",
+}  # fmt: skip
+LIMITS = {  # beyond them it is a slip, or too far apart to calculate with
+    "m": (1e-4, 1e2), "Pa": (1e6, 1e13), "kg/m3": (1.0, 1e5), "kg": (1e-9, 1e6), "kg.m2": (1e-15, 1e7),
+    "kg.m": (1e-12, 1e3), "rad": (0.0, 1e3),
 }  # fmt: skip
 
 
@@ -115,11 +120,12 @@ class _Table:
     values: dict[str, Any]
 
     def path(self, name: str) -> str:
-        return f"{self.where}.{name}" if self.where else name
+        shown = name if name.isidentifier() else repr(name)
+        return f"{self.where}.{shown}" if self.where else shown
 
     def error(self, name: str, says: str) -> RotorFileError:
-        """About the value `name`, which is shown if there is one."""
-        value = f" = {self.values[name]!r}" if name in self.values else ""
+        """About the value `name`, of which the beginning is shown if there is one."""
+        value = f" = {shorten(repr(self.values[name]), 60)}" if name in self.values else ""
         return RotorFileError(f"{self.file}: {self.path(name)}{value} {says}")
 
     def only(self, *known: str) -> None:
@@ -130,7 +136,7 @@ class _Table:
                 remedy = f"did you mean {near[0]}" if near else f"there are: {', '.join(known)}"
                 raise RotorFileError(f"{self.file}: {self.path(name)} is not a known field; {remedy}")
 
-    def get(self, name: str, kind: type, meant: str, default: Any = None) -> Any:
+    def get(self, name: str, kind: Any, meant: str, default: Any = None) -> Any:
         """A value of the given kind, described by `meant`; required unless there is a default."""
         if name not in self.values:
             if default is None:
@@ -153,7 +159,7 @@ class _Table:
 
     def number(self, name: str, low: float, below: float, default: float | None = None) -> float:
         meant = f"a number without unit, at least {low:g} and below {below:g}"
-        value = self.get(name, (int, float), meant, default)  # type: ignore[arg-type]
+        value = self.get(name, (int, float), meant, default)
         if not low <= value < below:
             raise self.error(name, f"must be {meant}")
         return float(value)
@@ -179,6 +185,9 @@ class _Table:
             raise RotorFileError(f"{self.file}: {error}; write {meant}") from None
         if (number == 0.0 and not zero) or (number < 0.0 and not negative):
             raise self.error(name, "must not be negative" if zero else "must be above 0")
+        low, high = LIMITS[unit]
+        if number != 0.0 and not low <= abs(number) <= high:
+            raise self.error(name, f"is out of proportion; rotors have {low:g} to {high:g} {unit}")
         return number
 
     def table(self, name: str) -> _Table:

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
 
 from modelkit.model import ModelError
 from rotor import beam
-from rotor.assembly import assemble, translation
+from rotor.assembly import assemble, check_nodes, solve, translation
 from rotor.shaft import Shaft
 from rotor.stresses import bending_per_moment, end_nodes, shear_per_force
 
@@ -37,6 +36,12 @@ def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float 
     nodes = [node for node, _ in supports]
     if len(set(nodes)) < 2 or len(set(nodes)) != len(nodes):
         raise ModelError(f"supports at nodes {nodes}: a rotor rests on two nodes or more, each named once")
+    check_nodes(shaft, nodes)
+    for node, spring in supports:
+        if not spring > 0.0:
+            raise ModelError(
+                f"the support at node {node} has a stiffness of {spring:g} N/m; it must be above 0"
+            )
     matrices = assemble(shaft)
     load = -gravity * matrices.mass @ translation(shaft)
     stiffness = matrices.stiffness.copy()
@@ -46,7 +51,7 @@ def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float 
     held = [2 * node - 2 for node, spring in supports if math.isinf(spring)]
     free = np.setdiff1d(np.arange(2 * shaft.nodes), held)
     q = np.zeros(2 * shaft.nodes)
-    q[free] = linalg.solve(stiffness[np.ix_(free, free)], load[free], assume_a="pos")
+    q[free] = solve(stiffness[np.ix_(free, free)], load[free])
     reactions = (matrices.stiffness @ q - load)[[2 * node - 2 for node in nodes]]
     bending, shear = _stresses(shaft, q, gravity)
     node = end_nodes(shaft)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -63,7 +64,7 @@ def test_inertia_relief_against_the_spectral_sum(rotor: Shaft):
     at = seats(rotor)
     b = basis(rotor, 0)
     elastic = b.shapes[:, 2:]
-    sum_of_modes = elastic @ (elastic.T @ unit_forces(rotor, tuple(at)) / b.omega[2:, None] ** 2)
+    sum_of_modes = elastic @ (elastic.T @ unit_forces(rotor, at) / b.omega[2:, None] ** 2)
     assert flexibility(rotor, at) == pytest.approx(sum_of_modes, abs=1e-9 * np.abs(sum_of_modes).max())
 
 
@@ -112,3 +113,16 @@ def test_reduced_whirl_speeds_converge(rotor: Shaft):
 def test_a_number_of_modes_that_cannot_be(rotor: Shaft, modes: int):
     with pytest.raises(ModelError, match=rf"modes = {modes}: .* has {2 * rotor.nodes} modes per plane"):
         basis(rotor, modes)
+
+
+@pytest.mark.parametrize("node", [0, -1, 99])
+def test_a_node_that_does_not_exist(rotor: Shaft, node: int):
+    with pytest.raises(ModelError, match=rf"node {node}: .* has nodes 1 to {rotor.nodes}"):
+        basis(rotor, 4, [2, node])
+
+
+def test_elements_too_unlike_each_other(rotor: Shaft):
+    short = replace(rotor.elements[0], length=1e-4, outer_diameter=0.5)
+    long = replace(rotor.elements[0], length=2.0, outer_diameter=0.001)
+    with pytest.raises(ModelError, match="too unlike each other"):
+        basis(Shaft("odd", (short, long) * 10), 6)

@@ -152,6 +152,16 @@ MISTAKES = {
         ("point_mass[1].mass = 'one kg' is not a number",),
     ),
     "not finite": ('mass = "100 g"', 'mass = "nan kg"', ("point_mass[1].mass", "not a finite number")),
+    "out of proportion": (
+        'mass = "100 g"',
+        'mass = "1e200 kg"',
+        ("point_mass[1].mass", "1e-09 to 1e+06 kg"),
+    ),
+    "metres for mm": (
+        'length = "50 mm"',
+        'length = "500 m"',
+        ("element[1].length = '500 m'", "0.0001 to 100 m"),
+    ),
     "negative length": (
         'length = "50 mm"',
         'length = "-50 mm"',
@@ -215,7 +225,7 @@ MISTAKES = {
         ("unbalance[1].node = -3 is not a node",),
     ),
     "station twice": ("B = 5", "A = 5", ("not valid TOML", "line 54")),
-    "station's name": ("B = 5", '"B 1" = 5', ("stations.B 1 = 5", "letters, digits and _")),
+    "station's name": ("B = 5", '"B 1" = 5', ("stations.'B 1' = 5", "letters, digits and _")),
     "station's keyword": ("B = 5", "in = 5", ("stations.in = 5 has a name that cannot be used",)),
     "TOML syntax": ("count = 3", "count = ", ("not valid TOML", "line 22")),
     "one bracket": ("[[disc]]", "[disc]", ("disc = {", "each written [[disc]]")),

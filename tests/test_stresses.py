@@ -57,10 +57,14 @@ def test_elastic_supports_add_their_own_sinking():
     assert soft.bending == pytest.approx(rigid.bending, abs=1.0)
 
 
-def test_a_rotor_needs_two_supports():
+def test_supports_that_cannot_be():
     for supports in ([(1, math.inf)], [(1, 1e6), (1, 1e6)]):
         with pytest.raises(ModelError, match="two nodes or more"):
             at_rest(UNIFORM, supports)
+    with pytest.raises(ModelError, match="node 10: the rotor uniform has nodes 1 to 9"):
+        at_rest(UNIFORM, [(1, math.inf), (10, math.inf)])
+    with pytest.raises(ModelError, match="node 9 has a stiffness of 0 N/m"):
+        at_rest(UNIFORM, [(1, math.inf), (9, 0.0)])
 
 
 def test_factors_of_sections():
