@@ -1,9 +1,12 @@
 """Active magnetic bearing: it levitates the journal until it is shut down.
 
-A proportional-derivative law about the stator's centre plus the load it found at the start, so that a
-rotor that starts at rest in the centre floats there. The load comes from the seat itself: what the
-rotor would accelerate at without it, times its mass. The force is limited in each direction. From the
-shutdown on, also within a macro step, there is none.
+A proportional-derivative law about the stator's centre plus the static load of this bearing, so that a
+rotor that starts at rest floats there. The static load is what the rotor states (`static_fx`, ...), or
+else what the seat alone would need: the rotor's acceleration without it times its mass. The force is
+limited in each direction, and may lag behind the law as that of an amplifier of finite bandwidth.
+Position is measured at the journal or, as on real machines, by a sensor beside it (`sensor`), whose
+motion is carried through the macro step with the journal's. From the shutdown on, also within a macro
+step, there is no force.
 """
 
 from __future__ import annotations
@@ -15,12 +18,13 @@ import numpy as np
 from bearings import seat
 from modelkit import dopri
 from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import Interface, Load, MountReaction, SeatReaction
+from modelkit.model import Model
+from modelkit.ports import FlexibleSeatMotion, Interface, Load, MountMotion, MountReaction, SeatReaction
 from modelkit.status import OK
 from modelkit.variables import group, integer, real
 
-SUPPLIED = seat.INSIDE
+SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
+FORCE_SCALE = 10.0  # N
 ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
 
 
@@ -30,9 +34,40 @@ class Parameters:
 
     stiffness: float = real(2e5, "N/m", "stiffness of the control", minimum=0.0)
     damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0)
+    bandwidth: float = real(0.0, "rad/s", "of the amplifier (first order); 0: no lag", minimum=0.0)
+    sensed: int = integer(
+        0, "where position is measured: 0 at the journal, 1 at the sensor", minimum=0, maximum=1
+    )
     force_limit: float = real(1000.0, "N", "largest force in each direction", above=0.0)
     shutdown_time: float = real(0.005, "s", "time of the shutdown")
     interface: Interface = group(Interface)
+
+
+@dataclass(frozen=True)
+class HeldMotion(FlexibleSeatMotion):
+    """Motion of the journal, and what it takes to hold it."""
+
+    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here", constant=True)
+    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here", constant=True)
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """Motion where the sensor looks, at the beginning of the macro step."""
+
+    x: float = real(0.0, "m", "horizontal position", nominal=1e-4)
+    y: float = real(0.0, "m", "vertical position", nominal=1e-4)
+    vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
+    vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Motion of journal, stator and sensor."""
+
+    journal: HeldMotion = group(HeldMotion)
+    housing: MountMotion = group(MountMotion)
+    sensor: Sensed = group(Sensed)
 
 
 @dataclass(frozen=True)
@@ -55,7 +90,7 @@ class Hidden:
     span: float = real(0.0, "s", "how long it still acts in this macro step; negative: not at all")
 
 
-MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, SUPPLIED + 1, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, FY + 1, hidden=Hidden, inputs=Inputs)
 
 
 @kernel
@@ -64,17 +99,31 @@ def _limited(force, limit):
 
 
 @kernel
+def _law(t, y, m):
+    """Force the control asks for (N), t seconds into the macro step."""
+    p, j, u = m.p, m.u.journal, m.u.sensor
+    ex, ey = y[seat.JX] - y[seat.HX], y[seat.JY] - y[seat.HY]
+    ux, uy = y[seat.JVX] - y[seat.HVX], y[seat.JVY] - y[seat.HVY]
+    if p.sensed == 1:  # what the sensor saw at the restart, moved on as the journal moved
+        ux, uy = ux + u.vx - j.vx, uy + u.vy - j.vy
+        ex += u.x - j.x + t * (u.vx - j.vx)
+        ey += u.y - j.y + t * (u.vy - j.vy)
+    fx = _limited(m.o.load_x - p.stiffness * ex - p.damping * ux, p.force_limit)
+    return fx, _limited(m.o.load_y - p.stiffness * ey - p.damping * uy, p.force_limit)
+
+
+@kernel
 def react(t, y, dy, m):
     """Load of the control, zero after the shutdown."""
     p = m.p
+    dy[SUPPLIED], dy[FX], dy[FY] = 0.0, 0.0, 0.0
     if t > m.s.span:
-        dy[SUPPLIED] = 0.0
         return Load(0.0, 0.0, 0.0, 0.0, 0.0)
-    ex, ey = y[seat.JX] - y[seat.HX], y[seat.JY] - y[seat.HY]
-    ux, uy = y[seat.JVX] - y[seat.HVX], y[seat.JVY] - y[seat.HVY]
-    fx = _limited(m.o.load_x - p.stiffness * ex - p.damping * ux, p.force_limit)
-    fy = _limited(m.o.load_y - p.stiffness * ey - p.damping * uy, p.force_limit)
-    dy[SUPPLIED] = fx * ux + fy * uy
+    fx, fy = _law(t, y, m)
+    if p.bandwidth > 0.0:
+        dy[FX], dy[FY] = p.bandwidth * (fx - y[FX]), p.bandwidth * (fy - y[FY])
+        fx, fy = y[FX], y[FY]
+    dy[SUPPLIED] = fx * (y[seat.JVX] - y[seat.HVX]) + fy * (y[seat.JVY] - y[seat.HVY])
     return Load(fx, fy, 0.0, -fx, -fy)
 
 
@@ -102,9 +151,11 @@ def start(words):
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.y, m)
     j = m.u.journal
-    if j.inv_m > 0.0:
+    m.o.load_x, m.o.load_y = j.static_fx, j.static_fy
+    if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
         m.o.load_x = -j.ax_free / j.inv_m
         m.o.load_y = -j.ay_free / j.inv_m
+    m.y[FX], m.y[FY] = m.o.load_x, m.o.load_y
     seat.begin(react, report, m)
 
 
@@ -147,7 +198,7 @@ def advance(words, work, time, step):
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    return seat.weights([0.0])
+    return seat.weights([0.0] + 2 * [1.0 / FORCE_SCALE if p.bandwidth > 0.0 else 0.0])
 
 
 MODEL = Model(
@@ -155,7 +206,7 @@ MODEL = Model(
     title="Active magnetic bearing",
     about="Magnetic bearing with proportional-derivative control, shut down at a chosen time",
     parameters=Parameters,
-    inputs=seat.BearingInputs,
+    inputs=Inputs,
     outputs=Outputs,
     hidden=Hidden,
     memory=MEMORY,
@@ -164,7 +215,7 @@ MODEL = Model(
     weights=weights,
     instant=instant,
     starts_from={
-        "load_x": ("journal.ax_free", "journal.inv_m"),
-        "load_y": ("journal.ay_free", "journal.inv_m"),
+        "load_x": ("journal.ax_free", "journal.inv_m", "journal.static_fx"),
+        "load_y": ("journal.ay_free", "journal.inv_m", "journal.static_fy"),
     },
 )

@@ -245,6 +245,7 @@ def drift(x, y, v, h, m):
     x[seat.HY] = y[seat.HY] + moves * h * v[seat.HVY]
     x[seat.HFX] = y[seat.HFX] + h * v[seat.HFVX]
     x[seat.HFY] = y[seat.HFY] + h * v[seat.HFVY]
+    seat.drift_modes(x, y, v, h, m)
     x[ring.RX] = y[ring.RX] + h * v[ring.RVX]
     x[ring.RY] = y[ring.RY] + h * v[ring.RVY]
     x[ring.RANGLE] = y[ring.RANGLE] + h * v[ring.RW]
@@ -253,7 +254,7 @@ def drift(x, y, v, h, m):
         x[i] = y[i] + h * v[i + 2 * n]
     for i in range(BALLS + ANGLE * n, BALLS + SPIN * n):
         x[i] = y[i] + h * v[i + n]
-    for i in range(BALLS + SIZE * n, m.n, SIZE):  # the cage
+    for i in range(BALLS + SIZE * n, m.s.seat.inside, SIZE):  # the cage
         x[i + X] = y[i + X] + h * v[i + VX]
         x[i + Y] = y[i + Y] + h * v[i + VY]
         x[i + ANGLE] = y[i + ANGLE] + h * v[i + SPIN]
@@ -291,7 +292,7 @@ def fastest(m):
     if s.ring.indentation > 0.0:
         below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
-    return math.sqrt(max(of_ball, of_ring, sides * d.cage_grip))
+    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_grip)), m.s.seat.fastest)
 
 
 @kernel

@@ -16,7 +16,7 @@ from bearings.friction import FrictionLaw, prepared, problem
 from bearings.journal_contact import ContactMemory, ContactReport, touch, watch_contact
 from modelkit import dopri
 from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
+from modelkit.model import Model
 from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
 from modelkit.variables import group, real
 
@@ -63,7 +63,7 @@ class Hidden:
     rate: float = real(0.0, "m/s", "its rate")
 
 
-MEMORY = memory_layout(Parameters, seat.BearingInputs, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
 
 
 @kernel

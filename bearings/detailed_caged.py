@@ -32,7 +32,7 @@ from bearings.friction import problem as friction_problem
 from bearings.rolling import starts_from, state_constants
 from modelkit import dopri, verlet
 from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
+from modelkit.model import Model
 from modelkit.ports import Load
 from modelkit.variables import array, group, real
 
@@ -75,9 +75,7 @@ class Derived(BallBodiesDerived):
     pocket_y: tuple = array(MOST_BALLS)
 
 
-MEMORY = memory_layout(
-    Parameters, seat.BearingInputs, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory
-)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
 SCRATCH = dopri.scratch_layout(MOST_STATES)
 
 

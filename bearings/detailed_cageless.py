@@ -42,7 +42,7 @@ from bearings.pair import OUTSIDE, Place, press
 from bearings.rolling import starts_from, state_constants
 from modelkit import dopri, verlet
 from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
+from modelkit.model import Model
 from modelkit.ports import Load
 from modelkit.variables import group, real
 
@@ -81,9 +81,7 @@ class Derived(BallBodiesDerived):
     ball_friction: FrictionLaw = group(FrictionLaw)
 
 
-MEMORY = memory_layout(
-    Parameters, seat.BearingInputs, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory
-)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
 SCRATCH = dopri.scratch_layout(MOST_STATES)
 
 

@@ -5,12 +5,15 @@ bodies, a copy of the journal and of the housing, each driven by the bearing's o
 
     z'' = a_free + inv_m F(t) [- k/m (z - z_n) - c/m (z' - z'_n)]        omega' = alpha_free + inv_I M(t)
 
-(the bracket for a housing on its springs, where it says so).
+(the bracket for a housing on its springs, where it says so). A journal on a flexible rotor is the sum of
+a point mass and of such oscillators, one for each of the rotor's elastic modes that it is told of.
 
 With it run the quadratures of what crosses the interface: impulse, first moment in time, and work. The
 load handed back is mean + slope (t - t_mid) with the same impulse and first moment, so a body that is a
 point mass ends the step exactly where its copy did. For a housing on springs the two numbers are chosen
-so that it does, too (`linear_load`); without springs that is the same impulse and first moment again.
+so that it does, too (`modelkit.oscillator.load_for`); without springs that is the same impulse and first
+moment again. For elastic modes, which may be faster than the macro step, what mean and slope leave open
+is handed over beside them (`ModeLoad`).
 
 At the next restart the copy takes the body's state; half the sum of the loads before and after times
 that jump is the work the copy missed, and is accounted for as `jump`.
@@ -23,10 +26,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modelkit import oscillator
 from modelkit.kernel import inlined, kernel
-from modelkit.ports import ACCELERATION, VELOCITY, Load, Motion, MountMotion, SeatMotion
+from modelkit.model import memory_layout
+from modelkit.ports import (
+    ACCELERATION,
+    MODEL,
+    MODES,
+    VELOCITY,
+    FlexibleSeatMotion,
+    Load,
+    Motion,
+    MountMotion,
+)
 from modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from modelkit.variables import group, real
+from modelkit.variables import Nothing, group, integer, real
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
 JX, JY, JVX, JVY, JW = range(5)  # journal copy
@@ -35,11 +49,14 @@ HX, HY, HVX, HVY = range(12, 16)  # housing copy
 HFX, HFY, HFVX, HFVY, HE = range(16, 21)  # its response to the load alone, per mass; work
 HPX, HPY = range(21, 23)  # impulse
 INSIDE = 23  # first component of what is inside the bearing
+# Of each elastic mode, behind what is inside: its share in the journal copy's motion, and the response
+# of a mode of unit inv_m to the load alone.
+ZX, ZY, ZVX, ZVY, QX, QY, PX, PY = range(8)
+PER_MODE = 8
 
 POSITION_SCALE = 1e-5  # m; an indentation
 VELOCITY_SCALE = 0.1  # m/s; a landing
 SPIN_SCALE = 1e3  # rad/s
-TERMS = 24  # of the series in `linear_load`, enough up to STIFFEST
 STIFFEST = 3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load
 
 
@@ -47,7 +64,7 @@ STIFFEST = 3.0  # half a period of the housing per macro step; beyond, two numbe
 class BearingInputs:
     """What every bearing takes."""
 
-    journal: SeatMotion = group(SeatMotion)
+    journal: FlexibleSeatMotion = group(FlexibleSeatMotion)
     housing: MountMotion = group(MountMotion)
 
 
@@ -60,6 +77,21 @@ class SeatMemory:
     jm: float = real(0.0, "N.m", "on the journal")
     hx: float = real(0.0, "N", "on the housing")
     hy: float = real(0.0, "N", "on the housing")
+    inside: int = integer(0, "components of the state up to the elastic modes")
+    modes: int = integer(0, "elastic modes that are carried")
+    fastest: float = real(0.0, "rad/s", "largest angular frequency among them")
+
+
+def bearing_memory(
+    parameters: type,
+    outputs: type,
+    size: int,
+    derived: type = Nothing,
+    hidden: type = Nothing,
+    inputs: type = BearingInputs,
+) -> np.dtype:
+    """Memory of a bearing whose state, with the copies, has up to `size` components."""
+    return memory_layout(parameters, inputs, outputs, size + PER_MODE * MODES, derived, hidden)
 
 
 def weights(inside: list[float]) -> np.ndarray:
@@ -94,6 +126,30 @@ def take_inputs(y, m):
         y[i] = 0.0
     for i in range(HFX, HPY + 1):
         y[i] = 0.0
+    for k in range(m.s.seat.modes):
+        i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
+        y[i + ZX], y[i + ZY], y[i + ZVX], y[i + ZVY] = z.x, z.y, z.vx, z.vy
+        y[i + QX], y[i + QY], y[i + PX], y[i + PY] = 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def take_modes(m):
+    """Note which elastic modes the rotor tells of, and make room for them in the state."""
+    s = m.s.seat
+    s.inside, s.modes, s.fastest = m.n, 0, 0.0
+    if m.p.interface.order < MODEL:
+        return
+    while s.modes < MODES and m.u.journal.mode[s.modes].inv_m > 0.0:
+        z = m.u.journal.mode[s.modes]
+        i = m.n
+        m.y[i + ZX], m.y[i + ZY], m.y[i + ZVX], m.y[i + ZVY] = z.x, z.y, z.vx, z.vy
+        for w in range(PER_MODE):
+            m.weight[i + w] = 0.0
+        m.weight[i + ZX] = m.weight[i + ZY] = 1.0 / POSITION_SCALE
+        m.weight[i + ZVX] = m.weight[i + ZVY] = 1.0 / VELOCITY_SCALE
+        s.fastest = max(s.fastest, math.sqrt(z.k_over_m))
+        s.modes += 1
+        m.n += PER_MODE
 
 
 @kernel
@@ -104,6 +160,9 @@ def finite_inputs(m):
     total = j.x + j.y + j.vx + j.vy + j.ax_free + j.ay_free + j.inv_m + j.omega
     total += j.alpha_free + j.inv_I + h.x + h.y + h.vx + h.vy + h.ax_free + h.ay_free + h.inv_m
     total += h.k_over_m + h.c_over_m
+    for k in range(m.s.seat.modes):
+        z = j.mode[k]
+        total += z.x + z.y + z.vx + z.vy + z.ax_free + z.ay_free + z.inv_m + z.k_over_m + z.c_over_m
     return math.isfinite(total)
 
 
@@ -129,8 +188,9 @@ def copy_rates(t, y, dy, m, half, load):
     j = m.u.journal
     dy[JX] = moves * y[JVX]
     dy[JY] = moves * y[JVY]
-    dy[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx)
-    dy[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy)
+    back_x, back_y = _mode_rates(y, dy, m, load)
+    dy[JVX] = speeds_up * (j.ax_free + j.inv_m * own.jx) - back_x
+    dy[JVY] = speeds_up * (j.ay_free + j.inv_m * own.jy) - back_y
     dy[JW] = speeds_up * (j.alpha_free + j.inv_I * own.jm)
     dy[JPX] = load.jx
     dy[JPY] = load.jy
@@ -156,24 +216,49 @@ def copy_rates(t, y, dy, m, half, load):
 
 
 @kernel
-def linear_load(step, k, c, z, v):
-    """Mean and slope of the linear load that brings a resting oscillator to (z, v) in `step` (s).
+def _mode_rates(y, dy, m, load):
+    """Derivatives of the elastic modes under `load`; returns how they pull the journal back (m/s2)."""
+    back_x, back_y = 0.0, 0.0
+    for n in range(m.s.seat.modes):
+        i, z = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n]
+        k, c = z.k_over_m, z.c_over_m
+        pull_x = k * (y[i + ZX] - z.x) + c * (y[i + ZVX] - z.vx)
+        pull_y = k * (y[i + ZY] - z.y) + c * (y[i + ZVY] - z.vy)
+        dy[i + ZX] = y[i + ZVX]
+        dy[i + ZY] = y[i + ZVY]
+        dy[i + ZVX] = z.ax_free + z.inv_m * load.jx - pull_x
+        dy[i + ZVY] = z.ay_free + z.inv_m * load.jy - pull_y
+        dy[i + QX] = y[i + PX]
+        dy[i + QY] = y[i + PY]
+        dy[i + PX] = load.jx - k * y[i + QX] - c * y[i + PX]
+        dy[i + PY] = load.jy - k * y[i + QY] - c * y[i + PY]
+        back_x += pull_x
+        back_y += pull_y
+    return back_x, back_y
 
-    The oscillator is z'' = f - k z - c z' (k in 1/s2, c in 1/s). With b = (0, 1) and A its matrix, a
-    unit load gives S = sum A^i b H^(i+1)/(i+1)!, a unit ramp R = sum A^i b H^(i+2)/(i+2)!.
-    """
-    w0, w1 = 0.0, step  # A^i b H^(i+1) / (i+1)!
-    s0, s1, r0, r1 = 0.0, 0.0, 0.0, 0.0
-    for i in range(TERMS):
-        s0 += w0
-        s1 += w1
-        r0 += w0 * step / (i + 2)
-        r1 += w1 * step / (i + 2)
-        w0, w1 = w1 * step / (i + 2), -(k * w0 + c * w1) * step / (i + 2)
-    r0 -= 0.5 * step * s0
-    r1 -= 0.5 * step * s1
-    determinant = s0 * r1 - s1 * r0
-    return (z * r1 - v * r0) / determinant, (s0 * v - s1 * z) / determinant
+
+@kernel
+def drift_modes(x, y, v, h, m):
+    """Leapfrog's move of the elastic modes: positions in y plus h (s) times the velocities in v, into x."""
+    for n in range(m.s.seat.modes):
+        i = m.s.seat.inside + PER_MODE * n
+        x[i + ZX] = y[i + ZX] + h * v[i + ZVX]
+        x[i + ZY] = y[i + ZY] + h * v[i + ZVY]
+        x[i + QX] = y[i + QX] + h * v[i + PX]
+        x[i + QY] = y[i + QY] + h * v[i + PY]
+
+
+@kernel
+def _hand_modes_over(y, m, step):
+    """What mean and slope do not say of the load to the elastic modes."""
+    j = m.o.journal
+    for n in range(m.s.seat.modes):
+        i, z, o = m.s.seat.inside + PER_MODE * n, m.u.journal.mode[n], j.mode[n]
+        found = oscillator.step(z.k_over_m, z.c_over_m, step)
+        o.qx = y[i + QX] - (found.zf * j.fx + found.zg * j.dfx)
+        o.qy = y[i + QY] - (found.zf * j.fy + found.zg * j.dfy)
+        o.px = y[i + PX] - (found.vf * j.fx + found.vg * j.dfx)
+        o.py = y[i + PY] - (found.vf * j.fy + found.vg * j.dfy)
 
 
 @kernel
@@ -185,11 +270,13 @@ def hand_over(y, m, step):
     j.fx, j.fy, j.mz = first * y[JPX], first * y[JPY], first * y[JPM]
     j.dfx, j.dfy, j.dmz = second * y[JQX], second * y[JQY], second * y[JQM]
     j.work += y[JE]
+    _hand_modes_over(y, m, step)
     h = m.o.housing
     u = m.u.housing
     if max(step * math.sqrt(u.k_over_m), step * u.c_over_m) < STIFFEST:
-        h.fx, h.dfx = linear_load(step, u.k_over_m, u.c_over_m, y[HFX], y[HFVX])
-        h.fy, h.dfy = linear_load(step, u.k_over_m, u.c_over_m, y[HFY], y[HFVY])
+        found = oscillator.step(u.k_over_m, u.c_over_m, step)
+        h.fx, h.dfx = oscillator.load_for(found, y[HFX], y[HFVX])
+        h.fy, h.dfy = oscillator.load_for(found, y[HFY], y[HFVY])
     else:
         h.fx, h.fy, h.dfx, h.dfy = first * y[HPX], first * y[HPY], 0.0, 0.0
     h.work += y[HE]
@@ -213,6 +300,7 @@ def remember(m, load):
 @inlined
 def begin(react, report, m):
     """First outputs, from state and inputs; the first restart compares with the load now."""
+    take_modes(m)
     load = react(0.0, m.y, np.zeros(m.n), m)
     remember(m, load)
     report(m.y, m)

@@ -40,7 +40,7 @@ from bearings.rolling import (
 )
 from modelkit import dopri
 from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
+from modelkit.model import Model
 from modelkit.ports import Load
 from modelkit.variables import array, group, integer, real
 
@@ -114,9 +114,7 @@ class Hidden(RollingMemory):
     balls: LoadedBalls = group(LoadedBalls)
 
 
-MEMORY = memory_layout(
-    Parameters, seat.BearingInputs, Outputs, ring.NEXT + 3, derived=Derived, hidden=Hidden
-)
+MEMORY = seat.bearing_memory(Parameters, Outputs, ring.NEXT + 3, derived=Derived, hidden=Hidden)
 
 
 @kernel

@@ -52,7 +52,7 @@ from bearings.rolling import (
 )
 from modelkit import rosenbrock
 from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
+from modelkit.model import Model
 from modelkit.ports import Interface, Load
 from modelkit.variables import array, group, integer, real
 
@@ -135,9 +135,7 @@ class Hidden(RollingMemory):
     pushed: PushedBalls = group(PushedBalls)
 
 
-MEMORY = memory_layout(
-    Parameters, seat.BearingInputs, Outputs, BALLS + 3 * MOST_BALLS, derived=Derived, hidden=Hidden
-)
+MEMORY = seat.bearing_memory(Parameters, Outputs, BALLS + 3 * MOST_BALLS, derived=Derived, hidden=Hidden)
 
 
 @kernel
@@ -356,6 +354,8 @@ def solve(j, s, r, m):
         r[i + 1] += (e * o - g * q) * scale
         r[i + 2] += (a * q - h * o) * scale
     for i in range(BALLS):
+        r[i] /= s
+    for i in range(m.s.seat.inside, m.n):
         r[i] /= s
     r[ring.RW] = turned
 

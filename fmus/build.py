@@ -12,50 +12,42 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
-from fmus.sources import ROOT, package_name, script_name, write_package, write_script
+from fmus.recipes import Recipe
+from fmus.sources import write_package, write_script
 from modelkit.kernel import user_cache
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 
 
-def names() -> list[str]:
-    """FMUs of the project."""
-    scripts = (ROOT / "fmus" / "scripts").glob("*.py")
-    return sorted(path.stem for path in scripts if path.stem != "__init__")
-
-
-def build(name: str, folder: Path) -> Path:
-    """Build FMU `name` into `folder` as name.fmu; returns its path. An older one is replaced."""
+def build(recipe: Recipe, folder: Path) -> Path:
+    """Build an FMU into `folder` as NAME.fmu; returns its path. An older one is replaced."""
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
-        script = write_script(name, Path(temporary))
+        script = write_script(recipe.script, recipe.module, Path(temporary))
         package = write_package(Path(temporary))
-        with _untouched_interpreter():
+        with _untouched_interpreter(recipe.module):
             raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=[package])
-        fresh = folder / f".{name}.{os.getpid()}.fmu"
+        fresh = folder / f".{recipe.name}.{os.getpid()}.fmu"
         _normalise(Path(raw), fresh)
-    return fresh.replace(folder / f"{name}.fmu")
+    return fresh.replace(folder / f"{recipe.name}.fmu")
 
 
-def cached(name: str) -> Path:
-    """FMU `name` of the present sources, built on first use."""
-    folder = user_cache() / "fmus" / package_name()
-    path = folder / f"{name}.fmu"
-    return path if path.is_file() else build(name, folder)
+def cached(recipe: Recipe) -> Path:
+    """The FMU of a recipe and the present sources, built on first use."""
+    folder = user_cache() / "fmus" / recipe.content
+    path = folder / f"{recipe.name}.fmu"
+    return path if path.is_file() else build(recipe, folder)
 
 
 @contextmanager
-def _untouched_interpreter() -> Iterator[None]:
+def _untouched_interpreter(module: str) -> Iterator[None]:
     """Take back what pythonfmu's builder leaves in the interpreter: search path and script module."""
     path = list(sys.path)
-    modules = set(sys.modules)
     try:
         yield
     finally:
         sys.path[:] = path
-        for name in set(sys.modules) - modules:
-            if any(name == script_name(n) for n in names()):
-                del sys.modules[name]
+        sys.modules.pop(module, None)
 
 
 def _normalise(raw: Path, target: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
-from functools import cache
 from importlib.metadata import version
 from xml.etree.ElementTree import Element, SubElement, tostring
 
@@ -49,11 +48,12 @@ def base_unit(unit: str) -> dict[str, int] | None:
     return {symbol: count for symbol, count in exponents.items() if count}
 
 
-@cache
-def guid(name: str) -> str:
-    """Identity of the FMU `name`: equal sources, equal GUID."""
+def guid(model: Model) -> str:
+    """Identity of a model's FMU: equal sources, equal GUID."""
     packages = ("modelkit", "rotor", "bearings", "fmus")
-    digest = hashlib.sha256(f"{name} {VERSION} {source_hash(packages)}".encode()).hexdigest()
+    digest = hashlib.sha256(
+        f"{model.name} {model.content} {VERSION} {source_hash(packages)}".encode()
+    ).hexdigest()
     return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"
 
 
@@ -64,7 +64,7 @@ def describe(model: Model, identifier: str, log_categories: Mapping[str, str]) -
         {
             "fmiVersion": "2.0",
             "modelName": model.title,
-            "guid": guid(model.name),
+            "guid": guid(model),
             "description": model.about,
             "author": "touchdown-cosim",
             "license": "MIT",

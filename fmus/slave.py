@@ -32,6 +32,7 @@ class ModelSlave(Fmi2Slave):
         super().__init__(**kwargs)
         self.description = self.model.about
         self._instance = Instance(self.model)
+        self._identity = guid(self.model).encode()
         self._reals = self._instance.reals
         self._integers = self._instance.integers
         self._known: set[tuple[object, ...]] = set()  # vectors of value references checked before
@@ -135,10 +136,10 @@ class ModelSlave(Fmi2Slave):
 
     def _get_fmu_state(self) -> bytes:  # type: ignore[override]
         status = b"I" if self._initialising else b"F" if self._failed else b"S"
-        return guid(self.model.name).encode() + status + self._instance.save()
+        return self._identity + status + self._instance.save()
 
     def _set_fmu_state(self, state: bytes) -> None:  # type: ignore[override]
-        own = guid(self.model.name).encode()
+        own = self._identity
         expected = len(own) + 1 + len(self._instance.save())
         if len(state) != expected or not state.startswith(own):
             self._fail("the state to restore is not one of this FMU")

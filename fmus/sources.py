@@ -44,19 +44,14 @@ def write_package(folder: Path) -> Path:
     return package
 
 
-def script_name(name: str) -> str:
-    """Module name of an FMU's script: one interpreter may hold several versions of it."""
-    return f"{name}_{content_hash()}"
-
-
-def write_script(name: str, folder: Path) -> Path:
-    """Write the script of FMU `name` into `folder`; returns its path."""
-    text = rewritten((ROOT / "fmus" / "scripts" / f"{name}.py").read_text(encoding="utf-8"))
+def write_script(text: str, module: str, folder: Path) -> Path:
+    """Write an FMU's script, as `module`, into `folder`; returns its path."""
+    text = rewritten(text)
     text += (
         "\n\n# pythonfmu runs this file anew and drops one reference to these globals for every instance\n"
         f"__import__({package_name()!r}).HELD.append(globals())\n"
     )
-    path = folder / f"{script_name(name)}.py"
+    path = folder / f"{module}.py"
     path.write_text(text, encoding="utf-8")
     return path
 

@@ -8,19 +8,24 @@ from pathlib import Path
 
 from fmpy.validation import validate_fmu
 
-from fmus.build import cached, names
+from fmus.build import cached
 from master.component import Component
+from master.connections import LOAD, MOTION, NEEDED, SLOPE
 from master.errors import TouchdownError
-from master.fmi import FmuComponent, find
-from master.system import LOAD, MOTION, NEEDED, SLOPE
+from master.fmi import FmuComponent
+from master.library import locate
 from modelkit.kernel import user_cache
+from modelkit.ports import MODES
 
 UNITS = {
     "x": "m", "y": "m", "vx": "m/s", "vy": "m/s", "ax_free": "m/s2", "ay_free": "m/s2", "inv_m": "1/kg",
     "omega": "rad/s", "alpha_free": "rad/s2", "inv_I": "1/(kg.m2)", "k_over_m": "1/s2", "c_over_m": "1/s",
     "fx": "N", "fy": "N", "mz": "N.m", "dfx": "N/s", "dfy": "N/s", "dmz": "N.m/s",
+    "static_fx": "N", "static_fy": "N",
 }  # fmt: skip
 SPIN = ("omega", "alpha_free", "inv_I", "mz", "dmz")
+STATIC = ("static_fx", "static_fy")
+_MODE = {"bearing": "qx", "body": "x"}
 MOUNT = ("k_over_m", "c_over_m")
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 
@@ -46,7 +51,8 @@ def check_fmu(name: str) -> Report:
 
     Raises TouchdownError where there is nothing to check (missing, damaged, no co-simulation here).
     """
-    path = find(name, Path(), names()) or cached(name)
+    found = locate(name)
+    path = found if isinstance(found, Path) else cached(found)
     component = FmuComponent("checked", path, user_cache())
     report = Report(name)
     try:
@@ -62,13 +68,18 @@ def check_fmu(name: str) -> Report:
 
 
 def ports(component: Component) -> dict[str, str]:
-    """Ports by name, each with the side it is of: "bearing" takes motion, "body" takes load."""
+    """Ports by name and kind: a "bearing" takes motion and gives load, a "body" the other way round, a
+    "sensor" takes motion only.
+    """
     found: dict[str, str] = {}
     for variable in component.variables.values():
         port, _, suffix = variable.name.rpartition(".")
-        if port and variable.causality == "input" and suffix in NEEDED["motion"]:
-            found[port] = "bearing"
-        elif port and variable.causality == "input" and suffix in NEEDED["load"]:
+        if not port or port.endswith("]"):  # modes belong to their seat
+            continue
+        if variable.causality == "input" and suffix in NEEDED["motion"]:
+            loaded = any(f"{port}.{load}" in component.variables for load in NEEDED["load"])
+            found[port] = "bearing" if loaded else "sensor"
+        elif variable.causality == "input" and suffix in NEEDED["load"]:
             found[port] = "body"
     return found
 
@@ -78,6 +89,9 @@ def _check_ports(component: Component, report: Report) -> None:
     if not found:
         report.lines.append("no port of a bearing or a body: it can only be connected variable by variable")
     for port, side in found.items():
+        if side == "sensor":
+            report.lines.append(f"port {port}: of a sensor")
+            continue
         takes, gives = (MOTION, LOAD + SLOPE) if side == "bearing" else (LOAD + SLOPE, MOTION)
         missing: list[str] = []
         for suffixes, causes in ((takes, ("input",)), (gives, ("output", "calculatedParameter"))):
@@ -94,9 +108,12 @@ def _check_ports(component: Component, report: Report) -> None:
         needed = [s for s in (*NEEDED["motion"], *NEEDED["load"]) if s in missing]
         report.problems += [f"{port}.{suffix} is missing; no {side} works without it" for suffix in needed]
         spins = any(f"{port}.{suffix}" in component.variables for suffix in SPIN)
-        optional = [s for s in missing if s not in needed and s not in (MOUNT if spins else SPIN)]
+        rare = (*STATIC, *(MOUNT if spins else SPIN))
+        optional = [s for s in missing if s not in needed and s not in rare]
         text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"
-        report.lines.append(text + (f"; without {', '.join(optional)}" if optional else ", complete"))
+        modes = sum(f"{port}.mode[{k}].{_MODE[side]}" in component.variables for k in range(1, MODES + 1))
+        text += f", with up to {modes} elastic modes" if modes else ""
+        report.lines.append(text + (f"; without {', '.join(optional)}" if optional else ""))
 
 
 def _dry_run(component: Component, report: Report) -> None:

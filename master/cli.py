@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from master.errors import TouchdownError
+from master.schemes import DEFAULT, SCHEMES
 
 FAILED = 2
 STOPPED = 3
@@ -51,7 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     run = verbs.add_parser("run", help="run a scene")
     run.add_argument("scene", help="name of a scene, or path of a .toml")
     run.add_argument("-o", "--output", type=Path, help="folder for the results (default: runs/SCENE)")
-    run.add_argument("--scheme", help="coupling scheme: hold, velocity, acceleration, interface (default)")
+    run.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})")
     run.add_argument("--macro-step", help='macro step, in s or as text such as "20 us"')
     run.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="set run.KEY or COMPONENT.VARIABLE"
@@ -76,7 +77,9 @@ def _parser() -> argparse.ArgumentParser:
     bearings.set_defaults(run=_compare_bearings)
 
     build = verbs.add_parser("build", help="build the FMUs")
-    build.add_argument("names", nargs="*", help="FMUs to build (default: all)")
+    build.add_argument(
+        "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
+    )
     build.add_argument("-o", "--output", type=Path, default=Path("build"), help="folder (default: build)")
     build.set_defaults(run=_build)
 
@@ -169,16 +172,18 @@ def _compare_bearings(options: argparse.Namespace) -> int:
 
 
 def _build(options: argparse.Namespace) -> int:
-    from fmus.build import build, names
-    from master.errors import one_of
+    from fmus.build import build
+    from fmus.recipes import Recipe, names
+    from master.library import locate
 
-    known = names()
-    for name in options.names:
-        if name not in known:
-            raise TouchdownError(f"there is no FMU called {name}; {one_of(name, known)}")
-    for name in options.names or known:
+    found = [locate(name) for name in options.names or names()]
+    for name, one in zip(options.names, found, strict=False):
+        if not isinstance(one, Recipe):
+            raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
+    for one in found:
+        assert isinstance(one, Recipe)
         try:
-            print(build(name, options.output))
+            print(build(one, options.output))
         except OSError as error:
             raise TouchdownError(
                 f"cannot write to {options.output}: {error.strerror}; choose another folder with -o"

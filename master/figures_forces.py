@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from master.connections import Attachment
 from master.figures_style import (
     BLUE,
     GREEN,
@@ -22,7 +23,7 @@ from master.figures_style import (
 )
 from master.recording import Recording
 from master.scene import Scene
-from master.system import Attachment, System
+from master.system import System
 
 FIRST = 0.5  # s, the first zoom
 HARDEST = "hardest.ball"

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from master.connections import Attachment
 from master.figures_style import (
     BLACK,
     BLUE,
@@ -26,7 +27,7 @@ from master.figures_style import (
 )
 from master.recording import Recording
 from master.scene import Scene
-from master.system import Attachment, System
+from master.system import System
 
 UM = 1e6
 SPEEDS = (  # in the order they are drawn: what varies most first

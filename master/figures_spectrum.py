@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from master.connections import Attachment
 from master.figures_style import BLUE, GREEN, GREY, ORANGE, PURPLE, sheet
 from master.recording import Recording
 from master.scene import Scene
 from master.spectra import BEGIN, LENGTH, POINTS, interval, samples, velocity_spectrum, windows
 from master.summary import dominant_frequency
-from master.system import Attachment
 
 LOW, HIGH = 700.0, 4000.0  # Hz, the panels' ends
 BLOCKS = 1000  # to which a panel's line is reduced

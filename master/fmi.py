@@ -29,7 +29,7 @@ from fmpy.fmi2 import (
 )
 
 from master.component import Component, Variable
-from master.errors import TouchdownError, one_of
+from master.errors import TouchdownError
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
@@ -289,16 +289,3 @@ class FmuComponent(Component):
         spoken = [m for m in self._messages if not m.startswith("Fatal py exception")]
         lines = (spoken or self._messages or [fallback])[-1].splitlines()
         return next((line for line in reversed(lines) if line.strip()), fallback)
-
-
-def find(name: str, folder: Path, known: Sequence[str]) -> Path | None:
-    """Path of an FMU given by path; None for a name of the project's own."""
-    looks_like_path = name.endswith(".fmu") or os.sep in name
-    if looks_like_path:
-        path = Path(name)
-        return path if path.is_absolute() else folder / path
-    if name in known:
-        return None
-    raise TouchdownError(
-        f"there is no FMU called {name}; {one_of(name, known)}, or give the path of an .fmu"
-    )

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from master.system import Attachment, System
+from master.connections import Attachment
+from master.system import System
 
 
 @dataclass

@@ -33,7 +33,8 @@ class Monolith:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        system = open_system(scene, in_process=True)
+        # no macro steps, so no copies to carry: a bearing without elastic modes has the shortest state
+        system = open_system(scene.with_setting("run.scheme", "hold"), in_process=True)
         self._twins: dict[str, TwinComponent] = {}
         for name, component in system.components.items():
             if not isinstance(component, TwinComponent):

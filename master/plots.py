@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 
 from matplotlib.figure import Figure
 
+from master.connections import Attachment
 from master.figures_contacts import contacts, has_contacts
 from master.figures_energy import energy
 from master.figures_forces import forces
@@ -18,7 +19,7 @@ from master.figures_spectrum import has_spectrum, spectrum
 from master.recording import Recording
 from master.scene import Scene
 from master.summary import energy_total, touchdown_seats
-from master.system import Attachment, System
+from master.system import System
 
 
 def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -> list[Path]:

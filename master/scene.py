@@ -5,6 +5,7 @@ about = "..."
 zero = "amb.shutdown_time"                     # times and the duration count from here
 energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
 attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
+sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
 connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target
 
 [run]
@@ -16,6 +17,9 @@ fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
 preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
+
+A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
+gives takes the place of what stands there, table by table.
 """
 
 from __future__ import annotations
@@ -77,6 +81,7 @@ class Scene:
     components: Mapping[str, ComponentSpec]
     about: str = ""
     attach: tuple[tuple[str, str], ...] = ()
+    sense: tuple[tuple[str, str], ...] = ()
     connect: tuple[tuple[str, str], ...] = ()
     zero: str | None = None
     energy_scale: tuple[str, ...] = ()
@@ -134,18 +139,46 @@ def load(name: str) -> Scene:
         path = Path(name)
     elif name not in names():
         raise TouchdownError(f"unknown scene {name}; {one_of(name, names())}, or give the path of a .toml")
+    return parse(_tables(path, ()), path.stem, path.parent)
+
+
+def _tables(path: Path, before: tuple[Path, ...]) -> dict[str, Any]:
+    """The tables of a scene's file over those of the scene it extends; `before`: files that led here."""
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise TouchdownError(f"cannot read scene {path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise TouchdownError(f"scene {path} is not valid TOML: {error}") from None
-    return parse(data, path.stem, path.parent)
+    if "extends" not in data:
+        return data
+    base = str(data.pop("extends"))
+    if base.endswith(".toml"):
+        start = path.parent / base
+    elif base in names():
+        start = SCENES / f"{base}.toml"
+    else:
+        raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, names())}")
+    if start.resolve() in (*before, path.resolve()):
+        raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
+    return _over(_tables(start, (*before, path.resolve())), data)
+
+
+def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """`base` with `changes` put in, nested tables likewise."""
+    found = dict(base)
+    for key, value in changes.items():
+        there = found.get(key)
+        if isinstance(value, Mapping) and isinstance(there, Mapping):
+            found[key] = _over(there, value)
+        else:
+            found[key] = value
+    return found
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     """A scene from the tables of its TOML file."""
-    known = ("title", "about", "zero", "energy_scale", "attach", "connect", "run", "components")
+    known = ("title", "about", "zero", "energy_scale", "attach", "sense", "connect", "run", "components")
     _refuse_unknown(data, known, f"scene {name}")
     components = {}
     for key, table in _table(data.get("components"), f"scene {name}: [components]").items():
@@ -164,6 +197,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         about=str(data.get("about", "")),
         components=components,
         attach=_pairs(data.get("attach", []), f"scene {name}: attach"),
+        sense=_pairs(data.get("sense", []), f"scene {name}: sense"),
         connect=_pairs(data.get("connect", []), f"scene {name}: connect"),
         zero=_reference(data["zero"], f"scene {name}: zero") if "zero" in data else None,
         energy_scale=_references(data.get("energy_scale", []), f"scene {name}: energy_scale"),

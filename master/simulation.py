@@ -11,17 +11,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from fmus.build import cached, names
 from master.component import Component
+from master.connections import LOAD, SLOPE
 from master.errors import TouchdownError
-from master.fmi import FmuComponent, find
 from master.ledger import Ledger
+from master.library import load
 from master.recording import Recorder
 from master.scene import RunSpec, Scene
 from master.schemes import scheme
-from master.system import LOAD, SLOPE, System, assemble
-from master.twin import TwinComponent
-from modelkit.kernel import user_cache
+from master.system import System, assemble
 
 BEAT = 64  # macro steps between looks at progress, ledger and components that have nothing left to do
 
@@ -43,15 +41,10 @@ class Outcome:
 def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
-    def load(name: str, fmu: str) -> Component:
-        path = find(fmu, scene.folder, names())
-        if path is not None:
-            return FmuComponent(name, path, user_cache())
-        if in_process:
-            return TwinComponent(name, fmu)
-        return FmuComponent(name, cached(fmu), user_cache(), origin=fmu)
+    def load_one(name: str, fmu: str) -> Component:
+        return load(name, fmu, scene.folder, in_process)
 
-    return assemble(scene, scheme(scene.run.scheme), load)
+    return assemble(scene, scheme(scene.run.scheme), load_one)
 
 
 def simulate(
@@ -72,8 +65,8 @@ def simulate(
     with interrupts_noted() as interrupted:
         outcome.zero = system.value(scene.zero) if scene.zero else 0.0
         steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
-        ledger = Ledger(system, energy_scale(scene, system))
         system.initialise()
+        ledger = Ledger(system, energy_scale(scene, system))
         recorder = None
         if record_to is not None:
             recorder = Recorder(record_to, system.components, scene.run.record_arrays)

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import get_window
 
+from master.connections import Attachment
 from master.recording import Recording
 from master.scene import Scene
 from master.simulation import Outcome, energy_scale
-from master.system import Attachment, System
+from master.system import System
 
 STANDS_OUT = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)

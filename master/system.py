@@ -2,58 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from fmus.presets import preset
-from master.component import Component, Variable, check_value
-from master.errors import TouchdownError, one_of
+from master.component import Component, check_value
+from master.connections import (
+    Attachment,
+    Connection,
+    attachment,
+    check_connections,
+    connection,
+    port_connections,
+    sensor_connections,
+    split,
+    used_modes,
+)
+from master.errors import TouchdownError
 from master.scene import Scene
 from master.schemes import Scheme
 from master.units import to_si
-
-MOTION = (
-    "x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m",
-    "omega", "alpha_free", "inv_I", "k_over_m", "c_over_m",
-)  # fmt: skip
-LOAD = ("fx", "fy", "mz")
-SLOPE = ("dfx", "dfy", "dmz")
-NEEDED = {"motion": ("x", "y"), "load": ("fx", "fy")}
-
-
-@dataclass(frozen=True)
-class Connection:
-    """One variable feeding another."""
-
-    source: str  # component
-    output: str
-    target: str  # component
-    input: str
-
-
-@dataclass(frozen=True)
-class Attachment:
-    """A bearing's port on a body's port: motion one way, load the other."""
-
-    bearing: str
-    bearing_port: str
-    body: str
-    body_port: str
-
-    @property
-    def title(self) -> str:
-        """For people."""
-        return f"{self.bearing}.{self.bearing_port} on {self.body}.{self.body_port}"
-
-
-@dataclass
-class Wiring:
-    """Positions in the system's signal vector, per component."""
-
-    take: np.ndarray  # where each of the inputs comes from
-    outputs: list[str]  # names of the component's stretch
 
 
 @dataclass
@@ -63,11 +33,16 @@ class System:
     components: dict[str, Component]
     attachments: list[Attachment]
     connections: list[Connection]
-    order: list[str]
-    signals: np.ndarray
-    wiring: dict[str, Wiring]
-    position: dict[tuple[str, str], int]
-    settings: dict[tuple[str, str], float] = field(default_factory=dict)
+    settings: dict[tuple[str, str], float]
+    order: list[str] = field(init=False)  # bearings first
+    signals: np.ndarray = field(init=False)
+    position: dict[tuple[str, str], int] = field(init=False)  # of an output in the signals
+    take: dict[str, np.ndarray] = field(init=False)  # where each input of a component comes from
+
+    def __post_init__(self) -> None:
+        bearings = dict.fromkeys(a.bearing for a in self.attachments)
+        self.order = [*bearings, *(name for name in self.components if name not in bearings)]
+        self._lay_out()
 
     def close(self) -> None:
         """Free every component."""
@@ -89,6 +64,10 @@ class System:
                 self.feed(name)
                 self.components[name].pull()
         self._feed_constants()
+        self.connections = used_modes(self.connections, self.components)
+        self._lay_out()
+        for name in bodies_first:
+            self.components[name].pull()
         for name in bodies_first:
             self.feed(name)
             self.components[name].exit()
@@ -97,22 +76,38 @@ class System:
     def feed(self, name: str) -> None:
         """Hand a component its inputs from the signals."""
         component = self.components[name]
-        component.inputs[:] = self.signals[self.wiring[name].take]
+        component.inputs[:] = self.signals[self.take[name]]
         component.push()
 
     def _feed_constants(self) -> None:
-        for c in self.connections:
-            source = self.components[c.source]
-            if source.variable(c.output).constant:
-                self.components[c.target].set({c.input: source.read([c.output])[0]})
+        constant = [c for c in self.connections if self.components[c.source].variable(c.output).constant]
+        for target in dict.fromkeys(c.target for c in constant):
+            mine = [c for c in constant if c.target == target]
+            values = {c.input: self.components[c.source].read([c.output])[0] for c in mine}
+            self.components[target].set(values)
 
-
-def split(name: str, components: dict[str, Component]) -> tuple[Component, Variable]:
-    """Component and variable of COMPONENT.VARIABLE."""
-    head, _, tail = name.partition(".")
-    if head not in components:
-        raise TouchdownError(f"{name}: there is no component {head}; {one_of(head, components)}")
-    return components[head], components[head].variable(tail)
+    def _lay_out(self) -> None:
+        """Give every exchanged output its place in the signals, and bind the components to them."""
+        live = [c for c in self.connections if not self.components[c.source].variable(c.output).constant]
+        outputs: dict[str, dict[str, None]] = {name: {} for name in self.components}
+        for c in live:
+            outputs[c.source][c.output] = None
+        for a in self.attachments:
+            for name, port in ((a.bearing, a.bearing_port), (a.body, a.body_port)):
+                for account in (f"{port}.work", f"{port}.jump"):
+                    if account in self.components[name].variables:
+                        outputs[name][account] = None
+        places = [(name, variable) for name, chosen in outputs.items() for variable in chosen]
+        self.position = {place: i for i, place in enumerate(places)}
+        self.signals = np.zeros(len(places))
+        self.take = {}
+        start = 0
+        for name, component in self.components.items():
+            mine = [c for c in live if c.target == name]
+            stretch = self.signals[start : start + len(outputs[name])]
+            start += len(outputs[name])
+            component.bind([c.input for c in mine], stretch, list(outputs[name]))
+            self.take[name] = np.array([self.position[c.source, c.output] for c in mine], dtype=np.intp)
 
 
 def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]) -> System:
@@ -122,17 +117,17 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
         for name, spec in scene.components.items():
             components[name] = load(name, spec.fmu)
         settings = _apply_settings(scene, scheme, components)
-        attachments = [_attachment(pair, components) for pair in scene.attach]
-        connections = [c for a in attachments for c in _port_connections(a, components, scheme.slopes)] + [
-            _connection(pair, components) for pair in scene.connect
-        ]
-        _check_connections(connections, components)
+        attachments = [attachment(pair, components) for pair in scene.attach]
+        connections = [c for a in attachments for c in port_connections(a, components, scheme)]
+        connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+        connections += [connection(pair, components) for pair in scene.connect]
+        check_connections(connections, components)
         for c in connections:
             if c.input in scene.components[c.target].set:
                 raise TouchdownError(
                     f"{c.target}.{c.input} cannot be set: it is connected to {c.source}.{c.output}"
                 )
-        return _wire(components, attachments, connections, settings)
+        return System(components, attachments, connections, settings)
     except BaseException:
         for component in components.values():
             component.close()
@@ -165,107 +160,3 @@ def _checked(component: Component, name: str, given: object) -> float:
     value = to_si(given, variable.unit, f"{component.name}.{name}")
     check_value(component, variable, value)
     return value
-
-
-def _attachment(pair: tuple[str, str], components: dict[str, Component]) -> Attachment:
-    parts: list[str] = []
-    for end in pair:
-        head, _, port = end.partition(".")
-        if head not in components:
-            raise TouchdownError(f"attach {end}: there is no component {head}; {one_of(head, components)}")
-        parts += [head, port]
-    return Attachment(*parts)
-
-
-def _port_connections(
-    a: Attachment, components: dict[str, Component], slopes: bool
-) -> Iterable[Connection]:
-    """Motion from body to bearing, load from bearing to body, for the variables both sides have."""
-    ends = (
-        ("motion", MOTION, a.body, a.body_port, a.bearing, a.bearing_port),
-        ("load", LOAD + (SLOPE if slopes else ()), a.bearing, a.bearing_port, a.body, a.body_port),
-    )
-    for kind, suffixes, source, source_port, target, target_port in ends:
-        for suffix in suffixes:
-            output, given = f"{source_port}.{suffix}", f"{target_port}.{suffix}"
-            there = output in components[source].variables and given in components[target].variables
-            if there:
-                yield Connection(source, output, target, given)
-            elif suffix in NEEDED[kind]:
-                side, missing = (
-                    (source, output) if output not in components[source].variables else (target, given)
-                )
-                raise TouchdownError(
-                    f"attach {a.title}: {components[side].origin} has no variable {missing}, "
-                    f"which carries the {kind}; check the port's name or the FMU"
-                )
-
-
-def _connection(pair: tuple[str, str], components: dict[str, Component]) -> Connection:
-    (source, output), (target, given) = (split(end, components) for end in pair)
-    return Connection(source.name, output.name, target.name, given.name)
-
-
-def _check_connections(connections: list[Connection], components: dict[str, Component]) -> None:
-    fed: dict[tuple[str, str], Connection] = {}
-    for c in connections:
-        output = components[c.source].variable(c.output)
-        given = components[c.target].variable(c.input)
-        what = f"connection {c.source}.{c.output} to {c.target}.{c.input}"
-        if output.causality not in ("output", "local", "calculatedParameter"):
-            raise TouchdownError(
-                f"{what}: {c.source}.{c.output} has the causality {output.causality}, not output"
-            )
-        if given.causality != "input":
-            raise TouchdownError(
-                f"{what}: {c.target}.{c.input} has the causality {given.causality}, not input"
-            )
-        if output.kind != "Real" or given.kind != "Real":
-            raise TouchdownError(f"{what}: only Real variables can be connected")
-        if output.unit and given.unit and output.unit != given.unit:
-            raise TouchdownError(f"{what}: the units {output.unit} and {given.unit} differ")
-        first = fed.setdefault((c.target, c.input), c)
-        if first is not c:
-            raise TouchdownError(
-                f"{c.target}.{c.input} has two sources, {first.source}.{first.output} and "
-                f"{c.source}.{c.output}; remove one"
-            )
-
-
-def _wire(
-    components: dict[str, Component],
-    attachments: list[Attachment],
-    connections: list[Connection],
-    settings: dict[tuple[str, str], float],
-) -> System:
-    outputs: dict[str, list[str]] = {name: [] for name in components}
-
-    def want(name: str, variable: str) -> None:
-        if variable not in outputs[name]:
-            outputs[name].append(variable)
-
-    live = [c for c in connections if not components[c.source].variable(c.output).constant]
-    for c in live:
-        want(c.source, c.output)
-    for a in attachments:
-        for name, port in ((a.bearing, a.bearing_port), (a.body, a.body_port)):
-            for suffix in ("work", "jump"):
-                if f"{port}.{suffix}" in components[name].variables:
-                    want(name, f"{port}.{suffix}")
-    position: dict[tuple[str, str], int] = {}
-    for name, chosen in outputs.items():
-        for variable in chosen:
-            position[name, variable] = len(position)
-    signals = np.zeros(len(position))
-    wiring: dict[str, Wiring] = {}
-    start = 0
-    for name, component in components.items():
-        mine = [c for c in live if c.target == name]
-        stretch = signals[start : start + len(outputs[name])]
-        start += len(outputs[name])
-        component.bind([c.input for c in mine], stretch, outputs[name])
-        take = np.array([position[c.source, c.output] for c in mine], dtype=np.intp)
-        wiring[name] = Wiring(take, outputs[name])
-    bearings = [a.bearing for a in attachments]
-    order = list(dict.fromkeys(bearings)) + [name for name in components if name not in bearings]
-    return System(components, attachments, connections, order, signals, wiring, position, settings)

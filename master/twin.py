@@ -6,24 +6,13 @@ It drives the same instance class as the FMU's slave through the same calls, so 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from importlib import import_module
 
 import numpy as np
 
 from fmus.description import causality
-from fmus.slave import ModelSlave
 from master.component import Component, Variable
 from master.errors import TouchdownError
 from modelkit.model import Instance, Model, ModelError, Slot
-
-
-def model_of(name: str) -> Model:
-    """The model behind the FMU script `name`."""
-    module = import_module(f"fmus.scripts.{name}")
-    for value in vars(module).values():
-        if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
-            return value.model
-    raise LookupError(f"fmus/scripts/{name}.py declares no ModelSlave")
 
 
 def _variable(slot: Slot) -> Variable:
@@ -46,10 +35,10 @@ def _variable(slot: Slot) -> Variable:
 class TwinComponent(Component):
     """A model of the project, stepped without the FMI in between."""
 
-    def __init__(self, name: str, fmu: str) -> None:
-        self.instance = Instance(model_of(fmu))
+    def __init__(self, name: str, model: Model) -> None:
+        self.instance = Instance(model)
         variables = [_variable(slot) for slot in self.instance.slots]
-        super().__init__(name, f"{fmu}, in process", {v.name: v for v in variables})
+        super().__init__(name, f"{model.name}, in process", {v.name: v for v in variables})
         self._words = self.instance.words
         self._initialising = False
         self._start_time = 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,11 @@ from modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record
 
 class ModelError(Exception):
     """A model cannot go on; the message names the variable, the value and the remedy."""
+
+
+def same_name(name: str) -> str | None:
+    """Variables are exposed by the names they are declared with."""
+    return name
 
 
 def no_check(parameters: Any) -> str | None:
@@ -78,7 +83,7 @@ class Model:
     memory: np.dtype
     start: Callable[[Any], None]
     advance: Callable[[Any, Any, float, float], int]
-    weights: Callable[[Any], np.ndarray]
+    weights: Callable[[Any], np.ndarray]  # parameters -> error weights, one for each component in use
     derived: type = Nothing
     hidden: type = Nothing
     derive: Callable[[Any], Any] | None = None  # parameters -> derived
@@ -86,6 +91,9 @@ class Model:
     rhs: Callable[..., Any] | None = None
     publish: Callable[..., Any] | None = None
     instant: Callable[..., Any] | None = None
+    content: str = ""  # of a model made from a file: a hash of it
+    rename: Callable[[str], str | None] = same_name
+    """Name by which a declared variable is exposed; None hides it (a member of a group not in use)."""
     starts_from: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Which parameters and inputs the first value of an output depends on (FMI InitialUnknowns).
     Names or prefixes ending in a dot; an output that is not listed starts at zero whatever is set."""
@@ -110,7 +118,10 @@ def slots(model: Model) -> list[Slot]:
     ):
         fields: Any = model.memory.fields
         offset = fields[part][1] // 8
-        found += [Slot(v, causality, offset + i) for i, v in enumerate(flatten(kind())) if v.name]
+        for i, v in enumerate(flatten(kind())):
+            name = model.rename(v.name)
+            if name is not None:
+                found.append(Slot(replace(v, name=name), causality, offset + i))
     return found
 
 

@@ -15,7 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from modelkit.variables import integer, real
+from modelkit.variables import groups, integer, real
+
+MODES = 20  # of a flexible body that a seat can carry, per plane
 
 
 @dataclass(frozen=True)
@@ -34,11 +36,11 @@ class BodyMotion:
 
 
 @dataclass(frozen=True)
-class MountMotion(BodyMotion):
-    """Motion of a housing at the beginning of the macro step.
+class SprungMotion(BodyMotion):
+    """Motion of a mass on a spring and a damper at the beginning of the macro step.
 
-    A housing hangs on springs that are stiff beside the macro step (about 1 kHz): with `k_over_m` and
-    `c_over_m` the bearing carries it as the oscillator it is, not as a point mass.
+    With `k_over_m` and `c_over_m` the bearing carries it as the oscillator it is, not as a point mass:
+    a housing on its springs, or an elastic mode of a rotor, is fast beside the macro step.
     """
 
     k_over_m: float = real(
@@ -50,6 +52,20 @@ class MountMotion(BodyMotion):
 
 
 @dataclass(frozen=True)
+class MountMotion(SprungMotion):
+    """Motion of a housing at the beginning of the macro step."""
+
+
+@dataclass(frozen=True)
+class ModeMotion(SprungMotion):
+    """Share of an elastic mode in the motion of a seat, at the beginning of the macro step.
+
+    `inv_m` is the square of the mode's shape at the seat, mass-normalised; 0: no such mode. The modes
+    that are given come first.
+    """
+
+
+@dataclass(frozen=True)
 class SeatMotion(BodyMotion):
     """Motion of a journal at the beginning of the macro step."""
 
@@ -58,6 +74,17 @@ class SeatMotion(BodyMotion):
     inv_I: float = real(
         0.0, "1/(kg.m2)", "spin acceleration per moment; 0: spin is prescribed", constant=True
     )
+
+
+@dataclass(frozen=True)
+class FlexibleSeatMotion(SeatMotion):
+    """Motion of a journal, and of the elastic modes that have a share in it.
+
+    Without modes (not connected, `inv_m` = 0) the journal is carried as a point mass; with them, as the
+    sum of their oscillators and of a point mass for the rest of `inv_m`.
+    """
+
+    mode: tuple = groups(ModeMotion, MODES)
 
 
 @dataclass(frozen=True)
@@ -83,6 +110,27 @@ class SeatLoad:
 
 
 @dataclass(frozen=True)
+class ModeLoad:
+    """What a force did to a mode in the last macro step, beyond its mean and slope.
+
+    For a mode of unit inv_m at rest: the end of its motion under the force as it was, less that under
+    mean + slope (t - t_mid). Times the mode's shape at the seat it is what its coordinate lacks.
+    """
+
+    qx: float = real(0.0, "kg.m", "displacement times mass, horizontal")
+    qy: float = real(0.0, "kg.m", "displacement times mass, vertical")
+    px: float = real(0.0, "N.s", "momentum, horizontal")
+    py: float = real(0.0, "N.s", "momentum, vertical")
+
+
+@dataclass(frozen=True)
+class FlexibleSeatLoad(SeatLoad):
+    """Load on a journal, and what mean and slope do not say of it to the elastic modes."""
+
+    mode: tuple = groups(ModeLoad, MODES)
+
+
+@dataclass(frozen=True)
 class Account:
     """What one side of a connection states of the energy that crossed it, since the start."""
 
@@ -91,7 +139,7 @@ class Account:
 
 
 @dataclass(frozen=True)
-class SeatReaction(SeatLoad, Account):
+class SeatReaction(FlexibleSeatLoad, Account):
     """What a bearing gives at its seat."""
 
 
@@ -103,6 +151,11 @@ class MountReaction(MountLoad, Account):
 @dataclass(frozen=True)
 class SeatState(SeatMotion, Account):
     """What a body gives at a seat."""
+
+
+@dataclass(frozen=True)
+class FlexibleSeatState(FlexibleSeatMotion, Account):
+    """What a flexible body gives at a seat."""
 
 
 @dataclass(frozen=True)

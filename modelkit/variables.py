@@ -63,9 +63,9 @@ def integer(default: int, meaning: str, **bounds: Any) -> Any:
     return field(default=default, metadata={"spec": Spec("integer", "1", meaning, **bounds)})
 
 
-def array(size: int) -> Any:
+def array(*shape: int) -> Any:
     """Declare a float64 array; only for values derived from parameters, never exposed."""
-    return field(default=(0.0,) * size, metadata={"array": size})
+    return field(default_factory=lambda: np.zeros(shape), metadata={"array": shape})
 
 
 def group(kind: type, **changes: Any) -> Any:
@@ -94,7 +94,7 @@ def layout(kind: type) -> np.dtype:
         elif "groups" in f.metadata:
             parts.append((f.name, layout(f.metadata["groups"]), (f.metadata["count"],)))
         elif "array" in f.metadata:
-            parts.append((f.name, "f8", (f.metadata["array"],)))
+            parts.append((f.name, "f8", f.metadata["array"]))
         else:
             parts.append((f.name, "f8" if f.metadata["spec"].kind == "real" else "i8"))
     return np.dtype(parts)
@@ -143,7 +143,7 @@ def from_record(kind: type, record: Any) -> Any:
         elif "groups" in f.metadata:
             values[f.name] = tuple(from_record(f.metadata["groups"], member) for member in value)
         elif "array" in f.metadata:
-            values[f.name] = tuple(float(v) for v in value)
+            values[f.name] = np.array(value)
         else:
             values[f.name] = float(value) if f.metadata["spec"].kind == "real" else int(value)
     return kind(**values)

@@ -27,13 +27,18 @@
     node = 5
     moment = "3 g.mm"
 
-    [stations]
+    [stations]               # where bearings hold it: NAME = node
     A = 1
     B = 5
+    amb = 3
 
-Also known: about, damping_ratio; in an element inner_diameter, material and position (its start, to
-check the sum of lengths); [[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an
-unbalance angle. Every physical quantity is text with a unit.
+    [sensors]                # where only its motion is asked for
+    near_amb = 4
+
+Also known: about, damping_ratio, levitated_at = ["amb"] (the stations that hold the rotor at rest at the
+start); in an element inner_diameter, material and position (its start, to check the sum of lengths);
+[[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an unbalance angle. Every physical
+quantity is text with a unit.
 """
 
 from __future__ import annotations
@@ -48,11 +53,11 @@ from typing import Any
 
 from modelkit.model import ModelError
 from modelkit.units import UnitError, to_si, units_of
-from rotor.shaft import Element, PointMass, Shaft, Station, Unbalance, disc
+from rotor.shaft import MOST_NODES, MOST_STATIONS, Element, PointMass, Shaft, Station, Unbalance, disc
 
-MOST_NODES = 64
 DATA = Path(__file__).parent / "data"
 CLOSE = 1e-7  # m; positions and sums of lengths this close agree
+RESERVED = ("station", "sensor", "node", "stress", "energy", "mass", "modes")  # names of other variables
 EXAMPLES = {
     "m": "12.5 mm", "Pa": "207 GPa", "kg/m3": "7830 kg/m3", "kg": "0.5 kg", "kg.m2": "0.002 kg.m2",
     "kg.m": "3 g.mm", "rad": "90 deg",
@@ -74,9 +79,29 @@ def shipped() -> dict[str, Path]:
 
 def load(path: str | Path) -> Shaft:
     """The rotor written in the file at `path`. Raises RotorFileError."""
-    top = _Table(str(path), "", _parse(Path(path)))
+    return parse(read(Path(path)), str(path))
+
+
+def read(path: Path) -> str:
+    """The text of a rotor file. Raises RotorFileError."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise RotorFileError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise RotorFileError(
+            f"{path}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"
+        ) from None
+
+
+def parse(text: str, file: str) -> Shaft:
+    """The rotor that `text` describes; `file` is what to call it in messages. Raises RotorFileError."""
+    try:
+        top = _Table(file, "", tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise RotorFileError(f"{file}: is not valid TOML: {error}") from None
     top.only("title", "about", "damping_ratio", "material", "element", "disc", "point_mass", "unbalance",
-             "stations")  # fmt: skip
+             "stations", "sensors", "levitated_at")  # fmt: skip
     materials = _materials(top)
     elements = _elements(top, materials)
     nodes = len(elements) + 1
@@ -93,22 +118,11 @@ def load(path: str | Path) -> Shaft:
             )
             for t in top.tables("unbalance", "node", "moment", "angle")
         ),
-        stations=_stations(top, nodes),
+        stations=_stations(top, "stations", nodes),
+        sensors=_stations(top, "sensors", nodes),
+        levitated_at=_levitated(top),
         damping_ratio=top.number("damping_ratio", 0.0, 1.0, default=0.003),
     )
-
-
-def _parse(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RotorFileError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise RotorFileError(
-            f"{path}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"
-        ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise RotorFileError(f"{path}: is not valid TOML: {error}") from None
 
 
 @dataclass(frozen=True)
@@ -336,14 +350,31 @@ def _points(top: _Table, materials: dict[str, _Material], nodes: int) -> tuple[P
     return tuple(found)
 
 
-def _stations(top: _Table, nodes: int) -> tuple[Station, ...]:
-    if "stations" not in top.values:
+def _stations(top: _Table, kind: str, nodes: int) -> tuple[Station, ...]:
+    if kind not in top.values:
         return ()
-    t = top.table("stations")
+    t = top.table(kind)
+    if len(t.values) > MOST_STATIONS:
+        raise top.error(kind, f"are {len(t.values)}; at most {MOST_STATIONS} are possible")
     for name in t.values:
-        if not (name.isascii() and name.isidentifier()) or keyword.iskeyword(name):
-            raise t.error(name, "has a name that cannot be used; use letters, digits and _, a letter first")
+        if not (name.isascii() and name.isidentifier()) or keyword.iskeyword(name) or name in RESERVED:
+            raise t.error(
+                name, "has a name that cannot be used; use letters, digits and _, a letter first, and none "
+                f"of {', '.join(RESERVED)}"
+            )  # fmt: skip
+        if kind == "sensors" and name in top.values.get("stations", {}):
+            raise t.error(name, "has the name of a station; choose another")
     return tuple(Station(name, _node(t, name, nodes)) for name in t.values)
+
+
+def _levitated(top: _Table) -> tuple[str, ...]:
+    names = top.get("levitated_at", list, 'a list of stations, such as ["amb_A", "amb_B"]', [])
+    there = top.values.get("stations", {})
+    for name in names:
+        if name not in there:
+            listed = ", ".join(there) or "none"
+            raise top.error("levitated_at", f"names {name!r}, which is no station; there are: {listed}")
+    return tuple(names)
 
 
 def _node(table: _Table, name: str, nodes: int) -> int:

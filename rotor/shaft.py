@@ -14,6 +14,9 @@ import numpy as np
 
 from modelkit.model import ModelError
 
+MOST_NODES = 64
+MOST_STATIONS = 8
+
 
 def ring_area(outer: float, inner: float) -> float:
     """Area between two diameters (m2)."""
@@ -158,7 +161,7 @@ class Unbalance:
 
 @dataclass(frozen=True)
 class Station:
-    """A node with a name: a seat, a sensor, an actuator."""
+    """A node with a name: a place where the rotor takes loads, or one that a sensor looks at."""
 
     name: str
     node: int
@@ -173,6 +176,8 @@ class Shaft:
     points: tuple[PointMass, ...] = ()
     unbalances: tuple[Unbalance, ...] = ()
     stations: tuple[Station, ...] = ()
+    sensors: tuple[Station, ...] = ()
+    levitated_at: tuple[str, ...] = ()  # stations that hold the rotor at rest at the start
     damping_ratio: float = 0.003  # of the bending modes
     about: str = ""
 
@@ -187,7 +192,7 @@ class Shaft:
 
     def node(self, station: str) -> int:
         """The node of a station. Raises ModelError where there is none of that name."""
-        for s in self.stations:
+        for s in (*self.stations, *self.sensors):
             if s.name == station:
                 return s.node
         names = ", ".join(s.name for s in self.stations) or "none"

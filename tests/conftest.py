@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 from fmpy import extract
 
-from fmus.build import cached, names
+from fmus.build import cached
+from fmus.recipes import names, recipe
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -44,7 +45,7 @@ def loaded_from_project():
 @pytest.fixture(scope="session")
 def built() -> Mapping[str, Path]:
     """The project's FMUs by name, built from the present sources."""
-    return {name: cached(name) for name in names()}
+    return {name: cached(recipe(name)) for name in names()}
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from fmus.build import names
+from fmus.recipes import names
 
 Alone = Callable[..., subprocess.CompletedProcess[str]]
 Answers = Callable[[str], dict[str, Any]]

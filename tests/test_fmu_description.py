@@ -17,9 +17,9 @@ from conftest import ROOT
 from fmpy.validation import validate_fmu
 from slave_driver import Slave
 
-from fmus.build import build, names
+from fmus.build import build
 from fmus.description import base_unit, causality
-from master.twin import model_of
+from fmus.recipes import names, recipe
 from modelkit.model import Instance, Model, ModelError, Slot, slots
 
 every_fmu = pytest.mark.parametrize("fmu", names())
@@ -236,7 +236,7 @@ def observed_dependencies(model: Model) -> tuple[dict[str, set[str]], set[str]]:
 
 @every_fmu
 def test_initial_dependencies_are_those_observed(fmu: str, xml: Element):
-    model = model_of(fmu)
+    model = recipe(fmu).model
     exposed = {
         slot.variable.name
         for slot in slots(model)
@@ -293,7 +293,12 @@ def test_units_are_given_in_base_units(fmu: str, xml: Element):
 
 def build_elsewhere(fmu: str, folder: Path) -> Path:
     """Build `fmu` in another process, from another working directory and with another hash seed."""
-    script = "import sys, pathlib, fmus.build as b; b.build(sys.argv[1], pathlib.Path('.'))"
+    script = """
+import pathlib, sys
+from fmus.build import build
+from fmus.recipes import recipe
+build(recipe(sys.argv[1]), pathlib.Path('.'))
+"""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONHASHSEED": "4711"}
     subprocess.run([sys.executable, "-c", script, fmu], cwd=folder, env=environment, check=True)
     return folder / f"{fmu}.fmu"
@@ -303,7 +308,7 @@ def build_elsewhere(fmu: str, folder: Path) -> Path:
 def test_building_again_gives_equal_bytes(fmu: str, built: Mapping[str, Path], tmp_path: Path):
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
-    here = build(fmu, tmp_path / "here").read_bytes()
+    here = build(recipe(fmu), tmp_path / "here").read_bytes()
     assert here == built[fmu].read_bytes()
     assert here == build_elsewhere(fmu, elsewhere).read_bytes()
     assert [path.name for path in (tmp_path / "here").iterdir()] == [f"{fmu}.fmu"]

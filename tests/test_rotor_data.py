@@ -30,8 +30,9 @@ def test_rotors_are_shipped():
 
 def test_a_rotor_says_it_is_a_surrogate_and_has_its_seats(rotor: Shaft):
     assert "surrogate" in rotor.about.lower()
-    names = {s.name for s in rotor.stations}
-    assert {"A", "B", "amb_A", "amb_B", "sensor_A", "sensor_B"} <= names
+    assert [s.name for s in rotor.stations] == ["A", "B", "amb_A", "amb_B"]
+    assert [s.name for s in rotor.sensors] == ["sensor_A", "sensor_B"]
+    assert rotor.levitated_at == ("amb_A", "amb_B")
     assert rotor.node("A") < rotor.node("B")
 
 

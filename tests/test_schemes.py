@@ -47,7 +47,7 @@ def test_schemes_rank_as_their_order() -> None:
 
 
 def test_every_scheme_runs_and_an_unknown_one_does_not() -> None:
-    assert set(SCHEMES) == {"hold", "velocity", "acceleration", "interface"}
+    assert set(SCHEMES) == {"hold", "velocity", "acceleration", "point-mass", "interface"}
     with pytest.raises(TouchdownError, match="did you mean interface"):
         scheme("interfaces")
 

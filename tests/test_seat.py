@@ -9,37 +9,7 @@ import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
 from bearings import amb, bushing
-from bearings.seat import linear_load
 from modelkit.model import Instance
-
-
-def oscillator(step: float, k: float, c: float, mean: float, slope: float) -> tuple[float, float]:
-    """Response of z'' = f - k z - c z' from rest to a linear load, by a fine Taylor series in time."""
-    from scipy.integrate import solve_ivp
-
-    solution = solve_ivp(
-        lambda t, s: [s[1], mean + slope * (t - step / 2) - k * s[0] - c * s[1]],
-        (0.0, step), [0.0, 0.0], method="DOP853", rtol=1e-13, atol=1e-25,
-    )  # fmt: skip
-    return float(solution.y[0, -1]), float(solution.y[1, -1])
-
-
-@pytest.mark.parametrize(("k", "c"), [(0.0, 0.0), (5e7, 500.0), (5e7, 0.0), (8e8, 2e4)])
-def test_the_linear_load_brings_an_oscillator_where_it_was(k: float, c: float) -> None:
-    step, mean, slope = 1e-4, 37.0, -2.5e5
-    z, v = oscillator(step, k, c, mean, slope)
-    found = linear_load(step, k, c, z, v)
-    assert found[0] == pytest.approx(mean, rel=1e-7)
-    assert found[1] == pytest.approx(slope, rel=1e-6)
-
-
-def test_without_springs_it_is_impulse_and_first_moment() -> None:
-    step = 2e-5
-    impulse, moment = 3e-3, 1e-9  # int F dt, int (t - t_mid) F dt
-    z, v = impulse * step / 2 - moment, impulse
-    mean, slope = linear_load(step, 0.0, 0.0, z, v)
-    assert mean == pytest.approx(impulse / step, rel=1e-12)
-    assert slope == pytest.approx(12.0 * moment / step**3, rel=1e-9)
 
 
 def in_contact(order: int) -> Instance:

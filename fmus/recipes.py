@@ -1,0 +1,93 @@
+"""What FMUs are made of: a script of the project's own, or a rotor file.
+
+A script in `fmus/scripts` declares one slave class and with it the model. A rotor file becomes a script
+that carries the file's text, so that the FMU needs nothing beside it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from fmus.slave import ModelSlave
+from fmus.sources import ROOT, content_hash
+from modelkit.model import Model
+from rotor.flexible import flexible_rotor
+from rotor.rotor_file import parse, read, shipped
+
+_ROTOR_SCRIPT = '''"""FMU: flexible rotor from {file}."""
+
+from fmus.slave import ModelSlave
+from rotor.flexible import flexible_rotor
+from rotor.rotor_file import parse
+
+TEXT = {text!r}
+
+
+class {identifier}(ModelSlave):
+    """flexible rotor."""
+
+    model = flexible_rotor(parse(TEXT, {file!r}), {name!r}, {content!r})
+'''
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How an FMU is made; `content` is a hash over everything in it."""
+
+    name: str
+    script: str
+    content: str
+    model: Model
+
+    @property
+    def module(self) -> str:
+        """Module name of its script: one interpreter may hold several versions of it."""
+        return f"{self.name}_{self.content}"
+
+
+def names() -> list[str]:
+    """FMUs of the project: its scripts, and the rotors that come with it."""
+    scripts = (ROOT / "fmus" / "scripts").glob("*.py")
+    return sorted([path.stem for path in scripts if path.stem != "__init__"] + list(shipped()))
+
+
+def recipe(name: str) -> Recipe:
+    """The recipe of an FMU of the project's by name, or of a rotor by the path of its file (.toml).
+
+    Raises RotorFileError where the rotor file has a mistake, LookupError for an unknown name.
+    """
+    if name.endswith(".toml"):
+        return _from_rotor(Path(name))
+    if name in shipped():
+        return _from_rotor(shipped()[name])
+    if name not in names():
+        raise LookupError(f"there is no FMU called {name}")
+    script = (ROOT / "fmus" / "scripts" / f"{name}.py").read_text(encoding="utf-8")
+    return Recipe(name, script, content_hash(), _declared(name))
+
+
+def _declared(name: str) -> Model:
+    module = import_module(f"fmus.scripts.{name}")
+    for value in vars(module).values():
+        if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
+            return value.model
+    raise LookupError(f"fmus/scripts/{name}.py declares no ModelSlave")
+
+
+def _from_rotor(path: Path) -> Recipe:
+    text = read(path)
+    name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
+    own = hashlib.sha256(text.encode()).hexdigest()[:16]
+    model = flexible_rotor(parse(text, str(path)), name, own)
+    script = _ROTOR_SCRIPT.format(
+        file=path.name,
+        text=text,
+        identifier="Rotor" + "".join(part.capitalize() for part in name.split("_")),
+        name=name,
+        content=own,
+    )
+    return Recipe(name, script, f"{content_hash()}_{own}", model)

@@ -1,0 +1,97 @@
+"""A damped oscillator under a load that is linear in time, solved exactly.
+
+    z'' + c z' + k z = f + g (t - h/2),    0 <= t <= h        (k in 1/s2, c in 1/s; both may be zero)
+
+Underdamped, overdamped and free bodies alike.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from modelkit.kernel import kernel
+
+SERIES = 0.5  # below this k h^2 or c h the closed form cancels and a power series takes its place
+TERMS = 16  # of the series, which leaves SERIES^16/16!
+
+
+class Step(NamedTuple):
+    """What a step of h seconds does, per unit of what it starts from.
+
+    (z, v) at the end = [[zz, zv], [vz, vv]] (z, v) at the start + f (zf, vf) + g (zg, vg).
+    """
+
+    zz: float
+    zv: float
+    vz: float
+    vv: float
+    zf: float
+    vf: float
+    zg: float
+    vg: float
+
+
+@kernel
+def _free(k, c, h):
+    """Displacement after a unit velocity, and after a unit displacement."""
+    a = 0.5 * c
+    d = k - a * a
+    if d > 0.0:
+        w = math.sqrt(d)
+        fading = math.exp(-a * h)
+        s, co = fading * math.sin(w * h) / w, fading * math.cos(w * h)
+    elif d < 0.0:
+        w = math.sqrt(-d)
+        slow, fast = math.exp((w - a) * h), math.exp((-w - a) * h)
+        s, co = 0.5 * (slow - fast) / w, 0.5 * (slow + fast)
+    else:
+        s, co = h * math.exp(-a * h), math.exp(-a * h)
+    return s, co + a * s
+
+
+@kernel
+def step(k, c, h):
+    """The `Step` of h seconds of an oscillator."""
+    if max(k * h * h, c * h) < SERIES:
+        return _series(k, c, h)
+    if k <= 1e-12 * c * c:
+        return _dashpot(c, h)
+    zv, zz = _free(k, c, h)
+    zf = (1.0 - zz) / k
+    ramp = (h - zv - c * zf) / k
+    return Step(zz, zv, -k * zv, zz - c * zv, zf, zv, ramp - 0.5 * h * zf, zf - 0.5 * h * zv)
+
+
+@kernel
+def _series(k, c, h):
+    """`step` by power series: with A = [[0, 1], [-k, -c]], sums of A^i (0, 1) h^j/j!."""
+    w0, w1 = 0.0, h  # A^i (0, 1) h^(i+1)/(i+1)!
+    zf, vf, zg, vg = 0.0, 0.0, 0.0, 0.0
+    for i in range(TERMS):
+        zf += w0
+        vf += w1
+        zg += w0 * h / (i + 2)
+        vg += w1 * h / (i + 2)
+        w0, w1 = w1 * h / (i + 2), -(k * w0 + c * w1) * h / (i + 2)
+    zg -= 0.5 * h * zf
+    vg -= 0.5 * h * vf
+    # vf is z after unit velocity; the rest follows from the equation of motion
+    return Step(1.0 - k * zf, vf, -k * vf, 1.0 - k * zf - c * vf, zf, vf, zg, vg)
+
+
+@kernel
+def _dashpot(c, h):
+    """`step` of a body on a dashpot without a spring."""
+    fading = math.exp(-c * h)
+    zv = (1.0 - fading) / c
+    zf = (h - zv) / c
+    ramp = (0.5 * h * h - zf) / c
+    return Step(1.0, zv, 0.0, fading, zf, zv, ramp - 0.5 * h * zf, zf - 0.5 * h * zv)
+
+
+@kernel
+def load_for(found, z, v):
+    """Mean f and slope g of the load that brings the resting oscillator to (z, v); found: its `Step`."""
+    determinant = found.zf * found.vg - found.vf * found.zg
+    return (z * found.vg - v * found.zg) / determinant, (found.zf * v - found.vf * z) / determinant
