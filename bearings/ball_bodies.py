@@ -238,16 +238,8 @@ def _accelerate(balls, dy, m):
 @kernel
 def drift(x, y, v, h, m):
     """Positions in x: those in y and h (s) times the velocities in v."""
-    moves = 1.0 if m.p.interface.order >= 1 else 0.0  # a held copy stays
-    x[seat.JX] = y[seat.JX] + moves * h * v[seat.JVX]
-    x[seat.JY] = y[seat.JY] + moves * h * v[seat.JVY]
-    x[seat.HX] = y[seat.HX] + moves * h * v[seat.HVX]
-    x[seat.HY] = y[seat.HY] + moves * h * v[seat.HVY]
-    x[seat.HFX] = y[seat.HFX] + h * v[seat.HFVX]
-    x[seat.HFY] = y[seat.HFY] + h * v[seat.HFVY]
-    x[ring.RX] = y[ring.RX] + h * v[ring.RVX]
-    x[ring.RY] = y[ring.RY] + h * v[ring.RVY]
-    x[ring.RANGLE] = y[ring.RANGLE] + h * v[ring.RW]
+    seat.drift(x, y, v, h, m)
+    ring.drift(x, y, v, h)
     n = m.p.balls.count
     for i in range(BALLS, BALLS + 2 * n):  # x and y of all balls
         x[i] = y[i] + h * v[i + 2 * n]
@@ -261,13 +253,8 @@ def drift(x, y, v, h, m):
 
 @kernel
 def forecast(x, dy, h, m):
-    """Velocities of the heavy bodies at the end of a micro-step of h seconds.
-
-    Their accelerations change little from one to the next; with them the work that crosses the seat is
-    of second order.
-    """
-    for i in (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY, seat.HFVX, seat.HFVY):
-        x[i] += 0.5 * h * dy[i]
+    """Velocities of the copies at the end of a micro-step of h seconds, which is noted."""
+    seat.forecast(x, dy, h)
     m.s.step = h
 
 

@@ -156,6 +156,29 @@ def copy_rates(t, y, dy, m, half, load):
 
 
 @kernel
+def drift(x, y, v, h, m):
+    """The copies' positions in x: those in y and h (s) times the velocities in v (`modelkit.verlet`)."""
+    moves = 1.0 if m.p.interface.order >= VELOCITY else 0.0  # a held copy stays
+    x[JX] = y[JX] + moves * h * v[JVX]
+    x[JY] = y[JY] + moves * h * v[JVY]
+    x[HX] = y[HX] + moves * h * v[HVX]
+    x[HY] = y[HY] + moves * h * v[HVY]
+    x[HFX] = y[HFX] + h * v[HFVX]
+    x[HFY] = y[HFY] + h * v[HFVY]
+
+
+@kernel
+def forecast(x, dy, h):
+    """Take the copies' velocities in x from the middle of a micro-step of h (s) to its end.
+
+    Their accelerations dy change little from one to the next; with them the work that crosses the seat
+    is of second order.
+    """
+    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY):
+        x[i] += 0.5 * h * dy[i]
+
+
+@kernel
 def linear_load(step, k, c, z, v):
     """Mean and slope of the linear load that brings a resting oscillator to (z, v) in `step` (s).
 
