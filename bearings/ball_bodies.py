@@ -421,7 +421,7 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
         "stiffness": race_stiffness(b),
         "inner": inner,
         "outer": outer,
-        "micro_step": resolved_step(p, hit),
+        "micro_step": resolved_step(p.micro_step, hit),
         "mass": b.ball_mass,
         "inertia": b.ball_inertia,
         "ball_radius": b.ball_radius,
@@ -437,13 +437,13 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
     }
 
 
-def resolved_step(p: BallBodiesParameters, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
-    """Longest step (s) of the leapfrog method: as asked for, and short enough for every contact.
+def resolved_step(longest: float, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
+    """Longest step (s) of the leapfrog method: the one asked for, and short enough for every contact.
 
     contacts: (law, mass in kg of the lighter body). A body that hits at the landing's speed v must not fly
     past the contact: it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
     """
-    steps = [p.micro_step]
+    steps = [longest]
     for law, mass in contacts:
         power = 1.0 / (law.exponent + 1.0)
         depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2 / law.stiffness) ** power

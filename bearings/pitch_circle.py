@@ -13,12 +13,13 @@ the model creates energy.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from bearings.contact import elastic_force
 from bearings.friction import coefficient
-from modelkit.kernel import kernel
+from bearings.pair import friction_force
+from modelkit.kernel import kernel, woven
 from modelkit.variables import real
 
 
@@ -55,26 +56,66 @@ class LoadedBalls:
     energy: float = real(0.0, "J", "stored in the contacts")
 
 
+class Raceway(NamedTuple):
+    """What balls and races are for loops over the balls."""
+
+    play: float  # m
+    radius: float  # on which a ball's centre runs, m
+    share: float  # of the rings' approach by which that radius grows
+    stiffness: float  # N/m^1.5, of both contacts in series
+    damping: float  # N s/m2
+    inner_radius: float  # m
+    ball_radius: float  # m
+    mass: float  # kg, of a ball
+    grip: float  # s/kg, as for `bearings.pair.friction_force`
+
+
+class Meeting(NamedTuple):
+    """How a ball lies and slides between the races."""
+
+    indentation: float  # approach of the rings, m
+    rate: float  # m/s
+    radius: float  # on which the ball's centre runs, m
+    lever: float  # of the inner contact from the ring's centre, m
+    inner: float  # sliding speed of the inner race over the ball along t, m/s
+    outer: float  # of the outer race over the ball, m/s
+
+
+@woven
+def meet(gap, c, s, orbit, spin, way):
+    """A ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
+    indentation = gap.ex * c + gap.ey * s - way.play
+    radius = way.radius + way.share * max(indentation, 0.0)
+    lever = way.inner_radius - gap.ex * c - gap.ey * s  # the ring's centre stands off by e
+    v, around = radius * orbit, way.ball_radius * spin
+    inner = gap.spin * lever + gap.uy * c - gap.ux * s - v + around
+    return Meeting(indentation, gap.ux * c + gap.uy * s, radius, lever, inner, -(v + around))
+
+
+@woven
+def press_ball(at, gap, c, s, orbit, friction, way):
+    """What happens at a ball (`Meeting`); friction: coefficients at the inner and the outer race."""
+    depth = max(at.indentation, 0.0)
+    elastic = way.stiffness * (depth * math.sqrt(depth))
+    force = max(elastic + way.damping * depth * at.rate, 0.0)
+    inner = -friction_force(at.inner, friction[0], force, way.grip)
+    pressed = force + at.radius * way.mass * orbit * orbit
+    outer = -friction_force(at.outer, friction[1], pressed, way.grip)
+    wedge = elastic * (gap.ey * c - gap.ex * s) / at.radius
+    heat = inner * at.inner + (force - elastic) * at.rate + outer * at.outer
+    return Pressed(force, elastic, at.indentation, inner, outer, wedge, at.lever, heat)
+
+
 @kernel
 def between_races(gap, c, s, orbit, spin, rm, m):
     """A ball at the angle of cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
-    d = m.d
-    rb, law = d.ball_radius, d.race
-    v = rm * orbit
-    force, elastic, inner, wedge, heat, lever = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    indentation = gap.ex * c + gap.ey * s - m.p.balls.play
-    if indentation > 0.0:
-        rate = gap.ux * c + gap.uy * s
-        elastic = elastic_force(indentation, law)
-        force = max(elastic + law.damping * indentation * rate, 0.0)
-        lever = d.inner_radius - gap.ex * c - gap.ey * s  # the ring's centre stands off by e
-        sliding = gap.spin * lever + gap.uy * c - gap.ux * s - v + rb * spin
-        inner = coefficient(sliding, d.race_friction) * force
-        wedge = elastic * (gap.ey * c - gap.ex * s) / rm
-        heat = inner * sliding + (force - elastic) * rate
-    back = -(v + rb * spin)
-    outer = coefficient(back, d.race_friction) * (force + rm * d.mass * orbit * orbit)
-    return Pressed(force, elastic, indentation, inner, outer, wedge, lever, heat + outer * back)
+    d, law = m.d, m.d.race
+    way = Raceway(
+        m.p.balls.play, rm, 0.0, law.stiffness, law.damping, d.inner_radius, d.ball_radius, d.mass, 0.0
+    )
+    at = meet(gap, c, s, orbit, spin, way)
+    friction = coefficient(at.inner, d.race_friction), coefficient(at.outer, d.race_friction)
+    return press_ball(at, gap, c, s, orbit, friction, way)
 
 
 @kernel
