@@ -28,7 +28,15 @@ from bearings.cage import Cage
 from bearings.contact import ContactLaw, damped, elastic_force
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import LoadedBalls, Pressed, between_races, clear, note
+from bearings.pitch_circle import (
+    LoadedBalls,
+    Pressed,
+    RollingResistance,
+    between_races,
+    clear,
+    note,
+    rolling_drag,
+)
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -50,8 +58,8 @@ ROLLING_EXPONENT = 0.55  # of the load over the static rating, in the friction m
 
 
 @dataclass(frozen=True)
-class Rolling:
-    """Friction moment of the rolling bearing, M = f1 (F/C0)^0.55 F d_m (Harris)."""
+class Rolling(RollingResistance):
+    """Friction moment of the rolling bearing, M = f1 (F/C0)^0.55 F d_m (Harris), and loss of its balls."""
 
     f1: float = real(5e-4, "1", "factor f1", minimum=0.0)
     static_rating: float = real(5000.0, "N", "static load rating C0", above=0.0)
@@ -153,8 +161,18 @@ def _rolling(y, dy, gap, m):
     load = math.sqrt(bx * bx + by * by)
     moment = p.rolling.f1 * (load / p.rolling.static_rating) ** ROLLING_EXPONENT * load
     moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * y[ring.RW] * d.inner_radius)
+    moment += _rolling_loss(d.cage_ratio * y[ring.RW], m)
     dy[ring.RW] = (d.cage_ratio * wedge - moment) / d.ring_inertia
     return bx, by, heat + moment * y[ring.RW]
+
+
+@kernel
+def _rolling_loss(orbit, m):
+    """Moment on the ring (N m) that does the work of the balls' rolling resistance; orbit: rad/s."""
+    p, d = m.p, m.d
+    pressed = 2.0 * m.s.balls.total + p.balls.count * d.mass * d.pitch_radius * orbit * orbit
+    drag = p.rolling.resistance * pressed * rolling_drag(d.pitch_radius * orbit)
+    return drag * d.pitch_radius * d.cage_ratio
 
 
 @kernel
@@ -176,7 +194,7 @@ def _slipping(y, dy, gap, m):
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
-        along += ball.inner + ball.outer - ball.wedge - p.gravity * d.mass * c
+        along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
     dy[CAGE_ANGLE] = orbit

@@ -53,7 +53,7 @@ from bearings.friction import (
 )
 from bearings.friction import problem as friction_problem
 from bearings.pair import friction_force
-from bearings.pitch_circle import Raceway, meet, press_ball
+from bearings.pitch_circle import Raceway, RollingResistance, meet, press_ball
 from bearings.race_contacts import LANES, rounded
 from bearings.rolling import (
     RollingDerived,
@@ -105,6 +105,7 @@ class Parameters(RollingParameters):
         minimum=0,
         maximum=2,
     )
+    rolling: RollingResistance = group(RollingResistance)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -222,7 +223,7 @@ def _press_all(law, gap, way, friction, weight, printed, inertia, moving, out):
         fx[b] = ball.inner * s - ball.force * c
         fy[b] = -(ball.force * s + ball.inner * c)
         moment[b] = -ball.inner * ball.lever
-        push = ball.inner + ball.outer - ball.wedge - weight * c
+        push = ball.inner + ball.outer - ball.held - weight * c
         push += printed * (ball.outer - ball.inner) * way.ball_radius / at.radius
         along[b] = push / (at.radius * way.mass)
         turning[b] = spun * (ball.outer - ball.inner)
@@ -249,9 +250,16 @@ def _race_forces(y, dy, m):
     count = p.balls.count
     n = rounded(count)
     gap, law = ring.gap(y), d.race
-    size = d.inner_radius, d.ball_radius, d.mass
+    size, grip = (d.inner_radius, d.ball_radius, d.mass), m.s.step * d.race_grip
     way = Raceway(
-        p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, m.s.step * d.race_grip
+        p.balls.play,
+        d.run_radius,
+        d.run_share,
+        law.stiffness,
+        law.damping,
+        *size,
+        grip,
+        p.rolling.resistance,
     )
     angle, orbit, spin = part(y, ANGLE, m), part(y, ORBIT, m), part(y, SPIN, m)
     _directions(angle, s.cosine[:n], s.sine[:n])
@@ -436,7 +444,7 @@ def linearise(y, j, m):
     p, d, s = m.p, m.d, m.s.balls
     n, law, gap = p.balls.count, d.race, ring.gap(y)
     size = d.inner_radius, d.ball_radius, d.mass
-    way = Raceway(p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, 0.0)
+    way = Raceway(p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, 0.0, 0.0)
     for b in range(n):
         i = BALLS + b
         orbit = y[i + n]

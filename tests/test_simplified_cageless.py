@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from systems import rotor_on
+from systems import history, rotor_on
 
 from bearings import ring, seat
+from bearings.pitch_circle import rolling_drag
 from master.scene import Scene, load
 from master.simulation import open_system, simulate
 from master.system import System
@@ -101,3 +102,67 @@ def test_steep_friction_sticks_instead_of_chattering() -> None:
     orbit, spin = (record["y"][ring.NEXT + k * 17 : ring.NEXT + (k + 1) * 17] for k in (1, 2))
     sliding = np.abs(record["d"]["pitch_radius"] * orbit + record["d"]["ball_radius"] * spin)
     assert np.median(sliding[record["s"]["balls"]["force"][:17] > 10.0]) < 2e-3
+
+
+def rolling(bearing: str, duration: float, **settings: object) -> Scene:
+    """A rotor that lies on the ring at full speed; half the weight and inertia of one on two bearings."""
+    rotor = {"mass": 1.65, "inertia": 0.5e-3, "speed": 942.48, "y": -0.308e-3}
+    values = {
+        "rolling__resistance": 0.013,
+        **({"rolling__f1": 0.0} if bearing == "simplified_caged" else {}),
+    }
+    values = {key.replace("__", "."): value for key, value in {**values, **settings}.items()}
+    housing = {"mass": 5.0, "outer_ring": 0.02}
+    return rotor_on(bearing, rotor, values, housing, duration=duration, macro_step=5e-5)
+
+
+ROLLING = [("simplified_cageless", 0), ("simplified_caged", 0), ("simplified_caged", 1)]
+
+
+@pytest.mark.parametrize(("bearing", "slip"), ROLLING)
+def test_a_rotor_runs_down_by_rolling_resistance(bearing: str, slip: int) -> None:
+    """Torque on the rotor: mu (sum of F + F_o) times the balls' speed over the rotor's."""
+    given = {"slip": slip} if slip else {}
+    times, found, _ = history(rolling(bearing, 1.2, **given), ["rotor.A.omega", "bearing.contact.force"])
+    late = times > 0.8  # when every ball rolls
+    slope = float(np.polyfit(times[late], found["rotor.A.omega"][late], 1)[0])
+    system = finished(rolling(bearing, 1.0, **given))
+    record = system.components["bearing"].instance.record  # type: ignore[attr-defined]
+    balls, d, p = record["s"]["balls"], record["d"], record["p"]
+    count = int(p["balls"]["count"])
+    forces = np.sum(balls["force"][:count]) if bearing == "simplified_cageless" else balls["total"]
+    omega = system.value("rotor.A.omega")
+    race = omega * 9.7e-3 / 10e-3 * d["inner_radius"]  # the bore rolls on the journal
+    speed = 0.5 * race
+    pressed = 2.0 * forces + count * d["mass"] * speed**2 / d["pitch_radius"]
+    expected = -0.013 * pressed * speed / omega / 0.5e-3
+    assert forces > 16.2
+    assert slope == pytest.approx(expected, rel=0.04)
+    assert 60.0 * slope / (2.0 * math.pi) == pytest.approx(-77.7, abs=2.0)  # rpm/s
+
+
+@pytest.mark.parametrize(("bearing", "slip"), ROLLING)
+def test_rolling_resistance_is_heat(bearing: str, slip: int) -> None:
+    """All energies add up while the rotor runs down, and nothing turns back."""
+    given = {"slip": slip} if slip else {}
+    if bearing == "simplified_cageless":
+        given["micro_step"] = 0.0
+    scene = rolling(bearing, 0.05, **given, rolling__resistance=0.1, interface__tolerance=1e-8)
+    parts = [
+        f"{c}.energy.{k}"
+        for c in ("rotor", "bearing", "housing")
+        for k in ("kinetic", "potential", "dissipated")
+    ]
+    _, found, _ = history(scene, parts)
+    total = sum(found[name] for name in parts)
+    assert found["bearing.energy.dissipated"][-1] > 0.5
+    assert np.all(np.diff(found["bearing.energy.dissipated"]) > -1e-9)
+    assert np.max(np.abs(total - total[0])) < 1e-6 * found["bearing.energy.dissipated"][-1] + 1e-7
+
+
+def test_rolling_resistance_changes_its_sign_smoothly() -> None:
+    assert rolling_drag(0.0) == 0.0
+    assert rolling_drag(5.4) == pytest.approx(1.0, abs=1e-4)
+    assert rolling_drag(-5.4) == -rolling_drag(5.4)
+    speeds = np.linspace(-0.2, 0.2, 401)
+    assert np.all(np.diff([rolling_drag(v) for v in speeds]) > 0.0)
