@@ -108,8 +108,8 @@ class BallBodiesDerived(RollingDerived):
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
-    mass: float = real(0.0, "kg", "of a ball")
-    inertia: float = real(0.0, "kg.m2", "of a ball")
+    mass: float = real(0.0, "kg", "of a ball, or of those side by side")
+    inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
     outer_radius: float = real(0.0, "m", "outer race")
     micro_step: float = real(0.0, "s", "longest step inside")
@@ -282,23 +282,26 @@ def fastest(m):
 
 
 @kernel
-def largest(contacts, count):
-    """(Normal force, indentation, ball) of the most loaded contact; both 0 where none is."""
+def largest(contacts, balls):
+    """(Normal force on one of a row, indentation, ball) of the most loaded contact; 0 where none is.
+
+    balls: the record of `BallSet`.
+    """
     force, indentation, ball = 0.0, 0.0, 0
-    for b in range(count):
+    for b in range(balls.count):
         if contacts.normal[b] > force:
             force, ball = contacts.normal[b], b
         indentation = max(indentation, contacts.indentation[b])
-    return force, indentation, ball
+    return force / balls.rows, indentation, ball
 
 
 @kernel
 def watch(m, sides):
     """Peaks, after an accepted micro-step; `sides` is the report of the cage's or neighbours' contacts."""
-    s, o, count = m.s, m.o, m.p.balls.count
-    inner, sunk_in, first = largest(s.inner, count)
-    outer, sunk_out, second = largest(s.outer, count)
-    side, overlap, _ = largest(s.side, count)
+    s, o, balls = m.s, m.o, m.p.balls
+    inner, sunk_in, first = largest(s.inner, balls)
+    outer, sunk_out, second = largest(s.outer, balls)
+    side, overlap, _ = largest(s.side, balls)
     watch_contacts(inner, sunk_in, o.inner)
     watch_contacts(outer, sunk_out, o.outer)
     watch_contacts(side, overlap, sides)
@@ -319,9 +322,9 @@ def approach(m):
 
 
 @kernel
-def state_contacts(report, contacts, count):
-    """The present of a `BallContacts`."""
-    report.force, report.indentation, _ = largest(contacts, count)
+def state_contacts(report, contacts, balls):
+    """The present of a `BallContacts`; balls: the record of `BallSet`."""
+    report.force, report.indentation, _ = largest(contacts, balls)
 
 
 @kernel
@@ -344,8 +347,8 @@ def report(y, m, neighbours):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
-    state_contacts(o.inner, s.inner, count)
-    state_contacts(o.outer, s.outer, count)
+    state_contacts(o.inner, s.inner, p.balls)
+    state_contacts(o.outer, s.outer, p.balls)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation = approach(m)
     kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
@@ -361,7 +364,8 @@ def report(y, m, neighbours):
             loaded += 1
         ball = o.ball[b]
         ball.x, ball.y, ball.spin = now.x, now.y, now.spin
-        ball.inner, ball.outer, ball.side = s.inner.normal[b], s.outer.normal[b], s.side.normal[b]
+        ball.inner, ball.outer = s.inner.normal[b] / p.balls.rows, s.outer.normal[b] / p.balls.rows
+        ball.side = s.side.normal[b] / p.balls.rows
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count
     o.speed.ball = spin / count * d.ball_radius
@@ -375,14 +379,14 @@ def report(y, m, neighbours):
 
 @kernel
 def _report_hardest(b, y, m, neighbours):
-    h, s = m.o.hardest, m.s
-    h.inner_normal, h.inner_tangential = s.inner.normal[b], s.inner.tangential[b]
-    h.outer_normal, h.outer_tangential = s.outer.normal[b], s.outer.tangential[b]
+    h, s, rows = m.o.hardest, m.s, m.p.balls.rows
+    h.inner_normal, h.inner_tangential = s.inner.normal[b] / rows, s.inner.tangential[b] / rows
+    h.outer_normal, h.outer_tangential = s.outer.normal[b] / rows, s.outer.tangential[b] / rows
     side = b
     before = b - 1 if b > 0 else m.p.balls.count - 1
     if neighbours and s.side.normal[before] > s.side.normal[b]:
         side = before
-    h.side_normal, h.side_tangential = s.side.normal[side], s.side.tangential[side]
+    h.side_normal, h.side_tangential = s.side.normal[side] / rows, s.side.tangential[side] / rows
     h.speed = abs(ball_motion(y, b, m).spin) * m.d.ball_radius
 
 

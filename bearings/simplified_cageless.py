@@ -40,7 +40,7 @@ import numpy as np
 from bearings import ring, seat
 from bearings.ball_bodies import resolved_step
 from bearings.balls import MOST_BALLS, BallContacts, Coordinates, FreeBallSet, watch_balls, watch_contacts
-from bearings.contact import ContactLaw, damped, elastic_energy, normal_and_elastic
+from bearings.contact import ContactLaw, abreast, damped, elastic_energy, normal_and_elastic
 from bearings.friction import (
     MAKKAR,
     FrictionLaw,
@@ -135,8 +135,8 @@ class Derived(RollingDerived):
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)
-    mass: float = real(0.0, "kg", "of a ball")
-    inertia: float = real(0.0, "kg.m2", "of a ball")
+    mass: float = real(0.0, "kg", "of a ball, or of those side by side")
+    inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
     pitch_radius: float = real(0.0, "m", "where ball centres run")
     touch_angle: float = real(0.0, "rad", "between neighbours that just touch")
@@ -376,13 +376,13 @@ def fastest(m):
 
 @kernel
 def _largest(m):
-    """(Largest force, largest indentation) of a ball between the rings."""
+    """(Largest force on one of a row, largest indentation) of the balls between the rings."""
     s = m.s.balls
     force, indentation = 0.0, 0.0
     for b in range(m.p.balls.count):
         force = max(force, s.force[b])
         indentation = max(indentation, s.indentation[b])
-    return force, indentation
+    return force / m.p.balls.rows, indentation
 
 
 @kernel
@@ -391,7 +391,7 @@ def observe(t, y, m):
     ring.watch(t, y, m)
     force, indentation = _largest(m)
     watch_balls(force, indentation, m)
-    watch_contacts(m.s.pushed.force, m.s.pushed.overlap, m.o.neighbours)
+    watch_contacts(m.s.pushed.force / m.p.balls.rows, m.s.pushed.overlap, m.o.neighbours)
 
 
 @kernel
@@ -401,7 +401,8 @@ def report(y, m):
     count = p.balls.count
     ring.report(y, m, d.inner_radius)
     o.balls.force, o.balls.indentation = _largest(m)
-    o.neighbours.force, o.neighbours.indentation = m.s.pushed.force, m.s.pushed.overlap
+    o.neighbours.force = m.s.pushed.force / p.balls.rows
+    o.neighbours.indentation = m.s.pushed.overlap
     moving = d.mass * d.pitch_radius**2
     angular, turning = part(y, ORBIT, m), part(y, SPIN, m)
     kinetic, height, stored, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
@@ -534,7 +535,7 @@ def derive(p: Parameters) -> Derived:
     """Stiffness and masses from geometry, and where everything starts."""
     b = p.balls
     rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
-    race, touching = b.race_law(b.series_stiffness()), damped(p.ball_contact, b.ball_mass)
+    race, touching = b.race_law(b.series_stiffness()), damped(abreast(p.ball_contact, b.rows), b.ball_mass)
     hit = [(p.contact, p.ring.mass), (race, p.ring.mass), (touching, 0.5 * b.ball_mass)]
     spun = b.ball_radius**2 / b.ball_inertia
     bore = p.journal_radius + p.clearance
