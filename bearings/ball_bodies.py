@@ -108,8 +108,8 @@ class BallBodiesDerived(RollingDerived):
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
-    mass: float = real(0.0, "kg", "of a ball")
-    inertia: float = real(0.0, "kg.m2", "of a ball")
+    mass: float = real(0.0, "kg", "of a ball, or of those side by side")
+    inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
     outer_radius: float = real(0.0, "m", "outer race")
     micro_step: float = real(0.0, "s", "longest step inside")
@@ -238,17 +238,8 @@ def _accelerate(balls, dy, m):
 @kernel
 def drift(x, y, v, h, m):
     """Positions in x: those in y and h (s) times the velocities in v."""
-    moves = 1.0 if m.p.interface.order >= 1 else 0.0  # a held copy stays
-    x[seat.JX] = y[seat.JX] + moves * h * v[seat.JVX]
-    x[seat.JY] = y[seat.JY] + moves * h * v[seat.JVY]
-    x[seat.HX] = y[seat.HX] + moves * h * v[seat.HVX]
-    x[seat.HY] = y[seat.HY] + moves * h * v[seat.HVY]
-    x[seat.HFX] = y[seat.HFX] + h * v[seat.HFVX]
-    x[seat.HFY] = y[seat.HFY] + h * v[seat.HFVY]
-    seat.drift_modes(x, y, v, h, m)
-    x[ring.RX] = y[ring.RX] + h * v[ring.RVX]
-    x[ring.RY] = y[ring.RY] + h * v[ring.RVY]
-    x[ring.RANGLE] = y[ring.RANGLE] + h * v[ring.RW]
+    seat.drift(x, y, v, h, m)
+    ring.drift(x, y, v, h)
     n = m.p.balls.count
     for i in range(BALLS, BALLS + 2 * n):  # x and y of all balls
         x[i] = y[i] + h * v[i + 2 * n]
@@ -262,13 +253,8 @@ def drift(x, y, v, h, m):
 
 @kernel
 def forecast(x, dy, h, m):
-    """Velocities of the heavy bodies at the end of a micro-step of h seconds.
-
-    Their accelerations change little from one to the next; with them the work that crosses the seat is
-    of second order.
-    """
-    for i in (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY, seat.HFVX, seat.HFVY):
-        x[i] += 0.5 * h * dy[i]
+    """Velocities of the copies at the end of a micro-step of h seconds, which is noted."""
+    seat.forecast(x, dy, h)
     m.s.step = h
 
 
@@ -296,23 +282,26 @@ def fastest(m):
 
 
 @kernel
-def largest(contacts, count):
-    """(Normal force, indentation, ball) of the most loaded contact; both 0 where none is."""
+def largest(contacts, balls):
+    """(Normal force on one of a row, indentation, ball) of the most loaded contact; 0 where none is.
+
+    balls: the record of `BallSet`.
+    """
     force, indentation, ball = 0.0, 0.0, 0
-    for b in range(count):
+    for b in range(balls.count):
         if contacts.normal[b] > force:
             force, ball = contacts.normal[b], b
         indentation = max(indentation, contacts.indentation[b])
-    return force, indentation, ball
+    return force / balls.rows, indentation, ball
 
 
 @kernel
 def watch(m, sides):
     """Peaks, after an accepted micro-step; `sides` is the report of the cage's or neighbours' contacts."""
-    s, o, count = m.s, m.o, m.p.balls.count
-    inner, sunk_in, first = largest(s.inner, count)
-    outer, sunk_out, second = largest(s.outer, count)
-    side, overlap, _ = largest(s.side, count)
+    s, o, balls = m.s, m.o, m.p.balls
+    inner, sunk_in, first = largest(s.inner, balls)
+    outer, sunk_out, second = largest(s.outer, balls)
+    side, overlap, _ = largest(s.side, balls)
     watch_contacts(inner, sunk_in, o.inner)
     watch_contacts(outer, sunk_out, o.outer)
     watch_contacts(side, overlap, sides)
@@ -333,9 +322,9 @@ def approach(m):
 
 
 @kernel
-def state_contacts(report, contacts, count):
-    """The present of a `BallContacts`."""
-    report.force, report.indentation, _ = largest(contacts, count)
+def state_contacts(report, contacts, balls):
+    """The present of a `BallContacts`; balls: the record of `BallSet`."""
+    report.force, report.indentation, _ = largest(contacts, balls)
 
 
 @kernel
@@ -358,8 +347,8 @@ def report(y, m, neighbours):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
-    state_contacts(o.inner, s.inner, count)
-    state_contacts(o.outer, s.outer, count)
+    state_contacts(o.inner, s.inner, p.balls)
+    state_contacts(o.outer, s.outer, p.balls)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation = approach(m)
     kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
@@ -375,7 +364,8 @@ def report(y, m, neighbours):
             loaded += 1
         ball = o.ball[b]
         ball.x, ball.y, ball.spin = now.x, now.y, now.spin
-        ball.inner, ball.outer, ball.side = s.inner.normal[b], s.outer.normal[b], s.side.normal[b]
+        ball.inner, ball.outer = s.inner.normal[b] / p.balls.rows, s.outer.normal[b] / p.balls.rows
+        ball.side = s.side.normal[b] / p.balls.rows
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count
     o.speed.ball = spin / count * d.ball_radius
@@ -389,14 +379,14 @@ def report(y, m, neighbours):
 
 @kernel
 def _report_hardest(b, y, m, neighbours):
-    h, s = m.o.hardest, m.s
-    h.inner_normal, h.inner_tangential = s.inner.normal[b], s.inner.tangential[b]
-    h.outer_normal, h.outer_tangential = s.outer.normal[b], s.outer.tangential[b]
+    h, s, rows = m.o.hardest, m.s, m.p.balls.rows
+    h.inner_normal, h.inner_tangential = s.inner.normal[b] / rows, s.inner.tangential[b] / rows
+    h.outer_normal, h.outer_tangential = s.outer.normal[b] / rows, s.outer.tangential[b] / rows
     side = b
     before = b - 1 if b > 0 else m.p.balls.count - 1
     if neighbours and s.side.normal[before] > s.side.normal[b]:
         side = before
-    h.side_normal, h.side_tangential = s.side.normal[side], s.side.tangential[side]
+    h.side_normal, h.side_tangential = s.side.normal[side] / rows, s.side.tangential[side] / rows
     h.speed = abs(ball_motion(y, b, m).spin) * m.d.ball_radius
 
 
@@ -435,7 +425,7 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
         "stiffness": race_stiffness(b),
         "inner": inner,
         "outer": outer,
-        "micro_step": resolved_step(p, hit),
+        "micro_step": resolved_step(p.micro_step, hit),
         "mass": b.ball_mass,
         "inertia": b.ball_inertia,
         "ball_radius": b.ball_radius,
@@ -451,13 +441,13 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
     }
 
 
-def resolved_step(p: BallBodiesParameters, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
-    """Longest step (s) of the leapfrog method: as asked for, and short enough for every contact.
+def resolved_step(longest: float, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
+    """Longest step (s) of the leapfrog method: the one asked for, and short enough for every contact.
 
     contacts: (law, mass in kg of the lighter body). A body that hits at the landing's speed v must not fly
     past the contact: it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
     """
-    steps = [p.micro_step]
+    steps = [longest]
     for law, mass in contacts:
         power = 1.0 / (law.exponent + 1.0)
         depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2 / law.stiffness) ** power

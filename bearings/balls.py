@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
-from bearings.contact import ContactLaw, damped
+from bearings.contact import ContactLaw, abreast, damped
 from bearings.stiffness import in_series, race_contact_stiffness
 from modelkit.kernel import kernel
 from modelkit.variables import integer, real
@@ -18,9 +18,15 @@ MOST_BALLS = 32  # room in the state vector
 
 @dataclass(frozen=True)
 class BallSet:
-    """Balls and races. Defaults: SKF 6004 of the source's Table 1."""
+    """Balls and races. Defaults: SKF 6004 of the source's Table 1.
 
-    count: int = integer(9, "number of balls", minimum=3, maximum=MOST_BALLS)
+    Bearings mounted in pairs, or with several rows, are one set of balls: each stands for the `rows` balls
+    side by side, with their mass and inertia together and the stiffness of all their contacts. Geometry,
+    contact stiffness and forces are stated per ball.
+    """
+
+    count: int = integer(9, "number of balls in a row", minimum=3, maximum=MOST_BALLS)
+    rows: int = integer(1, "rows of balls side by side that share the load alike", minimum=1, maximum=8)
     diameter: float = real(6.4e-3, "m", "ball diameter", above=0.0)
     pitch_diameter: float = real(31e-3, "m", "pitch diameter", above=0.0)
     play: float = real(5e-6, "m", "radial play between balls and races; negative: preload")
@@ -66,12 +72,12 @@ class BallSet:
 
     @property
     def ball_mass(self) -> float:
-        """kg"""
-        return self.density * math.pi / 6.0 * self.diameter**3
+        """Of the balls side by side (kg)."""
+        return self.rows * (self.density * math.pi / 6.0 * self.diameter**3)
 
     @property
     def ball_inertia(self) -> float:
-        """Of a solid sphere about its centre (kg m2)."""
+        """Of solid spheres about their centres, those side by side together (kg m2)."""
         return 0.4 * self.ball_mass * self.ball_radius**2
 
     @property
@@ -102,14 +108,14 @@ class BallSet:
         return outer / (inner + outer)
 
     def race_law(self, stiffness: float) -> ContactLaw:
-        """Law of a contact with races of `stiffness` (N/m^1.5), damped as asked for a ball's mass."""
+        """Law of the balls side by side on races, each of `stiffness` (N/m^1.5), damped as asked."""
         law = ContactLaw(
             stiffness=stiffness,
             damping=self.damping,
             damping_ratio=self.damping_ratio,
             expected_indentation=self.expected_indentation,
         )
-        return damped(law, self.ball_mass)
+        return damped(abreast(law, self.rows), self.ball_mass)
 
     def angles(self) -> list[float]:
         """Attitude angles at the start (rad), rising from the first ball's by less than a turn."""
@@ -148,7 +154,7 @@ class BallSet:
             return 0.0, 0.0
         angles = np.array(self.angles())
         nx, ny = np.cos(angles), np.sin(angles)
-        stiffness = self.series_stiffness()
+        stiffness = self.rows * self.series_stiffness()
         sunk = (weight / stiffness) ** (1.0 / 1.5)
         scale = max(abs(self.play), sunk, 1e-9)
 

@@ -27,7 +27,7 @@ class Bearing:
     ring: Ring
     caged: bool
     outer_ring: float  # mass
-    static_rating: float  # N
+    static_rating: float  # N, of a row
     damping: float = 0.0  # N s/m, between the rings (2.7)
 
     def settings(self) -> dict[str, float]:
@@ -35,6 +35,7 @@ class Bearing:
         b = self.balls
         return {
             "balls.count": b.count,
+            "balls.rows": b.rows,
             "balls.diameter": b.diameter,
             "balls.pitch_diameter": b.pitch_diameter,
             "balls.play": b.play,
@@ -95,6 +96,18 @@ CATALOGUE = {
             outer_ring=0.18,
             static_rating=20900.0,
             damping=270.0,
+        ),
+        Bearing(
+            "7914 pair",  # both, as one set of two rows under the whole bronze ring
+            bore=70e-3,
+            outside=100e-3,
+            width=32e-3,
+            balls=BallSet(count=11, rows=2, diameter=11.7e-3, pitch_diameter=85e-3, play=4.5e-6),
+            ring=Ring(mass=0.453, inertia=6.1e-4),
+            caged=True,
+            outer_ring=0.36,
+            static_rating=20900.0,
+            damping=2 * 270.0,
         ),
     )
 }

@@ -50,6 +50,17 @@ def damped(law: ContactLaw, lighter: float) -> ContactLaw:
     return replace(law, damping=law.damping + added, damping_ratio=0.0)
 
 
+def abreast(law: ContactLaw, rows: int) -> ContactLaw:
+    """Law of `rows` like contacts side by side, that share the load."""
+    return replace(
+        law,
+        stiffness=rows * law.stiffness,
+        damping=rows * law.damping,
+        viscous=rows * law.viscous,
+        mass=rows * law.mass,
+    )
+
+
 @kernel
 def power(x, exponent):
     """x^exponent for x > 0; the Hertz exponent takes the short way."""

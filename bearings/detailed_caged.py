@@ -26,7 +26,7 @@ from bearings.ball_bodies import (
     race_contacts,
 )
 from bearings.balls import MOST_BALLS, BallContacts, Coordinates
-from bearings.contact import ContactLaw, damped
+from bearings.contact import ContactLaw, abreast, damped
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
 from bearings.rolling import starts_from, state_constants
@@ -76,7 +76,7 @@ class Derived(BallBodiesDerived):
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
-SCRATCH = dopri.scratch_layout(MOST_STATES)
+SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 
 @kernel
@@ -109,9 +109,9 @@ def report(y, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(y, m, m.d.inner_radius)
     kinetic, potential = ball_bodies.report(y, m, False)
-    ball_bodies.state_contacts(o.pockets, m.s.side, count)
+    ball_bodies.state_contacts(o.pockets, m.s.side, p.balls)
     of_cage, weight = cage.report(y, m)
-    stored = ball_bodies.stored(m.s.side, p.cage_contact, count)
+    stored = ball_bodies.stored(m.s.side, m.d.cage_contact, count)
     ring.report_energy(y, m, kinetic + of_cage, potential + weight + stored, p.ring.inertia)
 
 
@@ -161,10 +161,11 @@ def derive(p: Parameters) -> Derived:
     inertia = p.cage.inertia or p.cage.mass * b.pitch_radius**2
     of_ball = 1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia
     of_cage = 1.0 / p.cage.mass + b.pitch_radius**2 / inertia
-    fields = ball_bodies.derived(p, p.cage_contact, min(b.ball_mass, p.cage.mass))
+    side = abreast(p.cage_contact, b.rows)
+    fields = ball_bodies.derived(p, side, min(b.ball_mass, p.cage.mass))
     return Derived(
         **fields,  # type: ignore[arg-type]
-        cage_contact=damped(p.cage_contact, min(b.ball_mass, p.cage.mass)),
+        cage_contact=damped(side, min(b.ball_mass, p.cage.mass)),
         cage_friction=prepared(p.cage_friction),
         cage_inertia=inertia,
         side_grip=2.0 * of_ball + 0.5 * b.count * of_cage,

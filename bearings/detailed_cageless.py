@@ -35,7 +35,7 @@ from bearings.ball_bodies import (
     race_contacts,
 )
 from bearings.balls import BallContacts, Coordinates, FreeBallSet
-from bearings.contact import ContactLaw, damped
+from bearings.contact import ContactLaw, abreast, damped
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
 from bearings.pair import OUTSIDE, Place, press
@@ -82,7 +82,7 @@ class Derived(BallBodiesDerived):
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
-SCRATCH = dopri.scratch_layout(MOST_STATES)
+SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 
 @kernel
@@ -142,8 +142,8 @@ def report(y, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(y, m, m.d.inner_radius)
     kinetic, potential = ball_bodies.report(y, m, neighbours=True)
-    ball_bodies.state_contacts(o.neighbours, m.s.side, count)
-    stored = ball_bodies.stored(m.s.side, p.ball_contact, count)
+    ball_bodies.state_contacts(o.neighbours, m.s.side, p.balls)
+    stored = ball_bodies.stored(m.s.side, m.d.ball_contact, count)
     ring.report_energy(y, m, kinetic, potential + stored, p.ring.inertia)
 
 
@@ -188,10 +188,11 @@ def advance(words, work, time, step):
 def derive(p: Parameters) -> Derived:
     """Stiffness and masses from geometry, and where everything starts."""
     b = p.balls
-    fields = ball_bodies.derived(p, p.ball_contact, 0.5 * b.ball_mass)
+    side = abreast(p.ball_contact, b.rows)
+    fields = ball_bodies.derived(p, side, 0.5 * b.ball_mass)
     return Derived(
         **fields,  # type: ignore[arg-type]
-        ball_contact=damped(p.ball_contact, b.ball_mass),
+        ball_contact=damped(side, b.ball_mass),
         ball_friction=prepared(p.ball_friction),
         side_grip=4.0 * (1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia),
         size=Coordinates(

@@ -104,6 +104,14 @@ def accelerate(y, dy, m, journal, balls):
 
 
 @kernel
+def drift(x, y, v, h):
+    """The ring's position in x: that in y and h (s) times the velocity in v (`modelkit.verlet`)."""
+    x[RX] = y[RX] + h * v[RVX]
+    x[RY] = y[RY] + h * v[RVY]
+    x[RANGLE] = y[RANGLE] + h * v[RW]
+
+
+@kernel
 def report_energy(y, m, kinetic, potential, inertia):
     """Energy of the bearing; `kinetic` and `potential` (J) are those of balls and cage, `inertia` (kg m2)
     is what turns with the ring.

@@ -53,6 +53,7 @@ INSIDE = 23  # first component of what is inside the bearing
 # of a mode of unit inv_m to the load alone.
 ZX, ZY, ZVX, ZVY, QX, QY, PX, PY = range(8)
 PER_MODE = 8
+ROOM = PER_MODE * MODES  # in the state vector
 
 POSITION_SCALE = 1e-5  # m; an indentation
 VELOCITY_SCALE = 0.1  # m/s; a landing
@@ -91,7 +92,7 @@ def bearing_memory(
     inputs: type = BearingInputs,
 ) -> np.dtype:
     """Memory of a bearing whose state, with the copies, has up to `size` components."""
-    return memory_layout(parameters, inputs, outputs, size + PER_MODE * MODES, derived, hidden)
+    return memory_layout(parameters, inputs, outputs, size + ROOM, derived, hidden)
 
 
 def weights(inside: list[float]) -> np.ndarray:
@@ -238,8 +239,32 @@ def _mode_rates(y, dy, m, load):
 
 
 @kernel
-def drift_modes(x, y, v, h, m):
-    """Leapfrog's move of the elastic modes: positions in y plus h (s) times the velocities in v, into x."""
+def drift(x, y, v, h, m):
+    """The copies' positions in x: those in y and h (s) times the velocities in v (`modelkit.verlet`)."""
+    moves = 1.0 if m.p.interface.order >= VELOCITY else 0.0  # a held copy stays
+    x[JX] = y[JX] + moves * h * v[JVX]
+    x[JY] = y[JY] + moves * h * v[JVY]
+    x[HX] = y[HX] + moves * h * v[HVX]
+    x[HY] = y[HY] + moves * h * v[HVY]
+    x[HFX] = y[HFX] + h * v[HFVX]
+    x[HFY] = y[HFY] + h * v[HFVY]
+    _drift_modes(x, y, v, h, m)
+
+
+@kernel
+def forecast(x, dy, h):
+    """Take the copies' velocities in x from the middle of a micro-step of h (s) to its end.
+
+    Their accelerations dy change little from one to the next; with them the work that crosses the seat
+    is of second order.
+    """
+    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY):
+        x[i] += 0.5 * h * dy[i]
+
+
+@kernel
+def _drift_modes(x, y, v, h, m):
+    """`drift` of the elastic modes."""
     for n in range(m.s.seat.modes):
         i = m.s.seat.inside + PER_MODE * n
         x[i + ZX] = y[i + ZX] + h * v[i + ZVX]

@@ -28,7 +28,15 @@ from bearings.cage import Cage
 from bearings.contact import ContactLaw, damped, elastic_force
 from bearings.friction import FrictionLaw, prepared
 from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import LoadedBalls, Pressed, between_races, clear, note
+from bearings.pitch_circle import (
+    LoadedBalls,
+    Pressed,
+    RollingResistance,
+    between_races,
+    clear,
+    note,
+    rolling_drag,
+)
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -50,11 +58,13 @@ ROLLING_EXPONENT = 0.55  # of the load over the static rating, in the friction m
 
 
 @dataclass(frozen=True)
-class Rolling:
-    """Friction moment of the rolling bearing, M = f1 (F/C0)^0.55 F d_m (Harris)."""
+class Rolling(RollingResistance):
+    """Friction moment of the rolling bearing, M = f1 (F/C0)^0.55 F d_m (Harris) with the load of each row
+    over its rating, and loss of its balls.
+    """
 
     f1: float = real(5e-4, "1", "factor f1", minimum=0.0)
-    static_rating: float = real(5000.0, "N", "static load rating C0", above=0.0)
+    static_rating: float = real(5000.0, "N", "static load rating C0, of one row of balls", above=0.0)
     slope: float = real(100.0, "s/m", "steepness of the moment through zero race speed", above=0.0)
 
 
@@ -95,7 +105,7 @@ class Derived(RollingDerived):
 
     race: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
-    mass: float = real(0.0, "kg", "of a ball")
+    mass: float = real(0.0, "kg", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
     pitch_radius: float = real(0.0, "m", "where ball centres run")
     ring_inertia: float = real(0.0, "kg.m2", "what turns with the ring: without slip all of it (4.3)")
@@ -149,10 +159,20 @@ def _rolling(y, dy, gap, m):
     p, d = m.p, m.d
     bx, by, wedge, heat = _springs(gap, d.cage_ratio * y[ring.RANGLE], m)
     load = math.sqrt(bx * bx + by * by)
-    moment = p.rolling.f1 * (load / p.rolling.static_rating) ** ROLLING_EXPONENT * load
+    moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
     moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * y[ring.RW] * d.inner_radius)
+    moment += _rolling_loss(d.cage_ratio * y[ring.RW], m)
     dy[ring.RW] = (d.cage_ratio * wedge - moment) / d.ring_inertia
     return bx, by, heat + moment * y[ring.RW]
+
+
+@kernel
+def _rolling_loss(orbit, m):
+    """Moment on the ring (N m) that does the work of the balls' rolling resistance; orbit: rad/s."""
+    p, d = m.p, m.d
+    pressed = 2.0 * m.s.balls.total + p.balls.count * d.mass * d.pitch_radius * orbit * orbit
+    drag = p.rolling.resistance * pressed * rolling_drag(d.pitch_radius * orbit)
+    return drag * d.pitch_radius * d.cage_ratio
 
 
 @kernel
@@ -174,7 +194,7 @@ def _slipping(y, dy, gap, m):
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
-        along += ball.inner + ball.outer - ball.wedge - p.gravity * d.mass * c
+        along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
     dy[CAGE_ANGLE] = orbit
@@ -214,7 +234,7 @@ def rhs(t, y, dy, m):
 def observe(t, y, m):
     """Peaks and events, after each accepted micro-step."""
     ring.watch(t, y, m)
-    watch_balls(m.s.balls.force, m.s.balls.indentation, m)
+    watch_balls(m.s.balls.force / m.p.balls.rows, m.s.balls.indentation, m)
 
 
 @kernel
@@ -223,7 +243,7 @@ def report(y, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     ring.report(y, m, d.inner_radius)
     o.balls.loaded = int(s.loaded)
-    o.balls.force, o.balls.indentation = s.force, s.indentation
+    o.balls.force, o.balls.indentation = s.force / p.balls.rows, s.indentation
     cage, spin = d.cage_ratio * y[ring.RW], d.ball_ratio * y[ring.RW]
     inside = 0.0
     if p.slip == 1:

@@ -24,8 +24,10 @@ Deviations from the source, each named where it acts:
 - Balls have no inertia or weight across the race: what (2.9) adds at the outer race loads friction, not
   the housing.
 
-Friction on a ball of half a gram is stiff (1e7 per second under load), everything else is not; so the
-state is advanced by a linearly implicit method whose matrix holds the slopes of friction only.
+The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
+balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
+everything else is not. The default are leapfrog steps within which friction may stop the sliding; with
+`micro_step = 0` a linearly implicit method whose matrix holds the slopes of friction is the reference.
 """
 
 from __future__ import annotations
@@ -36,11 +38,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from bearings import ring, seat
+from bearings.ball_bodies import resolved_step
 from bearings.balls import MOST_BALLS, BallContacts, Coordinates, FreeBallSet, watch_balls, watch_contacts
-from bearings.contact import ContactLaw, damped, elastic_energy, elastic_force, normal_force
-from bearings.friction import FrictionLaw, coefficient, prepared, slope
+from bearings.contact import ContactLaw, abreast, damped, elastic_energy, normal_and_elastic
+from bearings.friction import (
+    MAKKAR,
+    FrictionLaw,
+    coefficient,
+    coefficient_and_slope,
+    curve,
+    makkar,
+    prepared,
+    slope,
+)
 from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import LoadedBalls, between_races, clear, note
+from bearings.pair import friction_force
+from bearings.pitch_circle import Raceway, RollingResistance, meet, press_ball
+from bearings.race_contacts import LANES, rounded
 from bearings.rolling import (
     RollingDerived,
     RollingMemory,
@@ -50,13 +64,16 @@ from bearings.rolling import (
     starts_from,
     state_constants,
 )
-from modelkit import rosenbrock
-from modelkit.kernel import kernel
+from modelkit import dopri, rosenbrock, verlet
+from modelkit.angles import cosine_and_sine
+from modelkit.kernel import inlined, kernel
 from modelkit.model import Model
 from modelkit.ports import Interface, Load
 from modelkit.variables import array, group, integer, real
 
-BALLS = ring.NEXT  # three components a ball from here: attitude angle, its rate, spin
+BALLS = ring.NEXT  # from here each component of all balls in turn,
+ANGLE, ORBIT, SPIN = range(3)  # in this order: attitude angle, its rate, spin
+MOST_STATES = BALLS + 3 * MOST_BALLS + LANES  # and room to run past the last ball
 BALL_SPIN_SCALE = 1e3  # rad/s
 ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
 
@@ -68,6 +85,14 @@ class Parameters(RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
     interface: Interface = group(Interface, tolerance=2e-5)
+    micro_step: float = real(
+        2e-6,
+        "s",
+        "longest step inside, of the velocity Verlet method; 0: adaptive linearly implicit steps of the "
+        "error interface.tolerance",
+        minimum=0.0,
+        maximum=1e-4,
+    )
     balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = integer(
@@ -80,6 +105,7 @@ class Parameters(RollingParameters):
         minimum=0,
         maximum=2,
     )
+    rolling: RollingResistance = group(RollingResistance)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
@@ -109,13 +135,35 @@ class Derived(RollingDerived):
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw)
     ball_friction: FrictionLaw = group(FrictionLaw)
-    mass: float = real(0.0, "kg", "of a ball")
-    inertia: float = real(0.0, "kg.m2", "of a ball")
+    mass: float = real(0.0, "kg", "of a ball, or of those side by side")
+    inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
     pitch_radius: float = real(0.0, "m", "where ball centres run")
     touch_angle: float = real(0.0, "rad", "between neighbours that just touch")
-    outer_share: float = real(0.0, "1", "of the rings' approach, at the outer race")
+    run_radius: float = real(0.0, "m", "where ball centres run, unloaded: as (5.1) corrects it")
+    run_share: float = real(0.0, "1", "of the rings' approach by which that radius grows")
+    micro_step: float = real(0.0, "s", "longest step inside")
+    bore_grip: float = real(0.0, "1/kg", "answer of the sliding speed to a force: journal on ring")
+    race_grip: float = real(0.0, "1/kg", "ball on race, with all that hangs together")
+    side_grip: float = real(0.0, "1/kg", "ball on ball")
     angles: tuple = array(MOST_BALLS)
+
+
+@dataclass(frozen=True)
+class RaceBalls:
+    """Each ball between the races, at the last evaluation."""
+
+    cosine: tuple = array(MOST_BALLS)
+    sine: tuple = array(MOST_BALLS)
+    force: tuple = array(MOST_BALLS)  # between the rings
+    elastic: tuple = array(MOST_BALLS)
+    indentation: tuple = array(MOST_BALLS)
+    fx: tuple = array(MOST_BALLS)  # on the ring
+    fy: tuple = array(MOST_BALLS)
+    moment: tuple = array(MOST_BALLS)
+    along: tuple = array(MOST_BALLS)  # angular acceleration along the race
+    turning: tuple = array(MOST_BALLS)  # and of the spin
+    heat: tuple = array(MOST_BALLS)
 
 
 @dataclass(frozen=True)
@@ -125,29 +173,71 @@ class PushedBalls:
     force: float = real(0.0, "N", "largest")
     overlap: float = real(0.0, "m", "largest")
     energy: float = real(0.0, "J", "stored in the contacts")
+    stiffness: float = real(0.0, "N/m", "largest")
 
 
 @dataclass(frozen=True)
 class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
-    balls: LoadedBalls = group(LoadedBalls)
+    balls: RaceBalls = group(RaceBalls)
     pushed: PushedBalls = group(PushedBalls)
+    step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, BALLS + 3 * MOST_BALLS, derived=Derived, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Hidden)
+SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 
 @kernel
-def _pitch_radius(gap, c, sn, m):
-    """Radius on which a ball's centre runs (m): the pitch circle's, or as (5.1) corrects it."""
-    p, d = m.p, m.d
-    if p.corrected_pitch == NOMINAL:
-        return d.pitch_radius
-    approach = max(gap.ex * c + gap.ey * sn - p.balls.play, 0.0)
-    if p.corrected_pitch == AS_PRINTED:
-        return d.pitch_radius - 0.5 * approach
-    return d.pitch_radius + 0.5 * p.balls.play + d.outer_share * approach
+def part(y, component, m):
+    """One component of all balls in the state, or its derivative."""
+    count = m.p.balls.count
+    return y[BALLS + component * count : BALLS + (component + 1) * count]
+
+
+@kernel
+def _directions(angle, cosine, sine):
+    for b in range(len(cosine)):
+        cosine[b], sine[b] = cosine_and_sine(angle[b])
+
+
+@inlined
+def _press_all(law, gap, way, friction, weight, printed, inertia, moving, out):
+    """Loads of all balls; law(speed, friction) gives coefficient and slope.
+
+    weight: of a ball (N); printed: 1 for (2.10) as printed; inertia: of a ball (kg m2).
+    """
+    orbit, spin, cosine, sine = moving
+    force, elastic, indentation, fx, fy, moment, along, turning, heat = out
+    spun = way.ball_radius / inertia
+    for b in range(len(cosine)):
+        c, s = cosine[b], sine[b]
+        at = meet(gap, c, s, orbit[b], spin[b], way)
+        mu_inner, _ = law(at.inner, friction)
+        mu_outer, _ = law(at.outer, friction)
+        ball = press_ball(at, gap, c, s, orbit[b], (mu_inner, mu_outer), way)
+        force[b] = ball.force
+        elastic[b] = ball.elastic
+        indentation[b] = ball.indentation
+        fx[b] = ball.inner * s - ball.force * c
+        fy[b] = -(ball.force * s + ball.inner * c)
+        moment[b] = -ball.inner * ball.lever
+        push = ball.inner + ball.outer - ball.held - weight * c
+        push += printed * (ball.outer - ball.inner) * way.ball_radius / at.radius
+        along[b] = push / (at.radius * way.mass)
+        turning[b] = spun * (ball.outer - ball.inner)
+        heat[b] = ball.heat
+
+
+@kernel
+def _press_makkar(gap, way, friction, weight, printed, inertia, moving, out):
+    _press_all(makkar, gap, way, friction, weight, printed, inertia, moving, out)
+
+
+@kernel
+def _press_any(gap, way, friction, weight, printed, inertia, moving, out):
+    _press_all(coefficient_and_slope, gap, way, friction, weight, printed, inertia, moving, out)
 
 
 @kernel
@@ -156,70 +246,85 @@ def _race_forces(y, dy, m):
 
     Sets the derivatives of the balls' angles, speeds and spins as far as races and gravity go.
     """
-    p, d = m.p, m.d
-    gap = ring.gap(y)
+    p, d, s = m.p, m.d, m.s.balls
+    count = p.balls.count
+    n = rounded(count)
+    gap, law = ring.gap(y), d.race
+    size, grip = (d.inner_radius, d.ball_radius, d.mass), m.s.step * d.race_grip
+    way = Raceway(
+        p.balls.play,
+        d.run_radius,
+        d.run_share,
+        law.stiffness,
+        law.damping,
+        *size,
+        grip,
+        p.rolling.resistance,
+    )
+    angle, orbit, spin = part(y, ANGLE, m), part(y, ORBIT, m), part(y, SPIN, m)
+    _directions(angle, s.cosine[:n], s.sine[:n])
+    moving = orbit, spin, s.cosine[:n], s.sine[:n]
+    loads = s.fx[:n], s.fy[:n], s.moment[:n], s.along[:n], s.turning[:n], s.heat[:n]
+    out = (s.force[:n], s.elastic[:n], s.indentation[:n], *loads)
+    weight, printed = p.gravity * d.mass, 1.0 if p.as_printed == 1 else 0.0
+    if d.race_friction.kind == MAKKAR:
+        _press_makkar(gap, way, curve(d.race_friction), weight, printed, d.inertia, moving, out)
+    else:
+        _press_any(gap, way, d.race_friction, weight, printed, d.inertia, moving, out)
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
-    for b in range(p.balls.count):
-        i = BALLS + 3 * b
-        c, sn = math.cos(y[i]), math.sin(y[i])
-        rm = _pitch_radius(gap, c, sn, m)
-        ball = between_races(gap, c, sn, y[i + 1], y[i + 2], rm, m)
-        if ball.indentation > 0.0:
-            note(m.s.balls, ball)
-            fx -= ball.force * c - ball.inner * sn
-            fy -= ball.force * sn + ball.inner * c
-            moment -= ball.inner * ball.lever
-        heat += ball.heat
-        along = ball.inner + ball.outer - ball.wedge - p.gravity * d.mass * c
-        if p.as_printed == 1:
-            along += (ball.outer - ball.inner) * d.ball_radius / rm
-        dy[i] = y[i + 1]
-        dy[i + 1] = along / (rm * d.mass)
-        dy[i + 2] = d.ball_radius * (ball.outer - ball.inner) / d.inertia
+    for b in range(count):
+        i = BALLS + b
+        dy[i] = orbit[b]
+        dy[i + count] = s.along[b]
+        dy[i + 2 * count] = s.turning[b]
+        fx += s.fx[b]
+        fy += s.fy[b]
+        moment += s.moment[b]
+        heat += s.heat[b]
     return fx, fy, moment, heat
 
 
 @kernel
 def _neighbour_forces(y, dy, m):
     """Each ball against the next one; adds to the derivatives, returns the heat."""
-    p, d, s = m.p, m.d, m.s.pushed
+    p, d, s, at = m.p, m.d, m.s.pushed, m.s.balls
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
+    angle, orbit, spin = part(y, ANGLE, m), part(y, ORBIT, m), part(y, SPIN, m)
+    faster, turning = part(dy, ORBIT, m), part(dy, SPIN, m)
     heat = 0.0
+    s.force, s.overlap, s.energy, s.stiffness = 0.0, 0.0, 0.0, 0.0
     for b in range(count):
-        i = BALLS + 3 * b
-        k = i + 3 if b + 1 < count else BALLS
-        between = y[k] - y[i] + (0.0 if b + 1 < count else 2.0 * math.pi)
+        k = b + 1 if b + 1 < count else 0
+        between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
         if between >= d.touch_angle:
             continue
-        half = 0.5 * between
-        overlap = 2.0 * (rb - rm * math.sin(half))
-        lever = rm * math.cos(half)
-        rate = lever * (y[i + 1] - y[k + 1])
-        elastic = elastic_force(overlap, p.ball_contact)
-        force = normal_force(overlap, rate, d.ball_contact)
-        sliding = rb * (y[i + 2] + y[k + 2])
-        rub = coefficient(sliding, d.ball_friction) * force
+        ex, ey = at.cosine[k] - at.cosine[b], at.sine[k] - at.sine[b]
+        square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
+        overlap = 2.0 * (rb - rm * math.sqrt(square))
+        lever = rm * math.sqrt(1.0 - square)
+        rate = lever * (orbit[b] - orbit[k])
+        force, elastic = normal_and_elastic(overlap, rate, d.ball_contact)
+        sliding = rb * (spin[b] + spin[k])
+        mu = coefficient(sliding, d.ball_friction)
+        rub = -friction_force(sliding, mu, force, m.s.step * d.side_grip)
         push = force * lever / (rm * rm * d.mass)
-        dy[i + 1] -= push
-        dy[k + 1] += push
-        dy[i + 2] -= rb * rub / d.inertia
-        dy[k + 2] -= rb * rub / d.inertia
+        faster[b] -= push
+        faster[k] += push
+        turning[b] -= rb * rub / d.inertia
+        turning[k] -= rb * rub / d.inertia
         heat += rub * sliding + (force - elastic) * rate
-        s.energy += elastic_energy(overlap, p.ball_contact)
-        if force > s.force:
-            s.force = force
-        if overlap > s.overlap:
-            s.overlap = overlap
+        s.energy += elastic_energy(overlap, d.ball_contact)
+        s.force = max(s.force, force)
+        s.overlap = max(s.overlap, overlap)
+        s.stiffness = max(s.stiffness, d.ball_contact.exponent * force / overlap)
     return heat
 
 
 @kernel
 def react(t, y, dy, m):
     """Derivative of ring and balls, and the load on journal and housing."""
-    p, s = m.p, m.s.pushed
-    clear(m.s.balls)
-    s.force, s.overlap, s.energy = 0.0, 0.0, 0.0
-    j = ring.journal_on_ring(y, m)
+    p = m.p
+    j = ring.journal_on_ring(y, m, m.s.step * m.d.bore_grip)
     bx, by, moment, heat = _race_forces(y, dy, m)
     heat += _neighbour_forces(y, dy, m)
     dy[ring.RX] = y[ring.RVX]
@@ -239,73 +344,116 @@ def rhs(t, y, dy, m):
 
 
 @kernel
+def drift(x, y, v, h, m):
+    """Positions in x: those in y and h (s) times the velocities in v."""
+    seat.drift(x, y, v, h, m)
+    ring.drift(x, y, v, h)
+    n = m.p.balls.count
+    for i in range(BALLS, BALLS + n):
+        x[i] = y[i] + h * v[i + n]
+
+
+@kernel
+def forecast(x, dy, h, m):
+    """Velocities of the copies at the end of a micro-step of h seconds, which is noted."""
+    seat.forecast(x, dy, h)
+    m.s.step = h
+
+
+@kernel
+def fastest(m):
+    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
+    d, s = m.d, m.s
+    below = 0.0
+    for b in range(m.p.balls.count):
+        if s.balls.indentation[b] > 0.0:
+            below += s.balls.elastic[b] / s.balls.indentation[b]
+    below *= d.race.exponent
+    if s.ring.indentation > 0.0:
+        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
+    return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * s.pushed.stiffness / d.mass)), s.seat.fastest)
+
+
+@kernel
+def _largest(m):
+    """(Largest force on one of a row, largest indentation) of the balls between the rings."""
+    s = m.s.balls
+    force, indentation = 0.0, 0.0
+    for b in range(m.p.balls.count):
+        force = max(force, s.force[b])
+        indentation = max(indentation, s.indentation[b])
+    return force / m.p.balls.rows, indentation
+
+
+@kernel
 def observe(t, y, m):
     """Peaks and events, after each accepted micro-step."""
     ring.watch(t, y, m)
-    watch_balls(m.s.balls.force, m.s.balls.indentation, m)
-    watch_contacts(m.s.pushed.force, m.s.pushed.overlap, m.o.neighbours)
+    force, indentation = _largest(m)
+    watch_balls(force, indentation, m)
+    watch_contacts(m.s.pushed.force / m.p.balls.rows, m.s.pushed.overlap, m.o.neighbours)
 
 
 @kernel
 def report(y, m):
     """Outputs wanted once per macro step."""
     p, d, o, s = m.p, m.d, m.o, m.s.balls
+    count = p.balls.count
     ring.report(y, m, d.inner_radius)
-    o.balls.loaded = int(s.loaded)
-    o.balls.force, o.balls.indentation = s.force, s.indentation
-    o.neighbours.force, o.neighbours.indentation = m.s.pushed.force, m.s.pushed.overlap
+    o.balls.force, o.balls.indentation = _largest(m)
+    o.neighbours.force = m.s.pushed.force / p.balls.rows
+    o.neighbours.indentation = m.s.pushed.overlap
     moving = d.mass * d.pitch_radius**2
-    kinetic, height, orbit, spin = 0.0, 0.0, 0.0, 0.0
-    for b in range(p.balls.count):
-        i = BALLS + 3 * b
-        kinetic += 0.5 * moving * y[i + 1] ** 2 + 0.5 * d.inertia * y[i + 2] ** 2
-        height += d.pitch_radius * math.sin(y[i])
-        orbit += y[i + 1]
-        spin += abs(y[i + 2])
-    o.speed.orbit = orbit / p.balls.count * d.pitch_radius
-    o.speed.ball = spin / p.balls.count * d.ball_radius
+    angular, turning = part(y, ORBIT, m), part(y, SPIN, m)
+    kinetic, height, stored, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    for b in range(count):
+        kinetic += 0.5 * moving * angular[b] ** 2 + 0.5 * d.inertia * turning[b] ** 2
+        height += d.pitch_radius * s.sine[b]
+        orbit += angular[b]
+        spin += abs(turning[b])
+        if s.indentation[b] > 0.0:
+            loaded += 1
+            stored += 0.4 * s.elastic[b] * s.indentation[b]
+    o.balls.loaded = loaded
+    o.speed.orbit = orbit / count * d.pitch_radius
+    o.speed.ball = spin / count * d.ball_radius
     height *= p.gravity * d.mass
-    ring.report_energy(y, m, kinetic, s.energy + m.s.pushed.energy + height, p.ring.inertia)
+    ring.report_energy(y, m, kinetic, stored + m.s.pushed.energy + height, p.ring.inertia)
 
 
 @kernel
 def start(words):
     """Ring and balls at rest, the first ball at its angle."""
     m = words.view(MEMORY)[0]
-    y, d = m.y, m.d
+    y, d, count = m.y, m.d, m.p.balls.count
     seat.take_inputs(y, m)
     ring.place(y, d.rest_x, d.rest_y)
-    for b in range(m.p.balls.count):
-        y[BALLS + 3 * b] = d.angles[b]
-        y[BALLS + 3 * b + 1] = 0.0
-        y[BALLS + 3 * b + 2] = 0.0
+    for b in range(count):
+        y[BALLS + b] = d.angles[b]
+        y[BALLS + b + count], y[BALLS + b + 2 * count] = 0.0, 0.0
+    m.s.step = d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
 
 @kernel
 def linearise(y, j, m):
-    """What is stiff: slopes of friction times load at the inner (j[i]) and outer race (j[i + 1]) of each
-    ball, its inner contact's distance from the ring's centre (j[i + 2]), and the journal's on the ring.
+    """What is stiff: slopes of friction times load at the inner and the outer race of each ball, its
+    inner contact's distance from the ring's centre (in place of its angle, orbit and spin), and the
+    journal's slope on the ring.
     """
-    p, d = m.p, m.d
-    rm, rb, play = d.pitch_radius, d.ball_radius, p.balls.play
-    ex, ey = y[ring.RX] - y[seat.HX], y[ring.RY] - y[seat.HY]
-    ux, uy = y[ring.RVX] - y[seat.HVX], y[ring.RVY] - y[seat.HVY]
-    for b in range(p.balls.count):
-        i = BALLS + 3 * b
-        c, sn = math.cos(y[i]), math.sin(y[i])
-        orbit, spin = y[i + 1], y[i + 2]
-        indentation = ex * c + ey * sn - play
-        force, inner = 0.0, 0.0
-        j[i + 2] = d.inner_radius - ex * c - ey * sn
-        if indentation > 0.0:
-            force = elastic_force(indentation, d.race)
-            sliding = y[ring.RW] * j[i + 2] + uy * c - ux * sn - rm * orbit + rb * spin
-            inner = slope(sliding, d.race_friction) * force
-        pressed = force + rm * d.mass * orbit * orbit
-        j[i] = inner
-        j[i + 1] = slope(rm * orbit + rb * spin, d.race_friction) * pressed
+    p, d, s = m.p, m.d, m.s.balls
+    n, law, gap = p.balls.count, d.race, ring.gap(y)
+    size = d.inner_radius, d.ball_radius, d.mass
+    way = Raceway(p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, 0.0, 0.0)
+    for b in range(n):
+        i = BALLS + b
+        orbit = y[i + n]
+        at = meet(gap, s.cosine[b], s.sine[b], orbit, y[i + 2 * n], way)
+        pressed = s.force[b] + at.radius * d.mass * orbit * orbit
+        j[i] = slope(at.inner, d.race_friction) * s.force[b] if s.force[b] > 0.0 else 0.0
+        j[i + n] = slope(at.outer, d.race_friction) * pressed
+        j[i + 2 * n] = at.lever
     bore = p.journal_radius + p.clearance
     j[ring.RW] = 0.0
     if m.s.ring.normal > 0.0:
@@ -314,10 +462,9 @@ def linearise(y, j, m):
 
 
 @kernel
-def _ball_block(i, j, s, d):
-    """s - J of the ball at state i, [[a, g], [h, e]], and what the ring's spin brings into it, (o, q)."""
+def _ball_block(inner, outer, lever, s, d):
+    """s - J of a ball, [[a, g], [h, e]], and what the ring's spin brings into it, (o, q)."""
     rm, rb, mass, inertia = d.pitch_radius, d.ball_radius, d.mass, d.inertia
-    inner, outer, lever = j[i], j[i + 1], j[i + 2]
     a = s + (inner + outer) / mass
     g = (outer - inner) * rb / (rm * mass)
     h = (outer - inner) * rb * rm / inertia
@@ -333,26 +480,24 @@ def solve(j, s, r, m):
     balls are eliminated one by one, the ring is solved for, and its share handed back to them.
     """
     p, d = m.p, m.d
-    rm, rb = d.pitch_radius, d.ball_radius
+    rm, rb, n = d.pitch_radius, d.ball_radius, p.balls.count
     pivot, right = s + j[ring.RW], r[ring.RW]
-    for b in range(p.balls.count):
-        i = BALLS + 3 * b
-        a, g, h, e, o, q = _ball_block(i, j, s, d)
+    for i in range(BALLS, BALLS + n):
+        inner, outer, lever = j[i], j[i + n], j[i + 2 * n]
+        a, g, h, e, o, q = _ball_block(inner, outer, lever, s, d)
         scale = 1.0 / (a * e - g * h)
-        x, z = (e * r[i + 1] - g * r[i + 2]) * scale, (a * r[i + 2] - h * r[i + 1]) * scale
+        x, z = (e * r[i + n] - g * r[i + 2 * n]) * scale, (a * r[i + 2 * n] - h * r[i + n]) * scale
         xo, zo = (e * o - g * q) * scale, (a * q - h * o) * scale
-        r[i], r[i + 1], r[i + 2] = r[i] / s, x, z
-        lever = j[i + 2]
-        back = j[i] * lever / p.ring.inertia
+        r[i], r[i + n], r[i + 2 * n] = r[i] / s, x, z
+        back = inner * lever / p.ring.inertia
         pivot += back * (lever - rm * xo + rb * zo)
         right += back * (rm * x - rb * z)
     turned = right / pivot
-    for b in range(p.balls.count):
-        i = BALLS + 3 * b
-        a, g, h, e, o, q = _ball_block(i, j, s, d)
+    for i in range(BALLS, BALLS + n):
+        a, g, h, e, o, q = _ball_block(j[i], j[i + n], j[i + 2 * n], s, d)
         scale = turned / (a * e - g * h)
-        r[i + 1] += (e * o - g * q) * scale
-        r[i + 2] += (a * q - h * o) * scale
+        r[i + n] += (e * o - g * q) * scale
+        r[i + 2 * n] += (a * q - h * o) * scale
     for i in range(BALLS):
         r[i] /= s
     for i in range(m.s.seat.inside, m.n):
@@ -363,7 +508,12 @@ def solve(j, s, r, m):
 @kernel
 def integrate(m, work, span):
     """Advance the state by `span` (s)."""
-    tolerance = m.p.interface.tolerance
+    tolerance, longest = m.p.interface.tolerance, m.d.micro_step
+    if longest > 0.0:
+        status, evaluations = verlet.integrate(
+            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
+        )
+        return m.h, status, evaluations
     return rosenbrock.integrate(
         rhs, linearise, solve, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance
     )
@@ -371,27 +521,39 @@ def integrate(m, work, span):
 
 @kernel
 def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u."""
+    """Derivative and load under the motion m.u, friction as it stands."""
+    m.s.step = 0.0
     seat.instant(react, t, y, dy, m)
 
 
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step)
+    rows = work.ravel().view(SCRATCH)[0].rows
+    return seat.advance(react, integrate, report, words.view(MEMORY)[0], rows, time, step)
 
 
 def derive(p: Parameters) -> Derived:
     """Stiffness and masses from geometry, and where everything starts."""
     b = p.balls
     rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
+    race, touching = b.race_law(b.series_stiffness()), damped(abreast(p.ball_contact, b.rows), b.ball_mass)
+    hit = [(p.contact, p.ring.mass), (race, p.ring.mass), (touching, 0.5 * b.ball_mass)]
+    spun = b.ball_radius**2 / b.ball_inertia
+    bore = p.journal_radius + p.clearance
+    of_ring = 1.0 / p.ring.mass + b.inner_radius**2 / p.ring.inertia
+    run_radius, run_share = {
+        NOMINAL: (b.pitch_radius, 0.0),
+        CORRECTED: (b.pitch_radius + 0.5 * b.play, b.outer_share),
+        AS_PRINTED: (b.pitch_radius, -0.5),
+    }[p.corrected_pitch]
     return Derived(
         contact=damped(p.contact, p.ring.mass),
         friction=prepared(p.friction),
         race_friction=prepared(p.race_friction),
-        ball_contact=damped(p.ball_contact, b.ball_mass),
+        ball_contact=touching,
         ball_friction=prepared(p.ball_friction),
-        race=b.race_law(b.series_stiffness()),
+        race=race,
         stiffness=race_stiffness(b),
         size=Coordinates(coordinates=5 + 2 * b.count, ball_ball=b.count, rings=b.count),
         mass=b.ball_mass,
@@ -400,7 +562,13 @@ def derive(p: Parameters) -> Derived:
         pitch_radius=b.pitch_radius,
         inner_radius=b.inner_radius,
         touch_angle=b.touch_angle,
-        outer_share=b.outer_share,
+        run_radius=run_radius,
+        run_share=run_share,
+        micro_step=resolved_step(p.micro_step, hit),
+        bore_grip=1.0 / p.ring.mass + bore**2 / p.ring.inertia,
+        # both races of a ball: its orbit and its spin answer one each at most; half of the balls are loaded
+        race_grip=2.0 * max(1.0 / b.ball_mass, spun) + 0.5 * b.count * of_ring,
+        side_grip=4.0 * spun,
         rest_x=rest_x,
         rest_y=rest_y,
         angles=tuple(b.angles() + [0.0] * (MOST_BALLS - b.count)),
@@ -421,8 +589,8 @@ def check(p: Parameters) -> str | None:
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
     b = p.balls
-    ball = [b.pitch_radius / seat.POSITION_SCALE, 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE]
-    return seat.weights(ring.error_weights() + ball * b.count)
+    scales = b.pitch_radius / seat.POSITION_SCALE, 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE
+    return seat.weights(ring.error_weights() + [w for w in scales for _ in range(b.count)])
 
 
 MODEL = Model(

@@ -14,6 +14,7 @@ STIFFNESS = {  # inner, outer, series in 1e10 N/m^1.5, by (2.43)-(2.46) as corre
     "6904": (2.021, 2.102, 0.729),
     "6014": (3.210, 3.311, 1.152),
     "7914": (3.168, 3.271, 1.138),
+    "7914 pair": (3.168, 3.271, 1.138),  # per ball
 }
 
 
@@ -40,6 +41,7 @@ def test_a_preset_reaches_the_component(name: str) -> None:
     scene = load("disk-caged-simplified").with_setting("bearing.preset", name)
     system = open_system(scene.with_setting("bearing.balls.play", 1e-6), in_process=True)
     assert system.value("bearing.balls.count") == CATALOGUE[name].balls.count
+    assert system.value("bearing.balls.rows") == CATALOGUE[name].balls.rows
     assert system.value("bearing.rolling.static_rating") == CATALOGUE[name].static_rating
     assert system.value("bearing.balls.play") == 1e-6  # what the scene sets comes after the preset
 

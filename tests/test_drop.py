@@ -55,8 +55,12 @@ def test_force_on_the_worst_ball_doubles_with_the_cage() -> None:
     assert 1.7 < peaks[0] / peaks[1] < 2.3
 
 
+# sums of absolute values; the cageless bearing's leapfrog steps err to and fro, a tenth of it net
+LEDGER = {CAGED: 1e-4, CAGELESS: 5e-4}
+
+
 def test_the_ledger_closes(first_impact: dict) -> None:
-    assert 0.0 < first_impact["energy_residual_relative"] < 1e-4
+    assert 0.0 < first_impact["energy_residual_relative"] < LEDGER[first_impact["scene"]]
 
 
 def sampled(scene: Scene, times: np.ndarray) -> np.ndarray:
@@ -127,12 +131,13 @@ def test_what_five_seconds_bring(
     assert pendulum[0] < float(summary["pendulum_frequency_Hz"]) < pendulum[1]  # type: ignore[arg-type]
     assert summary["rotor_speed_end_rpm"] == pytest.approx(speed, abs=15.0)
     assert summary["loaded_balls_end"] in loaded
-    assert float(summary["energy_residual_relative"]) < 1e-4  # type: ignore[arg-type]
+    assert float(summary["energy_residual_relative"]) < LEDGER[name]  # type: ignore[arg-type]
 
 
 def test_the_linearly_implicit_steps_follow_an_explicit_solution() -> None:
     """The cageless bearing, stepped with its stiff friction implicit, against DOP853 on all equations."""
     scene = load(CAGELESS).with_setting("run.duration", 0.02).with_setting("run.macro_step", 1e-4)
+    scene = scene.with_setting("bearing.micro_step", 0.0)
     times = np.linspace(1e-3, 20e-3, 20)
     solution = Monolith(scene).solve(times, JOURNAL, 1e-6, "DOP853")
     exact = np.stack([solution.series[name] for name in JOURNAL], 1)
