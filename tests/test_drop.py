@@ -55,7 +55,7 @@ def test_force_on_the_worst_ball_doubles_with_the_cage() -> None:
     assert 1.7 < peaks[0] / peaks[1] < 2.3
 
 
-# sums of absolute values; the cageless bearing's leapfrog steps err to and fro, a tenth of it net
+# sums of absolute values; the cageless bearing's leapfrog steps err to and fro, a twentieth of it net
 LEDGER = {CAGED: 1e-4, CAGELESS: 5e-4}
 
 
