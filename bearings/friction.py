@@ -45,21 +45,30 @@ class FrictionLaw:
     g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0)
 
 
-class Makkar(NamedTuple):
-    """The constants of Makkar's curve as plain numbers, for loops that are to become vector code."""
+class Curve(NamedTuple):
+    """Any of the laws as plain numbers, for loops that are to become vector code.
+
+    g1 (tanh g2 v - tanh g3 v) + (dynamic + extra exp(-(v/v_s)^2)) tanh slope v + g6 v
+    """
 
     g1: float
     g2: float
     g3: float
     dynamic: float
+    extra: float
+    faded: float  # 1/v_s^2
     slope: float
     g6: float
 
 
 @kernel
 def curve(law):
-    """Makkar's constants of a `FrictionLaw` record."""
-    return Makkar(law.g1, law.g2, law.g3, law.dynamic, law.slope, law.g6)
+    """The `Curve` of a `FrictionLaw` record."""
+    g1 = law.g1 if law.kind == MAKKAR else 0.0
+    g6 = law.g6 if law.kind == MAKKAR else 0.0
+    extra = law.static - law.dynamic if law.kind == STRIBECK else 0.0
+    faded = 1.0 / law.stribeck_speed**2
+    return Curve(g1, law.g2, law.g3, law.dynamic, extra, faded, law.slope, g6)
 
 
 @woven
@@ -84,39 +93,39 @@ def saturation(x):
 
 
 @woven
-def makkar(speed, law):
-    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of Makkar's curve.
+def follow(speed, law):
+    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve`.
 
-    law: a record of `FrictionLaw`, or `Makkar`. tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|).
+    tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|). What a law does not have is not computed.
     """
     v = abs(speed)
-    steep, flat = saturation(2.0 * law.g2 * v), saturation(2.0 * law.g3 * v)
-    both = 1.0 / ((2.0 - steep) * (2.0 - flat))
-    rise = steep * (2.0 - flat) * both
-    fall = flat * (2.0 - steep) * both
-    plateau = rise
-    if law.slope != law.g2:
-        third = saturation(2.0 * law.slope * v)
-        plateau = third / (2.0 - third)
-    value = law.g1 * (rise - fall) + law.dynamic * plateau + law.g6 * v
-    slope = law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
-    slope += law.dynamic * law.slope * (1.0 - plateau * plateau) + law.g6
-    return value if speed >= 0.0 else -value, max(slope, 0.0)
+    last = saturation(2.0 * law.slope * v)
+    plateau = last / (2.0 - last)
+    level = law.dynamic
+    if law.extra != 0.0:
+        level += law.extra * (1.0 - saturation(law.faded * v * v))
+    value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
+    if law.g1 != 0.0:
+        flat = saturation(2.0 * law.g3 * v)
+        steep = last
+        if law.g2 != law.slope:
+            steep = saturation(2.0 * law.g2 * v)
+        both = 1.0 / ((2.0 - steep) * (2.0 - flat))
+        rise, fall = steep * (2.0 - flat) * both, flat * (2.0 - steep) * both
+        value += law.g1 * (rise - fall)
+        slope += law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
+    value += law.g6 * v
+    return value if speed >= 0.0 else -value, max(slope + law.g6, 0.0)
 
 
 @kernel
 def coefficient_and_slope(speed, law):
     """Friction coefficient at sliding speed `speed` (m/s), with its sign, and its derivative (s/m).
 
-    The derivative is zero where the curve falls: it is what an implicit step needs.
+    law: a record of `FrictionLaw`. The derivative is zero where the curve falls: it is what an implicit
+    step needs.
     """
-    if law.kind == MAKKAR:
-        return makkar(speed, law)
-    plateau = math.tanh(law.slope * speed)
-    level = law.dynamic
-    if law.kind == STRIBECK:
-        level += (law.static - law.dynamic) * math.exp(-((speed / law.stribeck_speed) ** 2))
-    return level * plateau, level * law.slope * (1.0 - plateau * plateau)
+    return follow(speed, curve(law))
 
 
 @kernel

@@ -15,9 +15,9 @@ from typing import NamedTuple
 from bearings.balls import MOST_BALLS
 from bearings.contact import hertz
 from bearings.contact_search import race_place
-from bearings.friction import MAKKAR, coefficient_and_slope, curve, makkar
+from bearings.friction import curve, follow
 from bearings.pair import Place, friction_force, slip
-from modelkit.kernel import inlined, kernel
+from modelkit.kernel import kernel
 from modelkit.ports import Motion
 from modelkit.variables import array
 
@@ -105,9 +105,9 @@ def find_on_curve(balls, ring, angle, race, profile, starts, search, s):
         s.second[b], s.across[b] = at.second, at.across
 
 
-@inlined
-def _press_all(law, balls, ring, race, friction, nx, ny, indentation, second, across, out):
-    """Forces of all balls at their places; law(speed, friction) gives coefficient and slope."""
+@kernel
+def _press_all(balls, ring, race, friction, nx, ny, indentation, second, across, out):
+    """Forces of all balls at their places; friction: a `Curve`."""
     fx, fy, moment, normals, tangentials, stiffness, loss = out
     reach = race.side * balls.radius
     for b in range(len(nx)):
@@ -115,7 +115,7 @@ def _press_all(law, balls, ring, race, friction, nx, ny, indentation, second, ac
         place = Place(nx[b], ny[b], indentation[b], reach, second[b], across[b])
         sliding, rate = slip(ball, ring, place, race.side)
         normal, elastic, stiff = hertz(place.indentation, rate, race.stiffness, race.damping)
-        mu, _ = law(sliding, friction)
+        mu, _ = follow(sliding, friction)
         tangential = friction_force(sliding, mu, normal, race.grip)
         along = -race.side * normal
         fx[b] = along * place.nx - tangential * place.ny
@@ -128,26 +128,13 @@ def _press_all(law, balls, ring, race, friction, nx, ny, indentation, second, ac
 
 
 @kernel
-def _press_makkar(balls, ring, race, friction, nx, ny, indentation, second, across, out):
-    _press_all(makkar, balls, ring, race, friction, nx, ny, indentation, second, across, out)
-
-
-@kernel
-def _press_any(balls, ring, race, friction, nx, ny, indentation, second, across, out):
-    _press_all(coefficient_and_slope, balls, ring, race, friction, nx, ny, indentation, second, across, out)
-
-
-@kernel
 def press_race(balls, ring, race, friction, s):
     """Forces of all balls on a race around `ring` (Motion), from the places in `s` (Contacts)."""
     n = rounded(len(balls.x))
     nx, ny, indentation, second, across = s.nx[:n], s.ny[:n], s.indentation[:n], s.second[:n], s.across[:n]
     forces = s.fx[:n], s.fy[:n], s.moment[:n], s.normal[:n], s.tangential[:n]
     out = (*forces, s.stiffness[:n], s.loss[:n])
-    if friction.kind == MAKKAR:
-        _press_makkar(balls, ring, race, curve(friction), nx, ny, indentation, second, across, out)
-    else:
-        _press_any(balls, ring, race, friction, nx, ny, indentation, second, across, out)
+    _press_all(balls, ring, race, curve(friction), nx, ny, indentation, second, across, out)
     fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
     for b in range(len(balls.x)):
         fx -= s.fx[b]

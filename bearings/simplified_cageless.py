@@ -42,12 +42,10 @@ from bearings.ball_bodies import resolved_step
 from bearings.balls import MOST_BALLS, BallContacts, Coordinates, FreeBallSet, watch_balls, watch_contacts
 from bearings.contact import ContactLaw, abreast, damped, elastic_energy, normal_and_elastic
 from bearings.friction import (
-    MAKKAR,
     FrictionLaw,
     coefficient,
-    coefficient_and_slope,
     curve,
-    makkar,
+    follow,
     prepared,
     slope,
 )
@@ -66,7 +64,7 @@ from bearings.rolling import (
 )
 from modelkit import dopri, rosenbrock, verlet
 from modelkit.angles import cosine_and_sine
-from modelkit.kernel import inlined, kernel
+from modelkit.kernel import kernel
 from modelkit.model import Model
 from modelkit.ports import Interface, Load
 from modelkit.variables import array, group, integer, real
@@ -202,9 +200,9 @@ def _directions(angle, cosine, sine):
         cosine[b], sine[b] = cosine_and_sine(angle[b])
 
 
-@inlined
-def _press_all(law, gap, way, friction, weight, printed, inertia, moving, out):
-    """Loads of all balls; law(speed, friction) gives coefficient and slope.
+@kernel
+def _press_all(gap, way, friction, weight, printed, inertia, moving, out):
+    """Loads of all balls; friction: a `Curve`.
 
     weight: of a ball (N); printed: 1 for (2.10) as printed; inertia: of a ball (kg m2).
     """
@@ -214,8 +212,8 @@ def _press_all(law, gap, way, friction, weight, printed, inertia, moving, out):
     for b in range(len(cosine)):
         c, s = cosine[b], sine[b]
         at = meet(gap, c, s, orbit[b], spin[b], way)
-        mu_inner, _ = law(at.inner, friction)
-        mu_outer, _ = law(at.outer, friction)
+        mu_inner, _ = follow(at.inner, friction)
+        mu_outer, _ = follow(at.outer, friction)
         ball = press_ball(at, gap, c, s, orbit[b], (mu_inner, mu_outer), way)
         force[b] = ball.force
         elastic[b] = ball.elastic
@@ -228,16 +226,6 @@ def _press_all(law, gap, way, friction, weight, printed, inertia, moving, out):
         along[b] = push / (at.radius * way.mass)
         turning[b] = spun * (ball.outer - ball.inner)
         heat[b] = ball.heat
-
-
-@kernel
-def _press_makkar(gap, way, friction, weight, printed, inertia, moving, out):
-    _press_all(makkar, gap, way, friction, weight, printed, inertia, moving, out)
-
-
-@kernel
-def _press_any(gap, way, friction, weight, printed, inertia, moving, out):
-    _press_all(coefficient_and_slope, gap, way, friction, weight, printed, inertia, moving, out)
 
 
 @kernel
@@ -267,10 +255,7 @@ def _race_forces(y, dy, m):
     loads = s.fx[:n], s.fy[:n], s.moment[:n], s.along[:n], s.turning[:n], s.heat[:n]
     out = (s.force[:n], s.elastic[:n], s.indentation[:n], *loads)
     weight, printed = p.gravity * d.mass, 1.0 if p.as_printed == 1 else 0.0
-    if d.race_friction.kind == MAKKAR:
-        _press_makkar(gap, way, curve(d.race_friction), weight, printed, d.inertia, moving, out)
-    else:
-        _press_any(gap, way, d.race_friction, weight, printed, d.inertia, moving, out)
+    _press_all(gap, way, curve(d.race_friction), weight, printed, d.inertia, moving, out)
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     for b in range(count):
         i = BALLS + b
