@@ -55,6 +55,7 @@ def motion_waterfall(scene: Scene, recording: Recording, a: Attachment) -> Figur
         for axes, band in zip(row, BANDS, strict=True):
             part = (frequency > 0.0) & (frequency <= min(band, 0.5 * rate))
             _draw(axes, frequency[part], amplitude[:, part], unit, colour)
+            axes.set_xlim(0.0, min(band, 0.5 * rate))
             axes.set_yticks(STEP * np.arange(SPECTRA), [f"{speed:.0f}" for speed in speeds])
             axes.set_title(title)
             axes.set_xlabel("frequency [Hz]")
@@ -79,7 +80,6 @@ def _draw(axes: Axes, frequency: np.ndarray, amplitude: np.ndarray, unit: str, c
         axes.fill_between(f, STEP * k, height, color="white", zorder=3 - 0.1 * k)
         axes.plot(f, height, color=colour, lw=0.7, zorder=3.05 - 0.1 * k)
         axes.axhline(STEP * k, color=colour, lw=0.3, alpha=0.5, zorder=3.04 - 0.1 * k)
-    axes.set_xlim(0.0, frequency[-1])
     axes.set_ylim(-0.1, STEP * (len(amplitude) - 1) + DECADES + 0.2)
     _scale(axes, bottom, STEP * (len(amplitude) - 1), unit)
 
