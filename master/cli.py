@@ -66,6 +66,30 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--quiet", action="store_true", help="no progress bar")
     run.set_defaults(run=_run)
 
+    sweep = verbs.add_parser("sweep", help="run a scene many times with settings that vary")
+    sweep.add_argument("scene", help="name of a scene, or path of a .toml")
+    sweep.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help='a list such as "0.2,0.25,0.3 mm", or START:STOP:COUNT such as "0:315:8 deg"; '
+        "repeat it for every combination",
+    )
+    sweep.add_argument(
+        "--pick", action="append", default=[], metavar="KEY", help="show this figure; * stands for anything"
+    )
+    sweep.add_argument(
+        "-o", "--output", type=Path, help="folder for the results (default: runs/sweep-SCENE)"
+    )
+    sweep.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
+    sweep.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set in all runs")
+    sweep.add_argument("--duration", help='of each run, such as "2 s"')
+    sweep.add_argument("--in-process", action="store_true", help="step the models without FMUs")
+    sweep.add_argument("--keep", action="store_true", help="keep each run's recording, result.h5")
+    sweep.add_argument("--quiet", action="store_true", help="no progress bar")
+    sweep.set_defaults(run=_sweep)
+
     bearings = verbs.add_parser(
         "compare-bearings", help="the four bearing models side by side, against the source's Tables 5 to 7"
     )
@@ -147,6 +171,41 @@ def _run(options: argparse.Namespace) -> int:
         )
         return 130 if result.stopped_because == "interrupted" else STOPPED
     return 0
+
+
+def _sweep(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from master.scene import load
+    from master.sweep import INTERRUPTED, size, sweep
+    from master.sweep_report import picked, table, verdict_lines
+    from master.units import to_si
+    from master.variation import parse_all
+
+    chosen = load(options.scene)
+    for text in options.set:
+        chosen = chosen.with_setting(*_assignment(text, "--set"))
+    if options.duration is not None:
+        chosen = chosen.with_setting("run.duration", options.duration)
+    variations = parse_all(options.vary)
+    jobs = to_si(options.jobs, "1", "--jobs")
+    if jobs < 1.0 or jobs != int(jobs):
+        raise TouchdownError(f"--jobs {options.jobs} must be a whole number above 0")
+    folder = options.output or Path("runs") / f"sweep-{chosen.name}"
+    with tqdm(total=size(variations), desc="runs", disable=options.quiet, leave=False) as bar:
+        members = sweep(chosen, variations, folder, int(jobs), options.in_process, options.keep, bar.update)
+    figures, complaints = picked(members, options.pick)
+    print("\n".join([table(members, figures), *verdict_lines(members)]))
+    print(f"results in {folder}")
+    failed = [m for m in members if m.failed]
+    if any(m.failed == INTERRUPTED for m in failed):
+        print("touchdown: interrupted", file=sys.stderr)
+        return 130
+    for complaint in complaints:
+        print(f"touchdown: warning: {complaint}", file=sys.stderr)
+    if failed:
+        print(f"touchdown: {len(failed)} of {len(members)} runs failed, see the table", file=sys.stderr)
+    return STOPPED if failed else 0
 
 
 def _compare_bearings(options: argparse.Namespace) -> int:

@@ -11,11 +11,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from master.connections import Attachment
-from master.figures_motion import housing_port
 from master.figures_style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet
 from master.recording import Recording
 from master.scene import Scene
-from master.system import System
+from master.system import System, housing_port
 
 MM = 1e3
 SHOWN = 0.05  # of the pitch radius: about how large the largest displacement is drawn

@@ -27,7 +27,7 @@ from master.figures_style import (
 )
 from master.recording import Recording
 from master.scene import Scene
-from master.system import System
+from master.system import System, housing_port
 
 UM = 1e6
 SPEEDS = (  # in the order they are drawn: what varies most first
@@ -138,14 +138,6 @@ def _cage(recording: Recording, a: Attachment) -> list[Track]:
         return []
     x, y = (UM * recording[f"{a.bearing}.cage.{axis}"] for axis in "xy")
     return [Track("cage", PURPLE, x, y)]
-
-
-def housing_port(system: System, a: Attachment) -> str | None:
-    """COMPONENT.PORT that the bearing's outer ring moves with; None where it stands in the ground."""
-    for c in system.connections:
-        if (c.target, c.input) == (a.bearing, "housing.x"):
-            return f"{c.source}.{c.output.rpartition('.')[0]}"
-    return None
 
 
 def _sync(scene: Scene, system: System, recording: Recording, a: Attachment) -> float:

@@ -16,6 +16,7 @@ from master.figures_energy import energy
 from master.figures_forces import forces
 from master.figures_motion import orbit, speeds
 from master.figures_spectrum import has_spectrum, spectrum
+from master.figures_waterfall import has_waterfall, motion_waterfall
 from master.recording import Recording
 from master.scene import Scene
 from master.summary import energy_total, touchdown_seats
@@ -47,6 +48,8 @@ def _of_bearing(scene: Scene, system: System, recording: Recording, a: Attachmen
         made["contacts"] = contacts(scene, system, recording, a)
     if has_spectrum(recording, a):
         made["spectrum"] = spectrum(scene, recording, a)
+    if has_waterfall(recording, a):
+        made["waterfall"] = motion_waterfall(scene, recording, a)
     return made
 
 

@@ -1,4 +1,4 @@
-"""Amplitude spectra of a recorded motion (Figs 28, 29 of the source)."""
+"""Amplitude spectra of a recorded motion (Figs 15, 28 and 29 of the source)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ BEGIN = 1.0  # s after the shutdown, when the landing has died down
 POINTS = 262_144
 LENGTH = POINTS / 200e3  # s of one window: the source's points at its 200 kHz
 SLACK = 1e-3  # of an interval, for times that are sums of steps
+APART = 4  # lines of a spectrum; nearer to a taller line stand that line's own side lobes
 
 
 def interval(time: np.ndarray) -> float:
@@ -51,3 +52,78 @@ def velocity_spectrum(
     frequency = np.fft.rfftfreq(points, step)
     lines = np.fft.rfft((velocity - np.mean(velocity)) * hann, points)
     return frequency, 2.0 * np.abs(lines) / np.sum(hann) / np.sinc(frequency * step)
+
+
+def on_grid(time: np.ndarray) -> np.ndarray:
+    """Which rows are a whole number of intervals after the first: a run may record others between them."""
+    row = (time - time[0]) / interval(time)
+    return np.abs(row - np.round(row)) < 0.01
+
+
+def waterfall(
+    time: np.ndarray,
+    values: np.ndarray,
+    points: int = 32768,
+    rate: float = 20e3,
+    spectra: int = 8,
+    window: str = "hann",
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Amplitude spectra of successive parts of a run: (frequencies in Hz, centres in s, amplitudes).
+
+    The run is divided into `spectra` equal parts, whose middles are the centres; the spectrum of each
+    takes `points` values from its start, without their mean, under `window`. amplitudes: (spectra,
+    frequencies), in the unit of `values`; a sine of amplitude A has the height A. Nothing is resampled:
+    raises ValueError where the values (at `time`, s) do not come at `rate` (Hz), or are too few.
+    """
+    if len(time) < 2 or not np.allclose(np.diff(time), 1.0 / rate, rtol=SLACK, atol=0.0):
+        raise ValueError(f"the recording must have the rate {rate:g} Hz throughout; {_found_rate(time)}")
+    size = len(time) // spectra
+    if size < points:
+        raise ValueError(f"each of {spectra} parts has {size} values; a spectrum needs {points}")
+    shape = get_window(window, points)
+    parts = np.stack([values[k * size : k * size + points] for k in range(spectra)])
+    spectrum = np.fft.rfft((parts - parts.mean(axis=1, keepdims=True)) * shape)
+    scale = np.full(spectrum.shape[1], 2.0)
+    scale[0] = 1.0
+    if points % 2 == 0:
+        scale[-1] = 1.0  # half the rate has no counterpart among the negative frequencies
+    centres = time[0] + (np.arange(spectra) + 0.5) * size / rate
+    return np.fft.rfftfreq(points, 1.0 / rate), centres, scale * np.abs(spectrum) / np.sum(shape)
+
+
+def _found_rate(time: np.ndarray) -> str:
+    """What is wrong with the rate, for people."""
+    if len(time) < 2:
+        return f"it has {len(time)} values"
+    steps = np.diff(time)
+    return f"its intervals are {np.min(steps):g} s to {np.max(steps):g} s"
+
+
+def lines(
+    frequencies: np.ndarray, amplitude: np.ndarray, low: float, high: float, count: int
+) -> list[tuple[float, float]]:
+    """The `count` tallest lines between `low` and `high` (Hz), the tallest first: (Hz, amplitude).
+
+    Each is refined by a parabola through the logarithms of the three values at its top: under a Hann
+    window within 0.02 of their spacing, and 4 % in height. Of a line, and what stands less than APART
+    values beside it, only the tallest counts.
+    """
+    inner = np.arange(1, len(amplitude) - 1)
+    top = (amplitude[inner] > amplitude[inner - 1]) & (amplitude[inner] >= amplitude[inner + 1])
+    band = (frequencies[inner] >= low) & (frequencies[inner] <= high)
+    tops = inner[top & band]
+    chosen: list[int] = []
+    for k in tops[np.argsort(-amplitude[tops], kind="stable")].tolist():
+        if len(chosen) == count:
+            break
+        if all(abs(k - other) >= APART for other in chosen):
+            chosen.append(k)
+    return [_refined(frequencies, amplitude, k) for k in chosen]
+
+
+def _refined(frequencies: np.ndarray, amplitude: np.ndarray, k: int) -> tuple[float, float]:
+    """Top of the parabola through the logarithms of the values k - 1 to k + 1."""
+    a, b, c = np.log(amplitude[k - 1 : k + 2] + 1e-300)
+    shift = 0.5 * (a - c) / (a - 2.0 * b + c)
+    top = float(np.exp(b - 0.25 * (a - c) * shift))
+    return float(frequencies[k] + shift * (frequencies[1] - frequencies[0])), top

@@ -12,7 +12,8 @@ from master.connections import Attachment
 from master.recording import Recording
 from master.scene import Scene
 from master.simulation import Outcome, energy_scale
-from master.system import System
+from master.system import System, housing_port
+from master.whirl import classify
 
 STANDS_OUT = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
@@ -67,6 +68,12 @@ def touchdown_seats(system: System) -> list[Attachment]:
     ]
 
 
+def seat_name(a: Attachment, seats: list[Attachment]) -> str:
+    """The body's port, such as A; with the body's name where two bodies have a port of that name."""
+    alone = [s.body_port for s in seats].count(a.body_port) == 1
+    return a.body_port if alone else f"{a.body}_{a.body_port}"
+
+
 def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
     """All figures of a run; None where something did not happen or was too short to tell."""
     found: dict[str, object] = {
@@ -80,6 +87,7 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
         found |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
         found |= {f"{key}{tail}": value for key, value in _orbit_figures(a, outcome, recording).items()}
+        found |= _whirl_figures(system, a, seat_name(a, seats), recording)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         port = next(a.body_port for a in seats if a.body == name)
@@ -126,6 +134,46 @@ def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dic
         loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
     found: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
     return found if loaded is None else {"loaded_balls_mean": loaded} | found
+
+
+def relative_orbit(system: System, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+    """Journal's position relative to the housing's, the bearing's centre (m)."""
+    port = housing_port(system, a)
+    x, y = (
+        recording[f"{a.body}.{a.body_port}.{axis}"] - (recording[f"{port}.{axis}"] if port else 0.0)
+        for axis in "xy"
+    )
+    return x, y
+
+
+def _whirl_figures(system: System, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
+    """The verdict in words, and the longest whirl; without a clearance nothing can be told."""
+    key = f"whirl_{seat}"
+    tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N")
+    if "clearance" not in system.components[a.bearing].variables:
+        return {f"{key}{tail}": None for tail in tails}
+    clearance = system.value(f"{a.bearing}.clearance")
+    spin = float(np.median(recording[f"{a.body}.{a.body_port}.omega"]))
+    whirl = classify(recording.time, *relative_orbit(system, a, recording), clearance, spin)
+    radius = None if whirl.radius is None else 1e6 * whirl.radius
+    force = None
+    if whirl.start is not None and whirl.end is not None:
+        force = _largest_force(a, whirl.start, whirl.end, recording)
+    found = (whirl.words, whirl.revolutions, radius, whirl.frequency, force)
+    return {f"{key}{tail}": value for tail, value in zip(tails, found, strict=True)}
+
+
+def _largest_force(a: Attachment, start: float, end: float, recording: Recording) -> float | None:
+    """Largest contact force from `start` to `end` (N, s); None where the bearing does not report it.
+
+    Between recorded values it may be larger: where the run's peak grew meanwhile, it is that.
+    """
+    now, peak = f"{a.bearing}.contact.force", f"{a.bearing}.contact.peak_force"
+    if now not in recording or peak not in recording:
+        return None
+    part = (recording.time >= start) & (recording.time <= end)
+    peaks = recording[peak][part]
+    return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[now][part]))
 
 
 def dominant_frequency(

@@ -110,6 +110,14 @@ class System:
             self.take[name] = np.array([self.position[c.source, c.output] for c in mine], dtype=np.intp)
 
 
+def housing_port(system: System, a: Attachment) -> str | None:
+    """COMPONENT.PORT that the bearing's outer ring moves with; None where it stands in the ground."""
+    for c in system.connections:
+        if (c.target, c.input) == (a.bearing, "housing.x"):
+            return f"{c.source}.{c.output.rpartition('.')[0]}"
+    return None
+
+
 def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]) -> System:
     """Load a scene's components with load(name, fmu), and wire them up."""
     components: dict[str, Component] = {}

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
 from master.figures_style import LAST, zooms
+from master.figures_waterfall import has_waterfall, motion_waterfall
+from master.recording import Recording
 from master.run import run_scene
 from master.scene import load
-from master.spectra import BEGIN, LENGTH, POINTS, velocity_spectrum, windows
+from master.spectra import BEGIN, LENGTH, POINTS, lines, on_grid, velocity_spectrum, waterfall, windows
+from master.system import Attachment
 
 RATE = 10e3  # Hz
 
@@ -78,6 +82,63 @@ def test_whole_windows_follow_one_another(end: float, count: int) -> None:
         velocity_spectrum(time, np.zeros_like(time), start, LENGTH, POINTS)
 
 
+@pytest.mark.parametrize("window", ["hann", "boxcar"])
+def test_a_waterfall_follows_a_line_that_moves(window: str) -> None:
+    """Each part has its own frequency, exactly on the spectrum's grid, and its own amplitude."""
+    rate, points, spectra = 20e3, 4096, 4
+    size = 5000
+    time = 0.3 + np.arange(spectra * size) / rate
+    spacing = rate / points
+    part = np.arange(len(time)) // size
+    values = 7.0 + (1.0 + part) * np.cos(2.0 * np.pi * spacing * (100 - 10 * part) * (time - 0.3) + 0.4)
+    f, centres, amplitude = waterfall(time, values, points, rate, spectra, window)
+    assert f[1] == pytest.approx(spacing)
+    np.testing.assert_allclose(centres, 0.3 + (np.arange(spectra) + 0.5) * size / rate)
+    assert amplitude.shape == (spectra, 1 + points // 2)
+    np.testing.assert_array_equal(np.argmax(amplitude, axis=1), 100 - 10 * np.arange(spectra))
+    np.testing.assert_allclose(np.max(amplitude, axis=1), 1.0 + np.arange(spectra), rtol=1e-3)
+
+
+def test_a_vibration_at_half_the_rate_has_its_height() -> None:
+    time = np.arange(1024) / 1e3
+    _, _, amplitude = waterfall(time, 3.0 * (-1.0) ** np.arange(1024), 1024, 1e3, 1)
+    assert amplitude[0, -1] == pytest.approx(3.0)
+
+
+def test_the_source_s_waterfall() -> None:
+    """16 s at 20 kHz in eight parts of 32768 points."""
+    time = np.arange(320_000) / 20e3
+    f, centres, amplitude = waterfall(time, np.sin(2.0 * np.pi * 50.0 * time))
+    assert f[1] == pytest.approx(20e3 / 32768)
+    np.testing.assert_allclose(centres, 1.0 + 2.0 * np.arange(8))
+    assert amplitude.shape == (8, 16385)
+
+
+def test_a_waterfall_resamples_nothing() -> None:
+    time = np.arange(20_000) / 10e3
+    with pytest.raises(ValueError, match="must have the rate 20000 Hz"):
+        waterfall(time, time, 1024)
+    uneven = np.insert(time, 500, 0.5 * (time[499] + time[500]))
+    with pytest.raises(ValueError, match="throughout"):
+        waterfall(uneven, uneven, 1024, 10e3)
+    assert np.array_equal(uneven[on_grid(uneven)], time)
+    with pytest.raises(ValueError, match="each of 8 parts has 2500 values"):
+        waterfall(time, time, 4096, 10e3)
+
+
+def test_the_tallest_lines_are_picked() -> None:
+    """Between the spectrum's frequencies, without the side lobes of the tallest."""
+    time = np.arange(32768) / 20e3
+    tones = ((33.3, 1.0), (61.77, 2e-2), (90.05, 0.3), (120.0, 5.0))
+    values = sum(a * np.sin(2.0 * np.pi * f * time + f) for f, a in tones)
+    f, _, amplitude = waterfall(time, np.asarray(values), spectra=1)
+    found = lines(f, amplitude[0], 10.0, 100.0, 3)
+    assert [x for x, _ in found] == pytest.approx([33.3, 90.05, 61.77], abs=0.02)
+    assert [y for _, y in found] == pytest.approx([1.0, 0.3, 2e-2], rel=0.04)
+    assert lines(f, amplitude[0], 10.0, 100.0, 1) == found[:1]
+    assert lines(f, np.zeros_like(f), 10.0, 100.0, 3) == []
+
+
 def test_zooms_of_short_runs_do_not_repeat() -> None:
     assert zooms(times(5.0), 0.5) == [
         (0.0, 0.5),
@@ -103,3 +164,28 @@ def test_a_short_run_has_its_pictures(name: str, more: set[str], duration: float
     assert {p.name for p in pictures} == {"orbit.png", "force.png", "speeds.png", "energy.png"} | more
     for picture in pictures:
         assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("end", "rate", "there"), [(8.0, 10e3, True), (7.9, 10e3, False), (8.0, 5e3, False)]
+)
+def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: bool, tmp_path: Path) -> None:
+    """A recording made up: the rotor slows down, its vibration with it."""
+    scene = load("disk-caged-simplified")
+    time = times(end, rate)
+    omega = 900.0 - 50.0 * time
+    with h5py.File(tmp_path / "made.h5", "w") as file:
+        file["time"] = time
+        file["rotor/A.omega"] = omega
+        file["rotor/A.x"] = 1e-5 * np.sin(omega * time) + 1e-6 * np.sin(180.0 * time)
+        file["rotor/A.vx"] = 1e-2 * np.cos(omega * time)
+    recording = Recording(tmp_path / "made.h5")
+    seat = Attachment("bearing", "journal", "rotor", "A")
+    assert has_waterfall(recording, seat) is there
+    if there:
+        figure = motion_waterfall(scene, recording, seat)
+        figure.savefig(tmp_path / "waterfall.png")
+        assert len(figure.axes) == 4
+        speeds = [float(label.get_text()) for label in figure.axes[0].get_yticklabels()]
+        assert speeds == pytest.approx(60.0 / 2.0 / np.pi * (900.0 - 50.0 * np.arange(0.5, 8.0)), abs=1.0)
+    recording.close()

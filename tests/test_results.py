@@ -18,7 +18,8 @@ REQUIRED = {
     "first_contact_time_s", "first_contact_speed_m_s", "peak_contact_force_N",
     "peak_indentation_rotor_ring_um", "peak_indentation_rings_um", "ring_sync_time_s",
     "pendulum_frequency_Hz", "loaded_balls_end", "rotor_speed_end_rpm", "energy_residual_relative",
-    "wall_time_s", "simulated_time_s", "scheme", "macro_step_s",
+    "wall_time_s", "simulated_time_s", "scheme", "macro_step_s", "whirl_A", "whirl_A_revolutions",
+    "whirl_A_radius_um", "whirl_A_frequency_Hz", "whirl_A_largest_force_N",
 }  # fmt: skip
 
 
