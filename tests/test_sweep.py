@@ -159,6 +159,7 @@ def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
         sweep(scene, {"rotor.mass": []}, tmp_path)
 
 
+@pytest.mark.long
 def test_a_process_that_dies_is_one_failed_member(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """It takes the pool along; the others are run again."""
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")
@@ -191,6 +192,7 @@ def test_verdicts_are_counted() -> None:
     assert table(members, ["x"]).splitlines()[-1].split() == ["5", "4", "-", "failed:", "broke"]
 
 
+@pytest.mark.long
 def test_ctrl_c_ends_a_sweep(tmp_path: Path) -> None:
     """Sent to the command alone, as by `kill`: it leaves no process and the table of what there is."""
     script = "import sys; from master.cli import main; sys.exit(main())"
