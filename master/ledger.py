@@ -25,10 +25,7 @@ class Entry:
     """One connection's account."""
 
     attachment: Attachment
-    bearing_work: int  # positions in the system's signals
-    jump: int
-    body_work: int
-    last: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    last: tuple[float, float, float] = (0.0, 0.0, 0.0)  # work by the bearing, its jumps, work by the body
     pending: float = 0.0  # work difference of the last step, its jump not yet known
     total: float = 0.0  # sum of |r_n|, J
     net: float = 0.0  # sum of r_n, J
@@ -38,27 +35,32 @@ class Ledger:
     """Accounts of all connections that state work on both sides."""
 
     def __init__(self, system: System, scale: float) -> None:
-        self._signals = system.signals
         self.scale = scale  # J; 0: unknown, residuals are then absolute
         self.total = 0.0  # J, sum of |r_n| over all connections and steps
-        self.entries: list[Entry] = []
-        for a in system.attachments:
+        self.entries = [Entry(a) for a in system.attachments]
+        self.follow(system)
+
+    def follow(self, system: System) -> None:
+        """Find the accounts where they now stand in the system's signals; those of the retired rest."""
+        self._signals = system.signals
+        self._live: list[Entry] = []
+        places: list[int] = []
+        for entry in self.entries:
+            a = entry.attachment
             keys = (
                 (a.bearing, f"{a.bearing_port}.work"),
                 (a.bearing, f"{a.bearing_port}.jump"),
                 (a.body, f"{a.body_port}.work"),
             )
             if all(key in system.position for key in keys):
-                bearing, jump, body = (system.position[key] for key in keys)
-                self.entries.append(Entry(a, bearing, jump, body))
-        self._index = np.array(
-            [i for e in self.entries for i in (e.bearing_work, e.jump, e.body_work)], dtype=np.intp
-        )
+                self._live.append(entry)
+                places += [system.position[key] for key in keys]
+        self._index = np.array(places, dtype=np.intp)
 
     def update(self) -> None:
         """Book the macro step that was just taken."""
         values = self._signals[self._index].tolist()
-        for n, entry in enumerate(self.entries):
+        for n, entry in enumerate(self._live):
             bearing, jump, body = values[3 * n : 3 * n + 3]
             last = entry.last
             residual = entry.pending + (jump - last[1])

@@ -136,7 +136,6 @@ def _loop(
     interrupted: threading.Event,
 ) -> None:
     step, every = scene.run.macro_step, scene.run.record_every
-    active = list(system.order)
     limit = scene.run.warn_residual * ledger.scale if ledger.scale > 0.0 else math.inf
     began = clock.perf_counter()
     try:
@@ -144,7 +143,7 @@ def _loop(
             if interrupted.is_set():
                 raise TouchdownError("interrupted")
             time = k * step
-            for name in active:
+            for name in system.order:
                 system.feed(name)
                 component = system.components[name]
                 component.step(time, step)
@@ -162,7 +161,10 @@ def _loop(
                 watch(outcome.end, system)
             if done % BEAT == 0 or done == steps:
                 outcome.wall_time = clock.perf_counter() - began
-                active = [name for name in active if _has_work(system.components[name])]
+                idle = [name for name in system.order if not _has_work(system.components[name])]
+                if idle:
+                    system.retire(idle)
+                    ledger.follow(system)
                 progress(outcome.end - outcome.zero, ledger.residual)
     finally:
         outcome.wall_time = clock.perf_counter() - began

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -38,6 +38,7 @@ class System:
     signals: np.ndarray = field(init=False)
     position: dict[tuple[str, str], int] = field(init=False)  # of an output in the signals
     take: dict[str, np.ndarray] = field(init=False)  # where each input of a component comes from
+    retired: set[str] = field(init=False, default_factory=set)
 
     def __post_init__(self) -> None:
         bearings = dict.fromkeys(a.bearing for a in self.attachments)
@@ -79,6 +80,14 @@ class System:
         component.inputs[:] = self.signals[self.take[name]]
         component.push()
 
+    def retire(self, names: Iterable[str]) -> None:
+        """Stop exchanging with components that have nothing left to do; what they gave last stays."""
+        self.retired |= set(names)
+        self.order = [name for name in self.order if name not in self.retired]
+        self._lay_out()
+        for name in self.order:
+            self.components[name].pull()
+
     def _feed_constants(self) -> None:
         constant = [c for c in self.connections if self.components[c.source].variable(c.output).constant]
         for target in dict.fromkeys(c.target for c in constant):
@@ -88,11 +97,16 @@ class System:
 
     def _lay_out(self) -> None:
         """Give every exchanged output its place in the signals, and bind the components to them."""
-        live = [c for c in self.connections if not self.components[c.source].variable(c.output).constant]
+        live = [
+            c
+            for c in self.connections
+            if not self.components[c.source].variable(c.output).constant
+            and not self.retired & {c.source, c.target}
+        ]
         outputs: dict[str, dict[str, None]] = {name: {} for name in self.components}
         for c in live:
             outputs[c.source][c.output] = None
-        for a in self.attachments:
+        for a in (a for a in self.attachments if not self.retired & {a.bearing, a.body}):
             for name, port in ((a.bearing, a.bearing_port), (a.body, a.body_port)):
                 for account in (f"{port}.work", f"{port}.jump"):
                     if account in self.components[name].variables:
