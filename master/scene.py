@@ -19,7 +19,7 @@ preset = "6004"       # a bearing of the catalogue: its values, as far as the FM
 mass = "1.65 kg"      # a number in SI, or text with a unit
 
 A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
-gives takes the place of what stands there, table by table.
+gives takes the place of what stands there, table by table; a component that names its fmu is a new one.
 """
 
 from __future__ import annotations
@@ -165,11 +165,11 @@ def _tables(path: Path, before: tuple[Path, ...]) -> dict[str, Any]:
 
 
 def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """`base` with `changes` put in, nested tables likewise."""
+    """`base` with `changes` put in, nested tables likewise, unless they name another FMU."""
     found = dict(base)
     for key, value in changes.items():
         there = found.get(key)
-        if isinstance(value, Mapping) and isinstance(there, Mapping):
+        if isinstance(value, Mapping) and isinstance(there, Mapping) and "fmu" not in value:
             found[key] = _over(there, value)
         else:
             found[key] = value

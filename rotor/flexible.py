@@ -183,6 +183,8 @@ def start(words):
     modal_motion.rest(y, m)[modal_motion.SPIN] = p.speed
     m.half = 0.0
     m.o.mass, m.o.polar_inertia = d.mass, d.inertia
+    for i in range(d.nodes):
+        m.o.node[i].position = d.position[i]
     for j in range(d.stations):
         _state_constants(m, j)
     publish(y, m)

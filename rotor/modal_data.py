@@ -53,6 +53,7 @@ class Derived:
     principal: np.ndarray = array(MOST_MODES)
     unbalance_x: np.ndarray = array(MOST_MODES)  # modal unbalance in the rotor's frame, kg^0.5 m
     unbalance_y: np.ndarray = array(MOST_MODES)
+    position: np.ndarray = array(MOST_NODES)  # m
     end_node: np.ndarray = array(MOST_ENDS)  # counted from 0
     bending: np.ndarray = array(MOST_ENDS, MOST_MODES)  # Pa per modal coordinate
     shear: np.ndarray = array(MOST_ENDS, MOST_MODES)
@@ -118,6 +119,7 @@ def prepare(
         principal=_room(principal, MOST_MODES),
         unbalance_x=_room(np.real(unbalance), MOST_MODES),
         unbalance_y=_room(np.imag(unbalance), MOST_MODES),
+        position=_room(shaft.positions(), MOST_NODES),
         end_node=_room(stresses.node - 1, MOST_ENDS),
         bending=_room(stresses.bending, MOST_ENDS, MOST_MODES),
         shear=_room(stresses.shear, MOST_ENDS, MOST_MODES),

@@ -55,6 +55,7 @@ class NodeStress:
     shear_y: float = real(0.0, "Pa", "shear stress by vertical forces, when kept", local=True)
     peak_bending: float = real(0.0, "Pa", "largest bending stress since the start", local=True)
     peak_shear: float = real(0.0, "Pa", "largest shear stress since the start", local=True)
+    position: float = real(0.0, "m", "along the axis, from node 1", constant=True)
 
 
 @kernel
