@@ -7,13 +7,14 @@ attributes of the group `@end`, unless a run asks for all.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from master.component import Component
-from master.errors import TouchdownError
+from master.errors import TouchdownError, one_of
 
 BLOCK = 4096  # rows held before they are written
 END = "@end"  # group of the values that are kept of the end only; no component is called so
@@ -22,7 +23,13 @@ END = "@end"  # group of the values that are kept of the end only; no component 
 class Recorder:
     """Rows of all recorded variables of a system."""
 
-    def __init__(self, path: Path, components: dict[str, Component], arrays: bool = False) -> None:
+    def __init__(
+        self,
+        path: Path,
+        components: dict[str, Component],
+        arrays: bool = False,
+        beginnings: Sequence[str] = (),
+    ) -> None:
         self.path = path
         self._components = components
         self.names: dict[str, list[str]] = {}
@@ -33,8 +40,10 @@ class Recorder:
                 for v in component.variables.values()
                 if v.causality in ("output", "local") and v.kind in ("Real", "Integer")
             ]
-            self.names[name] = [v for v in given if arrays or "[" not in v]
+            chosen = [v for v in given if _begins(f"{name}.{v}", beginnings)]
+            self.names[name] = [v for v in chosen if arrays or "[" not in v]
             self.kept_at_end[name] = [v for v in given if v not in self.names[name]]
+        _refuse_unused(beginnings, components)
         try:
             self._file = h5py.File(path, "w", libver="latest")
         except OSError as error:
@@ -49,7 +58,8 @@ class Recorder:
             for name, variables in self.names.items()
             for variable in variables
         }
-        self._readers = [components[name].reader(variables) for name, variables in self.names.items()]
+        self._readers = {name: components[name].reader(variables) for name, variables in self.names.items()}
+        self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
         self._block = np.zeros((BLOCK, 1 + len(self._datasets)))
         self._filled = 0
         self.rows = 0
@@ -73,8 +83,8 @@ class Recorder:
         row = self._block[self._filled]
         row[0] = time
         column = 1
-        for fetch in self._readers:
-            values = fetch()
+        for name, fetch in self._readers.items():
+            values = self._resting[name] if name in self._resting else fetch()
             row[column : column + len(values)] = values
             column += len(values)
         self._filled += 1
@@ -84,6 +94,11 @@ class Recorder:
             except OSError as error:
                 self._filled = 0
                 raise TouchdownError(f"cannot write {self.path}: {error}; make room for it") from None
+
+    def rest(self, names: Iterable[str]) -> None:
+        """The values of these components change no more."""
+        for name in names:
+            self._resting[name] = np.array(self._readers[name]())
 
     def _write(self) -> None:
         n = self._filled
@@ -116,6 +131,22 @@ class Recorder:
         return problem
 
 
+def _begins(name: str, beginnings: Sequence[str]) -> bool:
+    """Whether COMPONENT.VARIABLE is one of those, or in the component or group of one."""
+    return not beginnings or any(f"{name}.".startswith(f"{b}.") for b in beginnings)
+
+
+def _refuse_unused(beginnings: Sequence[str], components: dict[str, Component]) -> None:
+    every = [f"{name}.{v}" for name, component in components.items() for v in component.variables]
+    for b in beginnings:
+        if not any(_begins(name, [b]) for name in every):
+            raise TouchdownError(f"run.record: there is nothing called {b}; {one_of(b, every)}")
+
+
+class NotRecordedError(TouchdownError):
+    """A column that a run did not record."""
+
+
 class Recording:
     """A recorded run, read back."""
 
@@ -132,11 +163,13 @@ class Recording:
         return self._key(name) in self._file
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """Values of COMPONENT.VARIABLE."""
+        """Values of COMPONENT.VARIABLE. Raises NotRecordedError where there are none."""
+        if name not in self:
+            raise NotRecordedError(f"{name} was not recorded; see run.record")
         return np.asarray(self._file[self._key(name)])[: self._rows]
 
     def at_end(self, name: str) -> float:
-        """Last value of COMPONENT.VARIABLE, also of an array's element. KeyError where there is none."""
+        """Last value of COMPONENT.VARIABLE, also of an array's element. Raises NotRecordedError."""
         component, _, variable = name.partition(".")
         group = self._file.get(f"{END}/{component}")
         if isinstance(group, h5py.Group) and variable in group.attrs:

@@ -58,6 +58,7 @@ class RunSpec:
     macro_step: float = 2e-5  # s
     scheme: str = schemes.DEFAULT
     record_every: int = 5  # macro steps
+    record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
     warn_residual: float = 1e-3  # ledger over energy scale: say so
     stop_residual: float = 0.1  # ledger over energy scale: stop
@@ -207,7 +208,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
 
 
 def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
-    _refuse_unknown(changes, ("scheme", "record_arrays", *RUN_UNITS), "[run]")
+    _refuse_unknown(changes, ("scheme", "record", "record_arrays", *RUN_UNITS), "[run]")
     values: dict[str, Any] = {}
     for key, value in changes.items():
         if key == "scheme":
@@ -215,6 +216,9 @@ def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
             continue
         if key == "record_arrays":
             values[key] = _switch(value, f"run.{key}")
+            continue
+        if key == "record":
+            values[key] = _beginnings(value)
             continue
         number = to_si(value, RUN_UNITS[key], f"run.{key}")
         if number <= 0.0 or not math.isfinite(number):
@@ -225,6 +229,16 @@ def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
             number = int(number)
         values[key] = number
     return replace(run, **values)
+
+
+def _beginnings(value: object) -> tuple[str, ...]:
+    """Of recorded variables: a list of text, or text with commas."""
+    parts = value.split(",") if isinstance(value, str) else value
+    if not isinstance(parts, list) or not all(isinstance(part, str) and part.strip() for part in parts):
+        raise TouchdownError(
+            f'run.record = {value!r} must be a list such as ["rotor.A", "bearing.contact"]'
+        )
+    return tuple(part.strip() for part in parts)
 
 
 def _switch(value: object, name: str) -> bool:

@@ -69,7 +69,7 @@ def simulate(
         ledger = Ledger(system, energy_scale(scene, system))
         recorder = None
         if record_to is not None:
-            recorder = Recorder(record_to, system.components, scene.run.record_arrays)
+            recorder = Recorder(record_to, system.components, scene.run.record_arrays, scene.run.record)
         try:
             if recorder is not None:
                 recorder.append(-outcome.zero)
@@ -165,6 +165,8 @@ def _loop(
                 if idle:
                     system.retire(idle)
                     ledger.follow(system)
+                    if recorder is not None:
+                        recorder.rest(idle)
                 progress(outcome.end - outcome.zero, ledger.residual)
     finally:
         outcome.wall_time = clock.perf_counter() - began

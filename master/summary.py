@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import get_window
 
 from master.connections import Attachment
-from master.recording import Recording
+from master.recording import NotRecordedError, Recording
 from master.scene import Scene
 from master.simulation import Outcome, energy_scale
 from master.system import System, housing_port
@@ -86,8 +87,10 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
         found |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
-        found |= {f"{key}{tail}": value for key, value in _orbit_figures(a, outcome, recording).items()}
-        found |= _whirl_figures(system, a, seat_name(a, seats), recording)
+        with suppress(NotRecordedError):
+            orbit = _orbit_figures(system, a, outcome, recording)
+            found |= {f"{key}{tail}": value for key, value in orbit.items()}
+            found |= _whirl_figures(system, a, seat_name(a, seats), recording)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         port = next(a.body_port for a in seats if a.body == name)
@@ -113,7 +116,9 @@ def _bearing_figures(system: System, a: Attachment, outcome: Outcome) -> dict[st
     return found
 
 
-def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dict[str, object]:
+def _orbit_figures(
+    system: System, a: Attachment, outcome: Outcome, recording: Recording
+) -> dict[str, object]:
     x = recording[f"{a.body}.{a.body_port}.x"]
     y = recording[f"{a.body}.{a.body_port}.y"]
     time = recording.time
@@ -123,7 +128,7 @@ def _orbit_figures(a: Attachment, outcome: Outcome, recording: Recording) -> dic
         start = int(np.argmax(time >= -1e-12))
         fall = 1e6 * float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
     frequency = None
-    touched = recording[f"{a.bearing}.contact.first_time"][-1]
+    touched = system.value(f"{a.bearing}.contact.first_time")
     if touched != -1.0:
         first = touched - outcome.zero
         settled = time >= first + 0.2 * (outcome.end - outcome.zero - first)
@@ -214,6 +219,8 @@ def energy_total(system: System, recording: Recording) -> np.ndarray | None:
     for name, component in system.components.items():
         for variable, sign in ENERGIES:
             if variable in component.variables:
+                if f"{name}.{variable}" not in recording:
+                    return None
                 parts.append(sign * recording[f"{name}.{variable}"])
     return np.sum(parts, axis=0) if parts else None
 
