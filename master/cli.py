@@ -100,6 +100,16 @@ def _parser() -> argparse.ArgumentParser:
     bearings.add_argument("--quiet", action="store_true", help="no progress bar")
     bearings.set_defaults(run=_compare_bearings)
 
+    rotors = verbs.add_parser(
+        "compare-rotors", help="drops of the flexible rotors against the source's Figs 14, 15 and Table 4"
+    )
+    rotors.add_argument("--ensemble", default="4", metavar="N", help="unbalance phases (default: 4)")
+    rotors.add_argument("--long", action="store_true", help="also the run-down over 16 s")
+    rotors.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
+    rotors.add_argument("-o", "--output", type=Path, default=Path("runs/rotors"), help="folder")
+    rotors.add_argument("--quiet", action="store_true", help="no progress bar")
+    rotors.set_defaults(run=_compare_rotors)
+
     build = verbs.add_parser("build", help="build the FMUs")
     build.add_argument(
         "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
@@ -179,7 +189,6 @@ def _sweep(options: argparse.Namespace) -> int:
     from master.scene import load
     from master.sweep import INTERRUPTED, size, sweep
     from master.sweep_report import picked, table, verdict_lines
-    from master.units import to_si
     from master.variation import parse_all
 
     chosen = load(options.scene)
@@ -188,12 +197,10 @@ def _sweep(options: argparse.Namespace) -> int:
     if options.duration is not None:
         chosen = chosen.with_setting("run.duration", options.duration)
     variations = parse_all(options.vary)
-    jobs = to_si(options.jobs, "1", "--jobs")
-    if jobs < 1.0 or jobs != int(jobs):
-        raise TouchdownError(f"--jobs {options.jobs} must be a whole number above 0")
+    jobs = _count(options.jobs, "--jobs")
     folder = options.output or Path("runs") / f"sweep-{chosen.name}"
     with tqdm(total=size(variations), desc="runs", disable=options.quiet, leave=False) as bar:
-        members = sweep(chosen, variations, folder, int(jobs), options.in_process, options.keep, bar.update)
+        members = sweep(chosen, variations, folder, jobs, options.in_process, options.keep, bar.update)
     figures, complaints = picked(members, options.pick)
     print("\n".join([table(members, figures), *verdict_lines(members)]))
     print(f"results in {folder}")
@@ -216,18 +223,40 @@ def _compare_bearings(options: argparse.Namespace) -> int:
     from master.units import to_si
 
     duration = to_si(options.duration, "s", "--duration")
-    members = to_si(options.ensemble, "1", "--ensemble")
+    members = _count(options.ensemble, "--ensemble")
     if duration <= 0.0:
         raise TouchdownError(f"--duration {options.duration} must be above 0 s")
-    if members < 1.0 or members != int(members):
-        raise TouchdownError(f"--ensemble {options.ensemble} must be a whole number above 0")
     make_writable(options.output)
-    total = int(members) * (len(SCENES) + (len(OPTIONS) if options.options else 0))
+    total = members * (len(SCENES) + (len(OPTIONS) if options.options else 0))
     with tqdm(total=total, desc="drops", disable=options.quiet, leave=False) as bar:
-        text = compare(duration, int(members), options.options, options.output, bar.update)
+        text = compare(duration, members, options.options, options.output, bar.update)
     print(text, end="")
     print(f"results in {options.output}")
     return 0
+
+
+def _compare_rotors(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from master.rotor_comparison import compare, runs
+    from master.run import make_writable
+
+    members = _count(options.ensemble, "--ensemble")
+    make_writable(options.output)
+    with tqdm(total=runs(members), desc="drops", disable=options.quiet, leave=False) as bar:
+        text = compare(members, options.output, options.long, _count(options.jobs, "--jobs"), bar.update)
+    print(text, end="")
+    print(f"results in {options.output}")
+    return 0
+
+
+def _count(text: str, option: str) -> int:
+    from master.units import to_si
+
+    number = to_si(text, "1", option)
+    if number < 1.0 or number != int(number):
+        raise TouchdownError(f"{option} {text} must be a whole number above 0")
+    return int(number)
 
 
 def _build(options: argparse.Namespace) -> int:
