@@ -12,6 +12,7 @@ from master.connections import Attachment
 from master.recording import Recording
 from master.scene import Scene
 from master.simulation import Outcome, energy_scale
+from master.stress_figures import stress_figures
 from master.system import System, housing_port
 from master.whirl import classify
 
@@ -92,6 +93,7 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         port = next(a.body_port for a in seats if a.body == name)
         found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(f"{name}.{port}.omega")
+    found |= stress_figures(system, outcome)
     found |= _run_figures(scene, system, outcome, recording)
     return found
 
