@@ -15,10 +15,13 @@ from master.figures_contacts import contacts, has_contacts
 from master.figures_energy import energy
 from master.figures_forces import forces
 from master.figures_motion import orbit, speeds
+from master.figures_orbits import orbits
 from master.figures_spectrum import has_spectrum, spectrum
+from master.figures_stress import has_stress, stress
 from master.figures_waterfall import has_waterfall, motion_waterfall
 from master.recording import Recording
 from master.scene import Scene
+from master.stress_figures import stressed
 from master.summary import energy_total, touchdown_seats
 from master.system import System
 
@@ -31,6 +34,13 @@ def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
         for name, figure in _of_bearing(scene, system, recording, a).items():
             made.append(_save(figure, folder / f"{name}{tail}.png"))
+    if len(seats) > 1:
+        made.append(_save(orbits(scene, system, recording, seats), folder / "orbits.png"))
+    rotors = stressed(system)
+    for name in rotors:
+        tail = f"-{name}" if len(rotors) > 1 else ""
+        if has_stress(system, name):
+            made.append(_save(stress(scene, system, recording, name), folder / f"stress{tail}.png"))
     if energy_total(system, recording) is not None:
         made.append(_save(energy(scene, system, recording), folder / "energy.png"))
     return made

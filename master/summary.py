@@ -13,8 +13,9 @@ from master.connections import Attachment
 from master.recording import NotRecordedError, Recording
 from master.scene import Scene
 from master.simulation import Outcome, energy_scale
+from master.stress_figures import stress_figures
 from master.system import System, housing_port
-from master.whirl import classify
+from master.whirl import Whirl, classify
 
 STANDS_OUT = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
@@ -95,6 +96,7 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         port = next(a.body_port for a in seats if a.body == name)
         found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(f"{name}.{port}.omega")
+    found |= stress_figures(system, outcome)
     found |= _run_figures(scene, system, outcome, recording)
     return found
 
@@ -151,15 +153,22 @@ def relative_orbit(system: System, a: Attachment, recording: Recording) -> tuple
     return x, y
 
 
+def whirl_at(system: System, a: Attachment, recording: Recording) -> Whirl | None:
+    """The verdict on the journal's orbit; None where the bearing states no clearance."""
+    if "clearance" not in system.components[a.bearing].variables:
+        return None
+    clearance = system.value(f"{a.bearing}.clearance")
+    spin = float(np.median(recording[f"{a.body}.{a.body_port}.omega"]))
+    return classify(recording.time, *relative_orbit(system, a, recording), clearance, spin)
+
+
 def _whirl_figures(system: System, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
     """The verdict in words, and the longest whirl; without a clearance nothing can be told."""
     key = f"whirl_{seat}"
     tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N")
-    if "clearance" not in system.components[a.bearing].variables:
+    whirl = whirl_at(system, a, recording)
+    if whirl is None:
         return {f"{key}{tail}": None for tail in tails}
-    clearance = system.value(f"{a.bearing}.clearance")
-    spin = float(np.median(recording[f"{a.body}.{a.body_port}.omega"]))
-    whirl = classify(recording.time, *relative_orbit(system, a, recording), clearance, spin)
     radius = None if whirl.radius is None else 1e6 * whirl.radius
     force = None
     if whirl.start is not None and whirl.end is not None:
