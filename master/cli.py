@@ -31,11 +31,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _joined(arguments: list[str]) -> list[str]:
-    """Tie --macro-step to its value: argparse would take a negative one for an option."""
+    """Tie options to their values where these may be negative: argparse would take them for options."""
     found = list(arguments)
-    if "--macro-step" in found[:-1]:
-        i = found.index("--macro-step")
-        found[i : i + 2] = [f"--macro-step={found[i + 1]}"]
+    for option in ("--macro-step", "--speed"):
+        if option in found[:-1]:
+            i = found.index(option)
+            found[i : i + 2] = [f"{option}={found[i + 1]}"]
     return found
 
 
@@ -89,6 +90,22 @@ def _parser() -> argparse.ArgumentParser:
     sweep.add_argument("--keep", action="store_true", help="keep each run's recording, result.h5")
     sweep.add_argument("--quiet", action="store_true", help="no progress bar")
     sweep.set_defaults(run=_sweep)
+
+    rotor = verbs.add_parser("rotor", help="describe rotors: inertias, frequencies, modes, how they lie")
+    rotor.add_argument(
+        "rotors", nargs="*", metavar="ROTOR", help="name of a rotor, or path of its .toml (default: all)"
+    )
+    rotor.add_argument("-o", "--output", type=Path, help="folder (default: runs/rotor-ROTOR)")
+    rotor.add_argument(
+        "--speed", default="9000 rpm", help='for forward and backward whirl (default: "9000 rpm")'
+    )
+    rotor.add_argument(
+        "--modes",
+        default="5",
+        metavar="N",
+        help="per plane, the two rigid ones included; 0: all (default: 5)",
+    )
+    rotor.set_defaults(run=_rotor)
 
     bearings = verbs.add_parser(
         "compare-bearings", help="the four bearing models side by side, against the source's Tables 5 to 7"
@@ -213,6 +230,30 @@ def _sweep(options: argparse.Namespace) -> int:
     if failed:
         print(f"touchdown: {len(failed)} of {len(members)} runs failed, see the table", file=sys.stderr)
     return STOPPED if failed else 0
+
+
+def _rotor(options: argparse.Namespace) -> int:
+    from fmus.rotors import rotors
+    from master.rotor_report import report
+    from master.units import to_si
+
+    speed = to_si(options.speed, "rad/s", "--speed")
+    modes = to_si(options.modes, "1", "--modes")
+    if modes < 0.0 or modes != int(modes):
+        raise TouchdownError(f"--modes {options.modes} must be a whole number, 2 or more, or 0 for all")
+    names = options.rotors or rotors()
+    owns = [Path(name).stem for name in names]
+    for own in owns:
+        if owns.count(own) > 1:
+            raise TouchdownError(f"{owns.count(own)} rotors are called {own}; ask for them one by one")
+    for name, own in zip(names, owns, strict=True):
+        folder = options.output or Path("runs") / f"rotor-{own}"
+        if options.output and len(names) > 1:
+            folder = options.output / own
+        found = report(name, folder, speed, int(modes))
+        print(found.text)
+        print(f"pictures in {folder}\n")
+    return 0
 
 
 def _compare_bearings(options: argparse.Namespace) -> int:

@@ -1,0 +1,86 @@
+"""What is known of a rotor before it is dropped: modes, whirl speeds, and how it lies on its seats."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modelkit.model import ModelError
+from rotor.campbell import whirl_frequencies
+from rotor.modal_data import seats
+from rotor.modes import RIGID, basis
+from rotor.shaft import Shaft
+from rotor.statics import Rest, at_rest
+
+HERTZ = 0.5 / math.pi
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """A free rotor's modes in one plane, by frequency, and its lines over the spin speed.
+
+    A line belongs to a mode; lines of the translation, and the backward one of the tilt, stay at zero.
+    """
+
+    shaft: Shaft
+    kinds: tuple[str, ...]  # of the n modes
+    frequencies: np.ndarray  # (n,), Hz, at rest
+    shapes: np.ndarray  # (N, n), deflection of the nodes, largest 1
+    speeds: np.ndarray  # (S,), rad/s, not negative
+    forward: np.ndarray  # (S, n), Hz, whirl with the spin
+    backward: np.ndarray  # (S, n), Hz, whirl against it
+    rest: Rest | None  # rigidly held at the seats; None where there are less than two
+
+
+def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> Portrait:
+    """The lowest `modes` modes of `shaft` (0: all) and their whirl frequencies at `speeds` (rad/s).
+
+    The sign of a speed does not matter: it turns the senses of whirl with it. Raises ModelError where
+    there are not so many modes, or the elements are too unlike each other.
+    """
+    full = basis(shaft, 0)
+    count = modes or len(full.omega)
+    if not RIGID <= count <= len(full.omega):
+        raise ModelError(
+            f"modes = {modes}: {shaft.title} has {len(full.omega)} modes per plane; ask for "
+            f"{RIGID} (rigid) to {len(full.omega)}, or 0 for all"
+        )
+    shapes = full.shapes[0::2, :count]
+    turning = np.abs(np.asarray(speeds, dtype=float))
+    whirl = HERTZ * whirl_frequencies(full, turning)
+    forward, backward = _lines(whirl, count)
+    return Portrait(
+        shaft=shaft,
+        kinds=tuple(_kind(k) for k in range(count)),
+        frequencies=HERTZ * full.omega[:count],
+        shapes=shapes / np.max(np.abs(shapes), axis=0),
+        speeds=turning,
+        forward=forward,
+        backward=backward,
+        rest=_at_rest(shaft),
+    )
+
+
+def _kind(mode: int) -> str:
+    return ("translation", "tilt")[mode] if mode < RIGID else f"bending {mode - RIGID + 1}"
+
+
+def _lines(whirl: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Forward and backward lines (S, count) out of ascending whirl frequencies (S, 2n).
+
+    Of the 2n, n - 2 are negative, three are zero, and n - 1 positive: tilting, a free rotor goes round
+    only forwards.
+    """
+    bending = whirl.shape[1] // 2 - RIGID
+    zero = np.zeros((len(whirl), 1))
+    forward = np.hstack((zero, np.abs(whirl[:, -bending - 1 :])))
+    backward = np.hstack((zero, zero, -whirl[:, :bending][:, ::-1]))
+    return forward[:, :count], backward[:, :count]
+
+
+def _at_rest(shaft: Shaft) -> Rest | None:
+    nodes = sorted(set(seats(shaft)))
+    return at_rest(shaft, [(node, math.inf) for node in nodes]) if len(nodes) > 1 else None
