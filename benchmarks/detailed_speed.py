@@ -68,7 +68,7 @@ class Runner:
     def run(self, module: ModuleType, span: float, falling: bool = False) -> tuple[Instance, float, int]:
         """(The bearing after `span` s, wall time in s, evaluations)."""
         instance = released(module, falling)
-        work = np.zeros((8, ball_bodies.MOST_STATES))
+        work = np.zeros((8, module.MEMORY["y"].shape[0]))
         began = clock.perf_counter()
         evaluations = self.carry(instance.words, work, span, self.step, self.tolerance)
         return instance, clock.perf_counter() - began, evaluations
@@ -118,7 +118,7 @@ def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
         for _ in range(count):
             rhs(0.0, m.y, dy, m)
 
-    work = np.zeros((8, ball_bodies.MOST_STATES))
+    work = np.zeros((8, module.MEMORY["y"].shape[0]))
     loop(instance.words, work, 10)
     found = []
     for _ in range(repeat):
@@ -223,7 +223,7 @@ class Equations:
 
         self._rate = rate
         self._instance = released(module)
-        self._work = np.zeros((8, ball_bodies.MOST_STATES))
+        self._work = np.zeros((8, module.MEMORY["y"].shape[0]))
         n = int(self._instance.record["n"])
         self.start = self._instance.record["y"][:n].copy()
         weight = self._instance.record["weight"][:n]

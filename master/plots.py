@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import matplotlib
@@ -19,7 +22,7 @@ from master.figures_orbits import orbits
 from master.figures_spectrum import has_spectrum, spectrum
 from master.figures_stress import has_stress, stress
 from master.figures_waterfall import has_waterfall, motion_waterfall
-from master.recording import Recording
+from master.recording import NotRecordedError, Recording
 from master.scene import Scene
 from master.stress_figures import stressed
 from master.summary import energy_total, touchdown_seats
@@ -27,40 +30,47 @@ from master.system import System
 
 
 def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -> list[Path]:
-    """Draw what the scene is about into `folder`; returns the files."""
+    """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files."""
     made: list[Path] = []
+    for name, draw in _pictures(scene, system, recording):
+        with suppress(NotRecordedError):
+            made.append(_save(draw(), folder / f"{name}.png"))
+    return made
+
+
+Picture = tuple[str, Callable[[], Figure]]  # name of the file, and how it is drawn
+
+
+def _pictures(scene: Scene, system: System, recording: Recording) -> Iterator[Picture]:
     seats = touchdown_seats(system)
     for a in seats:
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
-        for name, figure in _of_bearing(scene, system, recording, a).items():
-            made.append(_save(figure, folder / f"{name}{tail}.png"))
+        for name, draw in _of_bearing(scene, system, recording, a):
+            yield f"{name}{tail}", draw
     if len(seats) > 1:
-        made.append(_save(orbits(scene, system, recording, seats), folder / "orbits.png"))
+        yield "orbits", partial(orbits, scene, system, recording, seats)
     rotors = stressed(system)
     for name in rotors:
         tail = f"-{name}" if len(rotors) > 1 else ""
         if has_stress(system, name):
-            made.append(_save(stress(scene, system, recording, name), folder / f"stress{tail}.png"))
+            yield f"stress{tail}", partial(stress, scene, system, recording, name)
     if energy_total(system, recording) is not None:
-        made.append(_save(energy(scene, system, recording), folder / "energy.png"))
-    return made
+        yield "energy", partial(energy, scene, system, recording)
 
 
-def _of_bearing(scene: Scene, system: System, recording: Recording, a: Attachment) -> dict[str, Figure]:
-    """Figures of one touchdown bearing by the name of their file."""
-    made = {
-        "orbit": orbit(scene, system, recording, a),
-        "force": forces(scene, system, recording, a),
-    }
+def _of_bearing(scene: Scene, system: System, recording: Recording, a: Attachment) -> Iterator[Picture]:
+    """Of one touchdown bearing."""
+    yield "orbit", partial(orbit, scene, system, recording, a)
+    if f"{a.bearing}.contact.force" in recording:
+        yield "force", partial(forces, scene, system, recording, a)
     if f"{a.bearing}.speed.ring" in recording:
-        made["speeds"] = speeds(scene, system, recording, a)
+        yield "speeds", partial(speeds, scene, system, recording, a)
     if has_contacts(system, a):
-        made["contacts"] = contacts(scene, system, recording, a)
+        yield "contacts", partial(contacts, scene, system, recording, a)
     if has_spectrum(recording, a):
-        made["spectrum"] = spectrum(scene, recording, a)
+        yield "spectrum", partial(spectrum, scene, recording, a)
     if has_waterfall(recording, a):
-        made["waterfall"] = motion_waterfall(scene, recording, a)
-    return made
+        yield "waterfall", partial(motion_waterfall, scene, recording, a)
 
 
 def _save(figure: Figure, path: Path) -> Path:
