@@ -254,7 +254,7 @@ def _highest(scene: Scene, system: System, rotor: str, ports: Sequence[str]) -> 
     elastic = int(str(given["modes"])) - RIGID + int(str(given["residual"])) * len(ports)
     if given["modes"] == 0 or any(elastic > len(values) for values in told.values()):
         return None
-    square = max(value for values in told.values() for value in values)
+    square = max((value for values in told.values() for value in values), default=0.0)
     return math.sqrt(square) / (2.0 * math.pi) if square > 0.0 else None
 
 

@@ -145,7 +145,7 @@ def test_many_modes_leave_no_error() -> None:
     assert residual.frequency is not None
     assert residual.frequency > 1e5
     assert residual.orbit < 0.05e-6
-    assert residual.acceleration.shear == pytest.approx(found.reference.acceleration.shear, rel=0.01)
+    assert residual.acceleration.shear == pytest.approx(found.reference.acceleration.shear, rel=0.03)
     for seat, exact in found.reference.seats.items():
         assert residual.seats[seat].force == pytest.approx(exact.force, rel=2e-3)
         assert residual.seats[seat].contact == pytest.approx(exact.contact, rel=2e-2)
