@@ -127,6 +127,26 @@ def _parser() -> argparse.ArgumentParser:
     rotors.add_argument("--quiet", action="store_true", help="no progress bar")
     rotors.set_defaults(run=_compare_rotors)
 
+    modes = verbs.add_parser(
+        "compare-modes", help="what the number of modes of a flexible rotor costs in error"
+    )
+    modes.add_argument("scene", help="name of a scene with a flexible rotor, or path of a .toml")
+    modes.add_argument(
+        "--modes",
+        default="3,5,8,12,20",
+        help="numbers of modes per plane, the two rigid ones included (default: 3,5,8,12,20)",
+    )
+    modes.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set in all runs")
+    modes.add_argument(
+        "--duration",
+        help='from the first contact, such as "2 ms" (default: until the first impact is over, '
+        "at most 10 ms)",
+    )
+    modes.add_argument("--macro-step", default="2 us", help='macro step (default: "2 us")')
+    modes.add_argument("-o", "--output", type=Path, help="folder (default: runs/modes-SCENE)")
+    modes.add_argument("--quiet", action="store_true", help="no progress bar")
+    modes.set_defaults(run=_compare_modes)
+
     build = verbs.add_parser("build", help="build the FMUs")
     build.add_argument(
         "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
@@ -298,6 +318,38 @@ def _count(text: str, option: str) -> int:
     if number < 1.0 or number != int(number):
         raise TouchdownError(f"{option} {text} must be a whole number above 0")
     return int(number)
+
+
+def _compare_modes(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from master.mode_comparison import compare, parse_modes, refuse_varied, runs, write
+    from master.mode_report import lines
+    from master.run import make_writable
+    from master.scene import load
+    from master.units import to_si
+
+    chosen = load(options.scene)
+    settings = [_assignment(text, "--set") for text in options.set]
+    refuse_varied(name for name, _ in settings)
+    for name, value in settings:
+        chosen = chosen.with_setting(name, value)
+    modes = parse_modes(options.modes)
+    step = to_si(options.macro_step, "s", "--macro-step")
+    duration = None if options.duration is None else to_si(options.duration, "s", "--duration")
+    for name, value in (("--macro-step", step), ("--duration", duration)):
+        if value is not None and not value > 0.0:
+            raise TouchdownError(f"{name} = {value:g} s must be above 0")
+    folder = options.output or Path("runs") / f"modes-{chosen.name}"
+    make_writable(folder)
+    with tqdm(total=runs(modes), desc="drops", disable=options.quiet, leave=False) as bar:
+        found = compare(chosen, modes, step, duration, bar.update)
+    write(found, folder)
+    print("\n".join(lines(found)))
+    print(f"results in {folder}")
+    for warning in found.warnings:
+        print(f"touchdown: warning: {warning}", file=sys.stderr)
+    return 0
 
 
 def _build(options: argparse.Namespace) -> int:

@@ -129,11 +129,14 @@ def _missing(
 def used_modes(connections: Iterable[Connection], components: Mapping[str, Component]) -> list[Connection]:
     """`connections` without those of modes that the body does not have (inv_m = 0), once it is started."""
     kept = list(connections)
+    gains = [c for c in kept if c.input.endswith("].inv_m")]
     absent: set[tuple[str, str]] = set()
-    for c in kept:
-        port, _, suffix = c.input.rpartition(".")
-        if port.endswith("]") and suffix == "inv_m" and components[c.source].read([c.output])[0] == 0.0:
-            absent |= {(c.source, c.output.rpartition(".")[0]), (c.target, port)}
+    for source in dict.fromkeys(c.source for c in gains):
+        theirs = [c for c in gains if c.source == source]
+        for c, gain in zip(theirs, components[source].read([c.output for c in theirs]), strict=True):
+            if gain == 0.0:
+                absent.add((c.source, c.output.rpartition(".")[0]))
+                absent.add((c.target, c.input.rpartition(".")[0]))
 
     def used(component: str, variable: str) -> bool:
         return (component, variable.rpartition(".")[0]) not in absent

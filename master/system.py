@@ -92,7 +92,11 @@ class System:
         constant = [c for c in self.connections if self.components[c.source].variable(c.output).constant]
         for target in dict.fromkeys(c.target for c in constant):
             mine = [c for c in constant if c.target == target]
-            values = {c.input: self.components[c.source].read([c.output])[0] for c in mine}
+            values: dict[str, float] = {}
+            for source in dict.fromkeys(c.source for c in mine):
+                theirs = [c for c in mine if c.source == source]
+                found = self.components[source].read([c.output for c in theirs])
+                values |= dict(zip((c.input for c in theirs), found, strict=True))
             self.components[target].set(values)
 
     def _lay_out(self) -> None:
