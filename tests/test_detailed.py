@@ -371,7 +371,7 @@ def test_adaptive_steps_follow_two_references(name: str) -> None:
     scene = touching(name, micro_step=0.0, **{"interface.tolerance": 1e-10})
     scene = scene.with_setting("run.duration", 1e-3).with_setting("run.macro_step", 2e-5)
     times = 2e-5 * np.arange(1, 51)
-    first = Monolith(scene).solve(times, ["rotor.A.y"], 1e-9, "DOP853").states["bearing"]
+    first = Monolith(scene).solve(times, ["rotor.A.y"], 1e-10, "DOP853").states["bearing"]
     second = Monolith(scene).solve(times, ["rotor.A.y"], 1e-8, "Radau").states["bearing"]
     rows: list[np.ndarray] = []
     system = open_system(scene, in_process=True)
