@@ -201,6 +201,8 @@ def weights(p: Parameters) -> np.ndarray:
     return seat.weights([0.0] + 2 * [1.0 / FORCE_SCALE if p.bandwidth > 0.0 else 0.0])
 
 
+_STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
+
 MODEL = Model(
     name="amb",
     title="Active magnetic bearing",
@@ -215,7 +217,7 @@ MODEL = Model(
     weights=weights,
     instant=instant,
     starts_from={
-        "load_x": ("journal.ax_free", "journal.inv_m", "journal.static_fx"),
-        "load_y": ("journal.ay_free", "journal.inv_m", "journal.static_fy"),
+        "load_x": ("journal.ax_free", *_STATIC),
+        "load_y": ("journal.ay_free", *_STATIC),
     },
 )

@@ -5,6 +5,7 @@ Tests run it in processes of their own, where the project itself cannot be impor
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -60,14 +61,15 @@ class Slave:
         return "\n".join(self.messages)
 
     def named(self, *causalities: str) -> list[str]:
-        """Names of its variables of these causalities."""
-        return [v.name for v in self.variables.values() if v.causality in causalities]
+        """Names of its variables of these causalities; of members of a group the first stands for all."""
+        names = [v.name for v in self.variables.values() if v.causality in causalities]
+        return [name for name in names if not re.search(r"\[(?!1\])", name)]
 
     def set(self, values: Mapping[str, float]) -> None:
-        """Set variables by name; those it does not have are left out."""
+        """Set variables by name; those it does not have, or computes itself, are left out."""
         for name, value in values.items():
             variable = self.variables.get(name)
-            if variable is not None:
+            if variable is not None and variable.causality != "calculatedParameter":
                 call = self.fmu.setReal if variable.type == "Real" else self.fmu.setInteger
                 call([variable.valueReference], [value])
 
