@@ -119,14 +119,18 @@ def test_a_macro_step_solves_the_equations(unbalance: float, largest: float) -> 
 
 @pytest.mark.parametrize("unbalance", [0.0, 1.0])
 def test_strides_are_of_second_order(unbalance: float) -> None:
-    """Modes to 4 kHz, which 0.1 ms just resolves; residual vectors, faster still, join at 20 us."""
+    """Modes to 4 kHz, of which a stride of 0.1 ms is 0.4 periods of the fastest."""
     lengths = [1e-4, 2e-5, 1e-5, 5e-6]
-    slow = deviations(1e-4, lengths, unbalance_scale=unbalance, residual=0)
-    assert order(lengths, slow) == pytest.approx(2.0, abs=0.15)
+    errors = deviations(1e-4, lengths, unbalance_scale=unbalance, residual=0)
+    assert order(lengths, errors) == pytest.approx(2.0, abs=0.15)
+
+
+@pytest.mark.parametrize("unbalance", [0.0, 1.0, pytest.param(100.0, marks=SPIN_OF_UNBALANCE)])
+def test_strides_are_of_second_order_with_residual_vectors(unbalance: float) -> None:
+    """Up to 12.6 kHz, so from 20 us downwards."""
     lengths = [2e-5, 1e-5, 5e-6]
-    assert order(lengths, deviations(1e-4, lengths, unbalance_scale=unbalance)) == pytest.approx(
-        2.0, abs=0.15
-    )
+    errors = deviations(1e-4, lengths, unbalance_scale=unbalance)
+    assert order(lengths, errors) == pytest.approx(2.0, abs=0.15)
 
 
 # --- rigid
@@ -199,7 +203,7 @@ def test_a_turned_frame_turns_the_answer() -> None:
 
 @pytest.mark.parametrize(
     ("unbalance", "largest"),
-    [(0.0, 1e-11), (1.0, 3e-7), pytest.param(100.0, 1e-5, marks=SPIN_OF_UNBALANCE)],
+    [(0.0, 1e-11), (1.0, 3e-7), pytest.param(100.0, 3e-5, marks=SPIN_OF_UNBALANCE)],
 )
 def test_momentum_is_the_impulse(unbalance: float, largest: float) -> None:
     """m v + d/dt (U exp(i theta)) changes by the impulse of forces and weight, whatever bends."""
@@ -502,9 +506,7 @@ def test_peaks_are_held_and_one_instant_is_kept(node: int) -> None:
             for axis, values in (("x", here[i].real), ("y", here[i].imag)):
                 largest = values[np.argmax(np.abs(values))]
                 scale = np.max(np.abs(record[kept][i]))
-                assert abs(o["node"][at - 1][f"{kind}_{axis}"]) == pytest.approx(
-                    abs(largest), abs=1e-11 * scale
-                )
+                assert o["node"][at - 1][f"{kind}_{axis}"] == pytest.approx(largest, abs=1e-11 * scale)
 
 
 def test_no_stresses_where_none_are_asked_for() -> None:
