@@ -11,6 +11,7 @@ step, there is no force.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model
 from modelkit.ports import FlexibleSeatMotion, Interface, Load, MountMotion, MountReaction, SeatReaction
-from modelkit.status import OK
+from modelkit.status import BAD_INPUT, OK
 from modelkit.variables import group, integer, real
 
 SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
@@ -191,6 +192,9 @@ def instant(t, y, dy, m):
 def advance(words, work, time, step):
     """One macro step."""
     m = words.view(MEMORY)[0]
+    j, u = m.u.journal, m.u.sensor
+    if not math.isfinite(u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy):
+        return BAD_INPUT
     left = m.p.shutdown_time - time
     m.s.span = -1.0 if left <= ROUNDING else min(left, step)
     return seat.advance(react, integrate, report, m, work, time, step)

@@ -125,6 +125,16 @@ def slots(model: Model) -> list[Slot]:
     return found
 
 
+_known: dict[int, tuple[Model, list[Slot]]] = {}
+
+
+def _slots(model: Model) -> list[Slot]:
+    """`slots`, computed once for each model: a rotor has more than a thousand."""
+    if id(model) not in _known:
+        _known[id(model)] = model, slots(model)
+    return _known[id(model)][1]
+
+
 class Instance:
     """A model with its memory. The FMU and the in-process component both drive this class."""
 
@@ -138,7 +148,7 @@ class Instance:
         self.reals = raw.cast("d")
         self.integers = raw.cast("q")
         self.work = dopri.scratch(len(self.memory["y"][0]))
-        self.slots = slots(model)
+        self.slots = _slots(model)
         self._bytes = raw
 
     @property

@@ -235,7 +235,8 @@ def advance(words, work, time, step):
     publish(m.y, m)
     if m.p.stress.active:
         stress_report.report(m.y, m, time + step)
-    return OK if modal_motion.finite(m.y, m) else BAD_LOAD
+    told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
+    return OK if modal_motion.finite(m.y, m) and np.isfinite(told) else BAD_LOAD
 
 
 def derive(shaft: Shaft, p: Parameters) -> Derived:

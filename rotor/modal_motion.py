@@ -234,11 +234,17 @@ def advance(y, m, step, longest, work):
     for k in range(n):
         start_x[k], start_y[k], area_x[k], area_y[k] = px[k], py[k], 0.0, 0.0
     turned, spun = tail[ANGLE], tail[SPIN]
+    kick = 0.0  # of the spin, by the unbalance's reaction, as it was in the stride before
+    if d.unbalanced:
+        kick = (
+            accelerate(y, m, -0.5 * step, a, b)
+            - (moment(m, -0.5 * step) - drag(tail[SPIN], m.p)) / d.inertia
+        )
     for i in range(strides):
         s = (i + 0.5) * h - 0.5 * step
         braking = drag(tail[SPIN], m.p)
         torque = moment(m, s) - braking
-        alpha = torque / d.inertia
+        alpha = torque / d.inertia + kick
         middle = tail[ANGLE] + m.p.unbalance_angle + 0.5 * h * tail[SPIN]
         before = _spun(vx, vy, m, middle)
         _fill(px, py, vx, vy, h, n, area_x, area_y)
@@ -249,6 +255,7 @@ def advance(y, m, step, longest, work):
         change = (torque * h - _spun(vx, vy, m, middle) + before) / d.inertia
         tail[ANGLE] += h * (tail[SPIN] + 0.5 * change)
         tail[SPIN] += change
+        kick = (change - torque * h / d.inertia) / h
     _account(y, m, step, start_x, start_y, area_x, area_y, turned, spun)
 
 
@@ -304,6 +311,8 @@ def take_mode_loads(y, m):
     """Give each mode what mean and slope did not say of the loads; their work is what energy it brings."""
     px, py, vx, vy = modal(y, m)
     tail = rest(y, m)
+    angle = tail[ANGLE] + m.p.unbalance_angle
+    before = _spun(vx, vy, m, angle)
     for j in range(m.d.stations):
         u, lumped = m.u.station[j], m.d.lumped[j] > 0.0
         for k in range(m.d.modes):
@@ -319,6 +328,7 @@ def take_mode_loads(y, m):
             py[k] += y1
             vx[k] += u1
             vy[k] += v1
+    tail[SPIN] -= (_spun(vx, vy, m, angle) - before) / m.d.inertia
 
 
 @kernel
