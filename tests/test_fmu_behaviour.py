@@ -33,8 +33,19 @@ def answer(done: subprocess.CompletedProcess[str], warned: bool = False) -> Any:
     return json.loads(done.stdout.splitlines()[-1])
 
 
+def beside_each_other(
+    request: pytest.FixtureRequest, fixture: str, run: Callable[[str], subprocess.CompletedProcess[str]]
+) -> Callable[[str], subprocess.CompletedProcess[str]]:
+    """run(fmu) for every FMU that a chosen test asks `fixture` about, two processes at a time."""
+    asking = (item for item in request.session.items if fixture in getattr(item, "fixturenames", ()))
+    chosen = {item.callspec.params.get("fmu") for item in asking if hasattr(item, "callspec")}  # type: ignore[attr-defined]
+    pool = ThreadPoolExecutor(2)
+    started = {fmu: pool.submit(run, fmu) for fmu in NAMES if fmu in chosen}
+    return lambda fmu: started[fmu].result() if fmu in started else run(fmu)
+
+
 @pytest.fixture(scope="module")
-def answers(alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
+def answers(request: pytest.FixtureRequest, alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
     """Answers of an FMU to all questions, asked once; absurd values may make numpy warn."""
 
     @cache
@@ -43,7 +54,15 @@ def answers(alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
         script = "from slave_questions import ask; ask(*sys.argv[1:])"
         return alone(script, unpacked[fmu], unpacked[other])
 
-    return lambda fmu: answer(asked(fmu), warned=True)
+    found = beside_each_other(request, "answers", asked)
+    return lambda fmu: answer(found(fmu), warned=True)
+
+
+@pytest.fixture(scope="module")
+def left_alone(request: pytest.FixtureRequest, alone: Alone, unpacked: Mapping[str, Path]) -> Answers:
+    """What an FMU says of itself where the project cannot be imported."""
+    found = beside_each_other(request, "left_alone", lambda fmu: alone(ALONE, unpacked[fmu]))
+    return lambda fmu: answer(found(fmu))
 
 
 # -- standing alone ----------------------------------------------------------------------------------
@@ -61,8 +80,8 @@ print(json.dumps({"importable": before + importable(), "loaded": loaded_from_pro
 
 
 @every_fmu
-def test_runs_without_the_project(fmu: str, alone: Alone, unpacked: Mapping[str, Path]):
-    found = answer(alone(ALONE, unpacked[fmu]))
+def test_runs_without_the_project(fmu: str, left_alone: Answers):
+    found = left_alone(fmu)
     assert found["importable"] == []
     assert found["loaded"] == []
     assert found["outputs"]
