@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+FAILED = 2  # exit status: it could not be done
+STOPPED = 3  # exit status: it began, and stopped on the way
+
 
 class TouchdownError(Exception):
     """Something the user asked for cannot be done; the message says what, which value, and what to do."""

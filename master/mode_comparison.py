@@ -154,14 +154,15 @@ def compare(
     judge = _Judge(exact, impacts)
     reference = judge.row(0, False, 0.5 * macro_step, exact, exact)
     ended = {"run.duration": exact.end}
-    again = _run(_set(whole, ended), rotor)
+    again = _run(whole.with_settings(ended), rotor)
     done()
     rows = []
     for count in modes:
         for residual in (0, 1):
             found = []
             for acceleration in (0, 1):
-                found.append(_run(_set(_basis(scene, rotor, count, residual, acceleration), ended), rotor))
+                basis = _basis(scene, rotor, count, residual, acceleration)
+                found.append(_run(basis.with_settings(ended), rotor))
                 done()
             rows.append(judge.row(count, bool(residual), macro_step, found[0], found[1]))
     coupling = judge.row(0, False, macro_step, again, again)
@@ -203,17 +204,10 @@ def _rotor(scene: Scene) -> str:
     return found[0]
 
 
-def _set(scene: Scene, settings: Mapping[str, object]) -> Scene:
-    for name, value in settings.items():
-        scene = scene.with_setting(name, value)
-    return scene
-
-
 def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: int) -> Scene:
     values = dict(zip(BASIS, (modes, residual, acceleration), strict=True))
-    return _set(
-        scene, {f"{rotor}.{name}": value for name, value in values.items()} | {f"{rotor}.stress.active": 1}
-    )
+    settings = {f"{rotor}.{name}": value for name, value in values.items()}
+    return scene.with_settings(settings | {f"{rotor}.stress.active": 1})
 
 
 def _check_modes(scene: Scene) -> None:

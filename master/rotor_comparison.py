@@ -15,7 +15,7 @@ from pathlib import Path
 from master.errors import TouchdownError
 from master.recording import Recording
 from master.run import run_scene
-from master.scene import Scene, load
+from master.scene import load
 from master.spectra import lines as tallest
 from master.spectra import on_grid, waterfall
 from master.sweep import sweep
@@ -76,13 +76,6 @@ def phases(members: int) -> dict[str, list[str]]:
     return {"rotor.unbalance_angle": [f"{360.0 * i / members:g} deg" for i in range(members)]}
 
 
-def with_all(scene: Scene, settings: Mapping[str, object]) -> Scene:
-    """A copy with all settings."""
-    for name, value in settings.items():
-        scene = scene.with_setting(name, value)
-    return scene
-
-
 def verdicts(ensemble: Sequence[Member]) -> str:
     """How often which verdict came, of the seat that whirls more."""
     found: Counter[str] = Counter()
@@ -116,7 +109,7 @@ def fig_14(members: int, folder: Path, jobs: int, done: Callable[[], object]) ->
     for rpm in (9000, 18000):
         for offset, source in FIG_14.items():
             name = f"rotor1-{rpm}" + (f"-{offset}um" if offset else "")
-            scene = with_all(load(name), {"run.duration": 0.5, **NO_LIMIT})
+            scene = load(name).with_settings({"run.duration": 0.5, **NO_LIMIT})
             ensemble = sweep(scene, phases(members), folder / name, jobs, in_process=True, done=done)
             turns, force = (
                 spread(ensemble, key) for key in ("whirl_A_revolutions", "peak_contact_force_N_bearing_A")
@@ -137,7 +130,7 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
             numbers = "".join(f"{value:>26.4g}" for value in values)
             lines.append(f"{'case ' + row.case + ', source':<32}{numbers}   {verdict}")
             seen = row.case
-        scene = with_all(load(f"rotor2-case{row.case}"), {**row.settings, **NO_LIMIT})
+        scene = load(f"rotor2-case{row.case}").with_settings({**row.settings, **NO_LIMIT})
         name = f"table4-{number}-case{row.case}"
         ensemble = sweep(scene, phases(members), folder / name, jobs, in_process=True, done=done)
         numbers = "".join(f"{spread(ensemble, key):>26}" for key in COLUMNS)

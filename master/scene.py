@@ -103,6 +103,13 @@ class Scene:
             changed = replace(spec, set={**spec.set, tail: value})
         return replace(self, components={**self.components, head: changed})
 
+    def with_settings(self, settings: Mapping[str, object]) -> Scene:
+        """A copy with all of them set, as by `with_setting`, in their order."""
+        scene = self
+        for name, value in settings.items():
+            scene = scene.with_setting(name, value)
+        return scene
+
     def with_swap(self, name: str, fmu: str) -> Scene:
         """A copy with component `name` made of another FMU.
 

@@ -66,7 +66,7 @@ def sweep(
     ]
     width = max(3, len(str(len(settings))))
     tasks = [
-        Task(_with(scene, given), folder / f"{number:0{width}}", in_process, keep)
+        Task(scene.with_settings(given), folder / f"{number:0{width}}", in_process, keep)
         for number, given in enumerate(settings, start=1)
     ]
     ended = _run_all(tasks, min(jobs, len(tasks)), done)
@@ -85,16 +85,10 @@ def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:
     for name, values in variations.items():
         if not values:
             raise TouchdownError(f"{name} has no values to vary over")
-    first = _with(scene, {name: values[0] for name, values in variations.items()})
+    first = scene.with_settings({name: values[0] for name, values in variations.items()})
     for name, values in variations.items():
         for value in values:
             open_system(first.with_setting(name, value), in_process=True).close()
-
-
-def _with(scene: Scene, settings: Mapping[str, object]) -> Scene:
-    for name, value in settings.items():
-        scene = scene.with_setting(name, value)
-    return scene
 
 
 def _run_all(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> dict[int, Ended]:

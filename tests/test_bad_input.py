@@ -18,7 +18,8 @@ import h5py
 import pytest
 from conftest import ROOT
 
-from master.cli import FAILED, STOPPED, main
+from master.cli import main
+from master.errors import FAILED, STOPPED
 from master.scene import SCENES
 
 SCENE = "disk-caged-simplified"

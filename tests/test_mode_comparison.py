@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from master.cli import FAILED, main
-from master.errors import TouchdownError
+from master.cli import main
+from master.errors import FAILED, TouchdownError
 from master.first_impact import AVERAGE, Trace
 from master.mode_comparison import Comparison, compare, parse_modes, runs, write
 from master.mode_report import lines

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from fmus.rotors import Portrait, portrait, rotor, rotors
-from master.cli import FAILED, main
-from master.errors import TouchdownError
+from master.cli import main
+from master.errors import FAILED, TouchdownError
 from master.figures_rotor import campbell, modes, rest
 from master.rotor_report import NO_REST, report, table
 

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 
-from master.cli import FAILED, STOPPED, main
-from master.errors import TouchdownError
+from master.cli import main
+from master.errors import FAILED, STOPPED, TouchdownError
 from master.scene import load
 from master.sweep import sweep
 from master.sweep_report import Member, picked, table, verdict_lines

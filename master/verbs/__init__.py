@@ -1,0 +1,17 @@
+"""The verbs of the command `touchdown`, one module each; `ALL` in the order of its help."""
+
+from __future__ import annotations
+
+from master.verbs import (
+    build,
+    check,
+    compare_bearings,
+    compare_modes,
+    compare_rotors,
+    rotor,
+    run,
+    scenes,
+    sweep,
+)
+
+ALL = (scenes, run, sweep, rotor, compare_bearings, compare_rotors, compare_modes, build, check)

@@ -1,0 +1,40 @@
+"""Build FMUs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from master.errors import TouchdownError
+
+
+def add_to(verbs: Any) -> None:
+    """Add the verb to the command."""
+    verb = verbs.add_parser("build", help="build the FMUs")
+    verb.add_argument(
+        "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
+    )
+    verb.add_argument("-o", "--output", type=Path, default=Path("build"), help="folder (default: build)")
+    verb.set_defaults(run=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from fmus.build import build
+    from fmus.recipes import Recipe, names
+    from master.library import locate
+
+    found = [locate(name) for name in options.names or names()]
+    for name, one in zip(options.names, found, strict=False):
+        if not isinstance(one, Recipe):
+            raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
+    for one in found:
+        assert isinstance(one, Recipe)
+        try:
+            print(build(one, options.output))
+        except OSError as error:
+            raise TouchdownError(
+                f"cannot write to {options.output}: {error.strerror}; choose another folder with -o"
+            ) from None
+    return 0

@@ -1,0 +1,27 @@
+"""Check FMUs."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from master.errors import FAILED
+
+
+def add_to(verbs: Any) -> None:
+    """Add the verb to the command."""
+    verb = verbs.add_parser("check", help="check FMUs: validity, contract, a dry run")
+    verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
+    verb.set_defaults(run=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from master.check import check_fmu
+
+    failed = 0
+    for name in options.fmus:
+        report = check_fmu(name)
+        print(report.text)
+        failed += bool(report.problems)
+    return FAILED if failed else 0
