@@ -89,6 +89,7 @@ class Hidden:
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
     span: float = real(0.0, "s", "how long it still acts in this macro step; negative: not at all")
+    since: float = real(0.0, "s", "from the inputs to the beginning of the present stretch")
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, FY + 1, hidden=Hidden, inputs=Inputs)
@@ -107,6 +108,7 @@ def _law(t, y, m):
     ux, uy = y[seat.JVX] - y[seat.HVX], y[seat.JVY] - y[seat.HVY]
     if p.sensed == 1:  # what the sensor saw at the restart, moved on as the journal moved
         ux, uy = ux + u.vx - j.vx, uy + u.vy - j.vy
+        t += m.s.since
         ex += u.x - j.x + t * (u.vx - j.vx)
         ey += u.y - j.y + t * (u.vy - j.vy)
     fx = _limited(m.o.load_x - p.stiffness * ex - p.damping * ux, p.force_limit)
@@ -140,6 +142,14 @@ def observe(t, y, m):
 
 
 @kernel
+def ready(m, since):
+    """Find how long it still acts in the stretch that begins at m.time."""
+    left = m.p.shutdown_time - m.time
+    m.s.span = -1.0 if left <= ROUNDING else min(left, 2.0 * m.half)
+    m.s.since = since
+
+
+@kernel
 def report(y, m):
     """Work supplied, and whether it is over: no load left in the last macro step, nor to come."""
     m.o.supplied = y[SUPPLIED]
@@ -148,7 +158,7 @@ def report(y, m):
 
 @kernel
 def start(words):
-    """Find the static load that the seat reports."""
+    """Find the static load that the seat reports, and hand it over until the first step is taken."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.y, m)
     j = m.u.journal
@@ -158,6 +168,9 @@ def start(words):
         m.o.load_y = -j.ay_free / j.inv_m
     m.y[FX], m.y[FY] = m.o.load_x, m.o.load_y
     seat.begin(react, report, m)
+    if m.p.shutdown_time > m.time:
+        m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
+        m.o.housing.fx, m.o.housing.fy = -m.o.load_x, -m.o.load_y
 
 
 @kernel
@@ -195,9 +208,7 @@ def advance(words, work, time, step):
     j, u = m.u.journal, m.u.sensor
     if not math.isfinite(u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy):
         return BAD_INPUT
-    left = m.p.shutdown_time - time
-    m.s.span = -1.0 if left <= ROUNDING else min(left, step)
-    return seat.advance(react, integrate, report, m, work, time, step)
+    return seat.advance_timed(ready, react, integrate, report, words, m, work, time, step)
 
 
 def weights(p: Parameters) -> np.ndarray:
@@ -221,7 +232,12 @@ MODEL = Model(
     weights=weights,
     instant=instant,
     starts_from={
-        "load_x": ("journal.ax_free", *_STATIC),
-        "load_y": ("journal.ay_free", *_STATIC),
+        f"{name}{axis}": (f"journal.a{axis}_free", *_STATIC, *when)
+        for axis in "xy"
+        for name, when in (
+            ("load_", ()),
+            ("journal.f", ("shutdown_time",)),
+            ("housing.f", ("shutdown_time",)),
+        )
     },
 )

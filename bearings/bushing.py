@@ -125,7 +125,8 @@ def instant(t, y, dy, m):
 @kernel
 def advance(words, work, time, step):
     """One macro step."""
-    return seat.advance(react, integrate, report, words.view(MEMORY)[0], work, time, step)
+    m = words.view(MEMORY)[0]
+    return seat.advance(react, integrate, report, words, m, work, time, step)
 
 
 def derive(p: Parameters) -> Derived:

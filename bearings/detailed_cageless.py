@@ -182,7 +182,8 @@ def instant(t, y, dy, m):
 def advance(words, work, time, step):
     """One macro step."""
     rows = work.ravel().view(SCRATCH)[0].rows
-    return seat.advance(react, integrate, report, words.view(MEMORY)[0], rows, time, step)
+    m = words.view(MEMORY)[0]
+    return seat.advance(react, integrate, report, words, m, rows, time, step)
 
 
 def derive(p: Parameters) -> Derived:

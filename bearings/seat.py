@@ -123,13 +123,21 @@ def take_inputs(y, m):
     y[JX], y[JY], y[JVX], y[JVY], y[JW] = j.x, j.y, j.vx, j.vy, j.omega
     h = m.u.housing
     y[HX], y[HY], y[HVX], y[HVY] = h.x, h.y, h.vx, h.vy
+    for k in range(m.s.seat.modes):
+        i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
+        y[i + ZX], y[i + ZY], y[i + ZVX], y[i + ZVY] = z.x, z.y, z.vx, z.vy
+    clear(y, m)
+
+
+@kernel
+def clear(y, m):
+    """Clear what is gathered over a macro step: impulse, first moment, work, responses to the load."""
     for i in range(JPX, JE + 1):
         y[i] = 0.0
     for i in range(HFX, HPY + 1):
         y[i] = 0.0
     for k in range(m.s.seat.modes):
-        i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
-        y[i + ZX], y[i + ZY], y[i + ZVX], y[i + ZVY] = z.x, z.y, z.vx, z.vy
+        i = m.s.seat.inside + PER_MODE * k
         y[i + QX], y[i + QY], y[i + PX], y[i + PY] = 0.0, 0.0, 0.0, 0.0
 
 
@@ -308,6 +316,30 @@ def hand_over(y, m, step):
 
 
 @kernel
+def handed_over(m):
+    """The load as it stands in the outputs: on the journal, on the housing, on the modes."""
+    j, h = m.o.journal, m.o.housing
+    found = np.empty(10 + 4 * m.s.seat.modes)
+    found[0], found[1], found[2], found[3], found[4], found[5] = j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz
+    found[6], found[7], found[8], found[9] = h.fx, h.fy, h.dfx, h.dfy
+    for k in range(m.s.seat.modes):
+        i, z = 10 + 4 * k, j.mode[k]
+        found[i], found[i + 1], found[i + 2], found[i + 3] = z.qx, z.qy, z.px, z.py
+    return found
+
+
+@kernel
+def hand_instead(m, load):
+    """Put a load from `handed_over` in the outputs."""
+    j, h = m.o.journal, m.o.housing
+    j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load[0], load[1], load[2], load[3], load[4], load[5]
+    h.fx, h.fy, h.dfx, h.dfy = load[6], load[7], load[8], load[9]
+    for k in range(m.s.seat.modes):
+        i, z = 10 + 4 * k, j.mode[k]
+        z.qx, z.qy, z.px, z.py = load[i], load[i + 1], load[i + 2], load[i + 3]
+
+
+@kernel
 def account_jump(m, load, djx, djy, dhx, dhy):
     """Work missed where the copies were moved by (djx, djy) and (dhx, dhy) at the restart."""
     s = m.s.seat
@@ -344,20 +376,36 @@ def instant(react, t, y, dy, m):
     h.fx, h.fy, h.dfx, h.dfy = load.hx, load.hy, 0.0, 0.0
 
 
+@kernel
+def any_time(m, since):
+    """A bearing whose law does not depend on time has nothing to get ready."""
+
+
 @inlined
-def advance(react, integrate, report, m, work, time, step):
-    """One macro step of a bearing.
+def advance(react, integrate, report, words, m, work, time, step):
+    """One macro step of a bearing whose memory is `words`, seen as the record m.
 
     react(t, y, dy, m) gives the `Load` and the derivative of what is inside; integrate(m, work, step)
     advances the state; report(y, m) fills the outputs that are wanted once per macro step.
+    """
+    return advance_timed(any_time, react, integrate, report, words, m, work, time, step)
+
+
+@inlined
+def advance_timed(ready, react, integrate, report, words, m, work, time, step):
+    """`advance` of a bearing that looks at the clock.
+
+    ready(m, since) prepares it for the stretch of 2 m.half (s) that begins at m.time, `since` (s) after
+    the inputs.
     """
     status = BAD_INPUT
     if finite_inputs(m):
         y = m.y
         m.time = time
+        m.half = 0.5 * step
         jx, jy, hx, hy = y[JX], y[JY], y[HX], y[HY]
         take_inputs(y, m)
-        m.half = 0.5 * step
+        ready(m, 0.0)
         before = react(0.0, y, work[0], m)
         account_jump(m, before, y[JX] - jx, y[JY] - jy, y[HX] - hx, y[HY] - hy)
         remember(m, before)
@@ -366,6 +414,17 @@ def advance(react, integrate, report, m, work, time, step):
         hand_over(y, m, step)
         remember(m, react(step, y, work[0], m))
         report(y, m)
+        if status == OK and m.p.interface.lead == 1:
+            kept = words.copy()
+            m.time = time + step
+            ready(m, step)
+            clear(y, m)
+            _, status, evaluations = integrate(m, work, step)
+            hand_over(y, m, step)
+            ahead = handed_over(m)
+            words[:] = kept
+            m.evaluations += evaluations
+            hand_instead(m, ahead)
         if status == OK and not finite_load(m):
             status = BAD_LOAD
     return status

@@ -101,13 +101,18 @@ class Component(ABC):
         kinds = [self.variable(name).kind for name in names]
         return [int(v) if k == "Integer" else float(v) for v, k in zip(values, kinds, strict=True)]
 
+    can_save = True  # whether its state can be saved
+
     @abstractmethod
     def save(self) -> object:
-        """The whole state, for `restore`."""
+        """The whole state, for `restore`; to be given to `release` when it is not needed any more."""
 
     @abstractmethod
     def restore(self, state: object) -> None:
         """Go back to a saved state."""
+
+    def release(self, state: object) -> None:  # noqa: B027 - most hold nothing outside Python
+        """Free a saved state."""
 
     @abstractmethod
     def close(self) -> None:

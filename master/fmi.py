@@ -139,6 +139,7 @@ class FmuComponent(Component):
         folder = unpack(path, cache)
         description = describe(path, folder)
         super().__init__(name, origin or str(path), variables_of(description))
+        self.can_save = bool(description.coSimulation.canGetAndSetFMUstate)
         self._messages: list[str] = []
         self._open = False
         here = Path.cwd()
@@ -261,6 +262,13 @@ class FmuComponent(Component):
     def restore(self, state: object) -> None:
         assert isinstance(state, ctypes.c_void_p)
         self._guard("restoring its state", lambda: self._fmu.fmi2SetFMUstate(self._component, state))
+
+    def release(self, state: object) -> None:
+        assert isinstance(state, ctypes.c_void_p)
+        self._guard(
+            "freeing a state",
+            lambda: self._fmu.fmi2FreeFMUstate(self._component, ctypes.byref(state)),
+        )
 
     def close(self) -> None:
         if self._open:

@@ -12,6 +12,7 @@ energy lost by falling, m g c). It is a live estimate of the coupling's error.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,7 @@ class Entry:
     """One connection's account."""
 
     attachment: Attachment
+    every: int = 1  # macro steps after which both sides have taken the same time
     last: tuple[float, float, float] = (0.0, 0.0, 0.0)  # work by the bearing, its jumps, work by the body
     pending: float = 0.0  # work difference of the last step, its jump not yet known
     total: float = 0.0  # sum of |r_n|, J
@@ -37,7 +39,10 @@ class Ledger:
     def __init__(self, system: System, scale: float) -> None:
         self.scale = scale  # J; 0: unknown, residuals are then absolute
         self.total = 0.0  # J, sum of |r_n| over all connections and steps
-        self.entries = [Entry(a) for a in system.attachments]
+        self.entries = [
+            Entry(a, math.lcm(system.every[a.bearing], system.every[a.body])) for a in system.attachments
+        ]
+        self._steps = 0
         self.follow(system)
 
     def follow(self, system: System) -> None:
@@ -59,8 +64,11 @@ class Ledger:
 
     def update(self) -> None:
         """Book the macro step that was just taken."""
+        self._steps += 1
         values = self._signals[self._index].tolist()
         for n, entry in enumerate(self._live):
+            if self._steps % entry.every:
+                continue
             bearing, jump, body = values[3 * n : 3 * n + 3]
             last = entry.last
             residual = entry.pending + (jump - last[1])

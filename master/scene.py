@@ -15,6 +15,7 @@ macro_step = 2e-5     # s
 [components.rotor]
 fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
 preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
+every = 2             # macro steps of the run that it takes in one (default: 1)
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
 
@@ -46,6 +47,7 @@ class ComponentSpec:
     fmu: str
     set: Mapping[str, object] = field(default_factory=dict)
     preset: str | None = None  # a named set of parameters, applied first
+    every: int = 1  # macro steps of the run that it takes in one
     inherited: Mapping[str, object] = field(default_factory=dict)
     """Settings of the component it was swapped for; those it has are applied before `set`."""
 
@@ -57,6 +59,7 @@ class RunSpec:
     duration: float = 1.0  # s, from the scene's zero
     macro_step: float = 2e-5  # s
     scheme: str = schemes.DEFAULT
+    tolerance: float = 1e-9  # m, of the interface per macro step, for schemes that repeat or divide it
     record_every: int = 5  # macro steps
     record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
@@ -67,6 +70,7 @@ class RunSpec:
 RUN_UNITS = {
     "duration": "s",
     "macro_step": "s",
+    "tolerance": "m",
     "record_every": "1",
     "warn_residual": "1",
     "stop_residual": "1",
@@ -99,6 +103,8 @@ class Scene:
         spec = self._component(head)
         if tail == "preset":
             changed = replace(spec, preset=_preset(value, head))
+        elif tail == "every":
+            changed = replace(spec, every=_whole(value, name))
         else:
             changed = replace(spec, set={**spec.set, tail: value})
         return replace(self, components={**self.components, head: changed})
@@ -122,7 +128,7 @@ class Scene:
             self,
             components={
                 **self.components,
-                name: ComponentSpec(fmu, inherited={**before.inherited, **before.set}),
+                name: ComponentSpec(fmu, every=before.every, inherited={**before.inherited, **before.set}),
             },
         )
 
@@ -192,11 +198,12 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     for key, table in _table(data.get("components"), f"scene {name}: [components]").items():
         where = f"scene {name}: [components.{key}]"
         table = _table(table, where)
-        _refuse_unknown(table, ("fmu", "preset", "set"), where)
+        _refuse_unknown(table, ("fmu", "preset", "every", "set"), where)
         if not isinstance(table.get("fmu"), str):
             raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
         settings = _flat(_table(table.get("set", {}), where))
-        components[key] = ComponentSpec(table["fmu"], settings, _preset(table.get("preset"), where))
+        preset, every = _preset(table.get("preset"), where), _whole(table.get("every", 1), f"{where} every")
+        components[key] = ComponentSpec(table["fmu"], settings, preset, every)
     if not components:
         raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
     return Scene(
@@ -231,11 +238,17 @@ def _run(changes: Mapping[str, object], run: RunSpec) -> RunSpec:
         if number <= 0.0 or not math.isfinite(number):
             raise TouchdownError(f"run.{key} = {value} must be above 0")
         if key == "record_every":
-            if number != int(number):
-                raise TouchdownError(f"run.record_every = {value} must be a whole number of macro steps")
-            number = int(number)
+            number = _whole(value, f"run.{key}")
         values[key] = number
     return replace(run, **values)
+
+
+def _whole(value: object, name: str) -> int:
+    """A number of macro steps."""
+    number = to_si(value, "1", name)
+    if number < 1.0 or number != int(number):
+        raise TouchdownError(f"{name} = {value} must be a whole number of macro steps")
+    return int(number)
 
 
 def _beginnings(value: object) -> tuple[str, ...]:

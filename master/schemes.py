@@ -1,9 +1,16 @@
 """Coupling schemes: how components exchange motion and load over a macro step.
 
-A bearing is stepped first, from the bodies' state at t_n; the bodies then take the same step under the
-load it handed over (Gauss-Seidel). Schemes differ in how the bearing carries the bodies through the step
-(`order`, the contract's interface.order), in whether the load's slope crosses beside its mean, and in
-whether the elastic modes of a flexible rotor are carried (`interface`) or lumped into a mass.
+A scheme says how a bearing carries the bodies through the step (`order`, the contract's
+interface.order), whether the load's slope crosses beside its mean, whether the elastic modes of a
+flexible rotor are carried, and in which sequence the components are stepped (`master.steppers`):
+
+- gauss-seidel: a bearing is stepped first, from the bodies' state at t_n; the bodies then take the same
+  step under the load it handed over.
+- jacobi: all components are stepped at once, the bodies under the load of the step before; with `lead`
+  the bearing hands over the load of the step to come.
+- iterated: the step is repeated, the bodies' motion prescribed as a parabola through both of its ends,
+  until the ends stay.
+- halving: the step is taken whole and in two halves, and divided where they differ.
 """
 
 from __future__ import annotations
@@ -11,6 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from master.errors import TouchdownError, one_of
+from modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
 
 
 @dataclass(frozen=True)
@@ -19,20 +27,53 @@ class Scheme:
 
     name: str
     title: str
-    order: int  # 0 held, 1 velocity, 2 acceleration extrapolated, 3 interface model
+    order: int  # how motion is carried: HOLD, VELOCITY, ACCELERATION or MODEL of modelkit.ports
     slopes: bool  # whether dfx, dfy, dmz are exchanged
     modes: bool  # whether the bearings carry the rotor's elastic modes
-    order_of_residual: int  # of the macro step, at which the ledger's residual falls
+    error_order: (
+        int  # of the macro step, at which motion and the ledger's residual err; 0: set by tolerance
+    )
+    sequence: str = "gauss-seidel"
+    lead: bool = False  # whether bearings hand over the load of the step to come
 
 
 SCHEMES = {
     scheme.name: scheme
     for scheme in (
-        Scheme("hold", "motion held, mean load", 0, False, False, 1),
-        Scheme("velocity", "velocity extrapolated, mean load", 1, False, False, 2),
-        Scheme("acceleration", "acceleration extrapolated, mean and slope", 2, True, False, 3),
-        Scheme("point-mass", "bodies carried as point masses, mean and slope", 3, True, False, 3),
-        Scheme("interface", "bodies carried with their elastic modes, mean and slope", 3, True, True, 3),
+        Scheme("hold", "motion held, mean load", HOLD, False, False, 1),
+        Scheme("velocity", "velocity extrapolated, mean load", VELOCITY, False, False, 2),
+        Scheme("acceleration", "acceleration extrapolated, mean and slope", ACCELERATION, True, False, 3),
+        Scheme("point-mass", "bodies carried as point masses, mean and slope", MODEL, True, False, 3),
+        Scheme(
+            "interface", "bodies carried with their elastic modes, mean and slope", MODEL, True, True, 3
+        ),
+        Scheme(
+            "iterated", "step repeated until both sides agree", ACCELERATION, True, False, 3, "iterated"
+        ),
+        Scheme("halving", "interface, steps halved to a tolerance", MODEL, True, True, 0, "halving"),
+        Scheme("jacobi-hold", "all at once, motion and load held", HOLD, False, False, 1, "jacobi"),
+        Scheme(
+            "jacobi-velocity", "all at once, velocity extrapolated", VELOCITY, False, False, 1, "jacobi"
+        ),
+        Scheme(
+            "jacobi-interface",
+            "all at once, bodies carried as in interface",
+            MODEL,
+            True,
+            True,
+            1,
+            "jacobi",
+        ),
+        Scheme(
+            "jacobi-lead",
+            "all at once, bearings lead by one step",
+            MODEL,
+            True,
+            True,
+            3,
+            "jacobi",
+            lead=True,
+        ),
     )
 }
 

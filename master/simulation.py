@@ -8,7 +8,7 @@ import threading
 import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from master.component import Component
@@ -19,6 +19,8 @@ from master.library import load
 from master.recording import Recorder
 from master.scene import RunSpec, Scene
 from master.schemes import scheme
+from master.steppers import stepper
+from master.steppers.stepper import Stepper
 from master.system import System, assemble
 
 BEAT = 64  # macro steps between looks at progress, ledger and components that have nothing left to do
@@ -36,6 +38,7 @@ class Outcome:
     residual: float = 0.0  # of the ledger, over its scale
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
     stopped_because: str = ""
+    coupling: dict[str, float] = field(default_factory=dict)  # what the scheme has to say of itself
 
 
 def open_system(scene: Scene, in_process: bool = False) -> System:
@@ -66,6 +69,7 @@ def simulate(
         outcome.zero = system.value(scene.zero) if scene.zero else 0.0
         steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
         system.initialise()
+        coupling = stepper(system, scene.run)
         ledger = Ledger(system, energy_scale(scene, system))
         recorder = None
         if record_to is not None:
@@ -74,7 +78,7 @@ def simulate(
             if recorder is not None:
                 recorder.append(-outcome.zero)
             outcome.start_up = clock.perf_counter() - began
-            _loop(scene, system, steps, ledger, recorder, outcome, progress, watch, interrupted)
+            _loop(scene, system, coupling, steps, ledger, recorder, outcome, progress, watch, interrupted)
         except TouchdownError as error:
             outcome.stopped_because = str(error)
         finally:
@@ -127,6 +131,7 @@ def energy_scale(scene: Scene, system: System) -> float:
 def _loop(
     scene: Scene,
     system: System,
+    stepper: Stepper,
     steps: int,
     ledger: Ledger,
     recorder: Recorder | None,
@@ -143,11 +148,7 @@ def _loop(
             if interrupted.is_set():
                 raise TouchdownError("interrupted")
             time = k * step
-            for name in system.order:
-                system.feed(name)
-                component = system.components[name]
-                component.step(time, step)
-                component.pull()
+            stepper.step(k, time, step)
             ledger.update()
             done = k + 1
             outcome.steps = done
@@ -164,6 +165,7 @@ def _loop(
                 idle = [name for name in system.order if not _has_work(system.components[name])]
                 if idle:
                     system.retire(idle)
+                    stepper.follow()
                     ledger.follow(system)
                     if recorder is not None:
                         recorder.rest(idle)
@@ -171,6 +173,7 @@ def _loop(
     finally:
         outcome.wall_time = clock.perf_counter() - began
         outcome.residual = ledger.residual
+        outcome.coupling = stepper.figures
 
 
 def _has_work(component: Component) -> bool:
@@ -193,8 +196,17 @@ def _judge(scene: Scene, ledger: Ledger, outcome: Outcome) -> float:
     name = worst.attachment.title if worst else "the system"
     raise TouchdownError(
         f"the energy ledger of {name} is off by {ledger.residual:.2g} of the energy lost by falling at "
-        f"t = {time:.6g} s; the macro step of {run.macro_step:g} s is too long for scheme "
-        f"{run.scheme}, try --macro-step {shorter_step(run, ledger.residual):g}"
+        f"t = {time:.6g} s; {_remedy(run, ledger.residual)}"
+    )
+
+
+def _remedy(run: RunSpec, residual: float) -> str:
+    if scheme(run.scheme).error_order == 0:
+        smaller = 0.1 * run.tolerance
+        return f"the tolerance of {run.tolerance:g} m is too large, try --set run.tolerance={smaller:g}"
+    return (
+        f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme}, "
+        f"try --macro-step {shorter_step(run, residual):g}"
     )
 
 
@@ -205,7 +217,7 @@ def shorter_step(run: RunSpec, residual: float) -> float:
     since it grows with every impact.
     """
     wanted = 0.05 * run.stop_residual / residual if math.isfinite(residual) else 0.0
-    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / scheme(run.scheme).order_of_residual)
+    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / scheme(run.scheme).error_order)
     step = min(step, 0.5 * run.macro_step)
     power = 10.0 ** math.floor(math.log10(step))
     return power * max(digit for digit in (1, 2, 5) if digit * power <= step * (1.0 + 1e-9))

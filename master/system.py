@@ -34,6 +34,7 @@ class System:
     attachments: list[Attachment]
     connections: list[Connection]
     settings: dict[tuple[str, str], float]
+    every: dict[str, int]  # macro steps of the run that each component takes in one
     order: list[str] = field(init=False)  # bearings first
     signals: np.ndarray = field(init=False)
     position: dict[tuple[str, str], int] = field(init=False)  # of an output in the signals
@@ -76,9 +77,16 @@ class System:
 
     def feed(self, name: str) -> None:
         """Hand a component its inputs from the signals."""
-        component = self.components[name]
-        component.inputs[:] = self.signals[self.take[name]]
-        component.push()
+        self.take_inputs(name)
+        self.components[name].push()
+
+    def take_inputs(self, name: str) -> None:
+        """Fill a component's inputs from the signals, not yet handing them over."""
+        self.components[name].inputs[:] = self.signals[self.take[name]]
+
+    def inputs_of(self, name: str) -> dict[str, int]:
+        """Where each exchanged input of a component stands in its `inputs`."""
+        return {c.input: i for i, c in enumerate(c for c in self._live() if c.target == name)}
 
     def retire(self, names: Iterable[str]) -> None:
         """Stop exchanging with components that have nothing left to do; what they gave last stays."""
@@ -99,14 +107,18 @@ class System:
                 values |= dict(zip((c.input for c in theirs), found, strict=True))
             self.components[target].set(values)
 
-    def _lay_out(self) -> None:
-        """Give every exchanged output its place in the signals, and bind the components to them."""
-        live = [
+    def _live(self) -> list[Connection]:
+        """Connections that carry something at every step."""
+        return [
             c
             for c in self.connections
             if not self.components[c.source].variable(c.output).constant
             and not self.retired & {c.source, c.target}
         ]
+
+    def _lay_out(self) -> None:
+        """Give every exchanged output its place in the signals, and bind the components to them."""
+        live = self._live()
         outputs: dict[str, dict[str, None]] = {name: {} for name in self.components}
         for c in live:
             outputs[c.source][c.output] = None
@@ -153,7 +165,8 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
                 raise TouchdownError(
                     f"{c.target}.{c.input} cannot be set: it is connected to {c.source}.{c.output}"
                 )
-        return System(components, attachments, connections, settings)
+        every = {name: spec.every for name, spec in scene.components.items()}
+        return System(components, attachments, connections, settings, every)
     except BaseException:
         for component in components.values():
             component.close()
@@ -169,8 +182,9 @@ def _apply_settings(
         optional: dict[str, object] = {**(preset(spec.preset) if spec.preset else {}), **spec.inherited}
         given = {key: value for key, value in optional.items() if key in component.variables}
         values = {key: _checked(component, key, value) for key, value in {**given, **spec.set}.items()}
-        if "interface.order" in component.variables:
-            values.setdefault("interface.order", scheme.order)
+        for key, value in (("interface.order", scheme.order), ("interface.lead", int(scheme.lead))):
+            if key in component.variables:
+                values.setdefault(key, value)
         component.set(values)
         applied |= {(name, key): value for key, value in values.items()}
     return applied

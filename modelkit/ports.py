@@ -181,6 +181,12 @@ class Interface:
         minimum=0,
         maximum=3,
     )
+    lead: int = integer(
+        0,
+        "1: the load handed over is that of the macro step to come, for tools that step all FMUs at once",
+        minimum=0,
+        maximum=1,
+    )
     tolerance: float = real(
         1e-6, "1", "error of one micro-step over the model's scales", above=0.0, maximum=1e-2
     )
