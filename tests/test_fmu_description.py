@@ -190,7 +190,7 @@ def draw(slot: Slot, default: float, chance: random.Random) -> float:
     size = abs(default) or SIZES.get(spec.unit, 1.0)
     value = default + size * chance.uniform(0.02, 0.2)
     if slot.variable.name == "shutdown_time":  # only whether it is over matters at the start
-        return -value
+        return chance.choice((value, -value))
     return default - (value - default) if spec.maximum is not None and value > spec.maximum else value
 
 
