@@ -13,7 +13,14 @@ import numpy as np
 from bearings import seat
 from bearings.contact import ContactLaw, damped, elastic_energy
 from bearings.friction import FrictionLaw, prepared, problem
-from bearings.journal_contact import ContactMemory, ContactReport, touch, watch_contact
+from bearings.journal_contact import (
+    RATE_FROM,
+    ContactMemory,
+    ContactReport,
+    swing_rate,
+    touch,
+    watch_contact,
+)
 from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model
@@ -106,6 +113,7 @@ def start(words):
     """Nothing inside."""
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.y, m)
+    m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
     seat.begin(react, report, m)
 
 
@@ -165,4 +173,5 @@ MODEL = Model(
     derive=derive,
     check=check,
     instant=instant,
+    starts_from={"contact.rate": RATE_FROM},
 )

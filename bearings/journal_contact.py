@@ -65,6 +65,12 @@ class ContactReport:
     first_speed: float = real(0.0, "m/s", "speed of the journal at the first contact", local=True)
     first_x: float = real(0.0, "m", "journal position at the first contact", local=True)
     first_y: float = real(0.0, "m", "journal position at the first contact", local=True)
+    rate: float = real(
+        0.0,
+        "rad/s",
+        "at which the journal swings on its contact, indented as expected",
+        constant=True,
+    )
 
 
 @dataclass(frozen=True)
@@ -79,6 +85,16 @@ class ContactMemory:
     vx: float = real(0.0, "m/s", "journal")
     vy: float = real(0.0, "m/s", "journal")
     left: float = real(0.0, "1", "1: the journal has left the ring after its first contact")
+
+
+RATE_FROM = ("contact.stiffness", "contact.exponent", "contact.expected_indentation", "journal.inv_m")
+
+
+@kernel
+def swing_rate(law, inv_m):
+    """Angular frequency (rad/s) of a journal of `inv_m` (1/kg) on a contact indented as expected."""
+    slope = law.exponent * law.stiffness * law.expected_indentation ** (law.exponent - 1.0)
+    return math.sqrt(slope * inv_m)
 
 
 @kernel

@@ -8,7 +8,7 @@ from bearings import ring, seat
 from bearings.balls import BallReport, BallSet, Coordinates, RaceStiffness
 from bearings.contact import ContactLaw
 from bearings.friction import FrictionLaw
-from bearings.journal_contact import ContactMemory, ContactReport
+from bearings.journal_contact import RATE_FROM, ContactMemory, ContactReport, swing_rate
 from modelkit.kernel import kernel
 from modelkit.ports import Energy, Interface, MountReaction, SeatReaction
 from modelkit.variables import group, real
@@ -57,7 +57,8 @@ class RollingDerived:
 
 @kernel
 def state_constants(m):
-    """Outputs that parameters fix."""
+    """Outputs that do not change."""
+    m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
     given, o = m.d.stiffness, m.o.stiffness
     o.inner, o.outer, o.series = given.inner, given.outer, given.series
     counted, o = m.d.size, m.o.size
@@ -79,6 +80,7 @@ def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:
     known: dict[str, tuple[str, ...]] = {
         f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")
     }
+    known["contact.rate"] = RATE_FROM
     return known | {f"size.{name}": ("balls.count",) for name in counted}
 
 

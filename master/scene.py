@@ -59,7 +59,7 @@ class RunSpec:
     duration: float = 1.0  # s, from the scene's zero
     macro_step: float = 2e-5  # s
     scheme: str = schemes.DEFAULT
-    tolerance: float = 1e-9  # m, of the interface per macro step, for schemes that repeat or divide it
+    tolerance: float = 1e-10  # m, of the interface per macro step, for schemes that repeat or divide it
     record_every: int = 5  # macro steps
     record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end

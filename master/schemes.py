@@ -30,52 +30,29 @@ class Scheme:
     order: int  # how motion is carried: HOLD, VELOCITY, ACCELERATION or MODEL of modelkit.ports
     slopes: bool  # whether dfx, dfy, dmz are exchanged
     modes: bool  # whether the bearings carry the rotor's elastic modes
-    error_order: (
-        int  # of the macro step, at which motion and the ledger's residual err; 0: set by tolerance
-    )
+    error_order: int  # of motion and of the ledger in the macro step; 0: a tolerance sets the error
+    bears: float  # rad, of the journal's swing on its contact in a macro step (`master.advisor`)
     sequence: str = "gauss-seidel"
     lead: bool = False  # whether bearings hand over the load of the step to come
 
 
-SCHEMES = {
-    scheme.name: scheme
-    for scheme in (
-        Scheme("hold", "motion held, mean load", HOLD, False, False, 1),
-        Scheme("velocity", "velocity extrapolated, mean load", VELOCITY, False, False, 2),
-        Scheme("acceleration", "acceleration extrapolated, mean and slope", ACCELERATION, True, False, 3),
-        Scheme("point-mass", "bodies carried as point masses, mean and slope", MODEL, True, False, 3),
-        Scheme(
-            "interface", "bodies carried with their elastic modes, mean and slope", MODEL, True, True, 3
-        ),
-        Scheme(
-            "iterated", "step repeated until both sides agree", ACCELERATION, True, False, 3, "iterated"
-        ),
-        Scheme("halving", "interface, steps halved to a tolerance", MODEL, True, True, 0, "halving"),
-        Scheme("jacobi-hold", "all at once, motion and load held", HOLD, False, False, 1, "jacobi"),
-        Scheme(
-            "jacobi-velocity", "all at once, velocity extrapolated", VELOCITY, False, False, 1, "jacobi"
-        ),
-        Scheme(
-            "jacobi-interface",
-            "all at once, bodies carried as in interface",
-            MODEL,
-            True,
-            True,
-            1,
-            "jacobi",
-        ),
-        Scheme(
-            "jacobi-lead",
-            "all at once, bearings lead by one step",
-            MODEL,
-            True,
-            True,
-            3,
-            "jacobi",
-            lead=True,
-        ),
-    )
-}
+def _table(*rows: Scheme) -> dict[str, Scheme]:
+    return {row.name: row for row in rows}
+
+
+SCHEMES = _table(
+    Scheme("hold", "motion held, mean load", HOLD, False, False, 1, 0.01),
+    Scheme("velocity", "velocity extrapolated, mean load", VELOCITY, False, False, 2, 0.08),
+    Scheme("acceleration", "acceleration extrapolated, mean and slope", ACCELERATION, True, False, 3, 0.2),
+    Scheme("point-mass", "bodies carried as point masses, mean and slope", MODEL, True, False, 3, 0.5),
+    Scheme("interface", "bodies carried with their modes, mean and slope", MODEL, True, True, 3, 3.0),
+    Scheme("iterated", "repeated until both sides agree", ACCELERATION, True, False, 3, 0.35, "iterated"),
+    Scheme("halving", "interface, steps halved to a tolerance", MODEL, True, True, 0, 3.0, "halving"),
+    Scheme("jacobi-hold", "all at once, motion and load held", HOLD, False, False, 1, 0.004, "jacobi"),
+    Scheme("jacobi-velocity", "all at once, velocity", VELOCITY, False, False, 1, 0.005, "jacobi"),
+    Scheme("jacobi-interface", "all at once, interface", MODEL, True, True, 1, 0.005, "jacobi"),
+    Scheme("jacobi-lead", "all at once, bearings lead", MODEL, True, True, 3, 1.5, "jacobi", lead=True),
+)
 
 DEFAULT = "interface"
 

@@ -19,6 +19,7 @@ from master.library import load
 from master.recording import Recorder
 from master.scene import RunSpec, Scene
 from master.schemes import scheme
+from master.step_sizes import shorter_step
 from master.steppers import stepper
 from master.steppers.stepper import Stepper
 from master.system import System, assemble
@@ -208,16 +209,3 @@ def _remedy(run: RunSpec, residual: float) -> str:
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme}, "
         f"try --macro-step {shorter_step(run, residual):g}"
     )
-
-
-def shorter_step(run: RunSpec, residual: float) -> float:
-    """A macro step (s), 1, 2 or 5 times a power of ten, with which the ledger should hold.
-
-    From the order at which the scheme's residual falls with the step, to a twentieth of the threshold,
-    since it grows with every impact.
-    """
-    wanted = 0.05 * run.stop_residual / residual if math.isfinite(residual) else 0.0
-    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / scheme(run.scheme).error_order)
-    step = min(step, 0.5 * run.macro_step)
-    power = 10.0 ** math.floor(math.log10(step))
-    return power * max(digit for digit in (1, 2, 5) if digit * power <= step * (1.0 + 1e-9))

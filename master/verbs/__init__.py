@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from master.verbs import (
+    advise,
     build,
     check,
     compare_bearings,
@@ -14,4 +15,4 @@ from master.verbs import (
     sweep,
 )
 
-ALL = (scenes, run, sweep, rotor, compare_bearings, compare_rotors, compare_modes, build, check)
+ALL = (scenes, run, advise, sweep, rotor, compare_bearings, compare_rotors, compare_modes, build, check)

@@ -18,7 +18,7 @@ def add_to(verbs: Any) -> None:
     verb.add_argument("scene", help="name of a scene, or path of a .toml")
     verb.add_argument("-o", "--output", type=Path, help="folder for the results (default: runs/SCENE)")
     verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})")
-    verb.add_argument("--macro-step", help='macro step, in s or as text such as "20 us"')
+    verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
     verb.add_argument(
         "--set", action="append", default=[], metavar="NAME=VALUE", help="set run.KEY or COMPONENT.VARIABLE"
     )
@@ -34,6 +34,7 @@ def add_to(verbs: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
+    from master.advisor import advise
     from master.run import run_scene
     from master.scene import load
     from master.summary import table
@@ -45,7 +46,11 @@ def execute(options: argparse.Namespace) -> int:
         chosen = chosen.with_setting(*assignment(text, "--set"))
     if options.scheme is not None:
         chosen = chosen.with_setting("run.scheme", options.scheme)
-    if options.macro_step is not None:
+    if options.macro_step == "auto":
+        advice = advise(chosen)[chosen.run.scheme]
+        print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
+        chosen = chosen.with_setting("run.macro_step", advice.macro_step)
+    elif options.macro_step is not None:
         chosen = chosen.with_setting("run.macro_step", options.macro_step)
     result = run_scene(
         chosen,

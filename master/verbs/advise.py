@@ -1,0 +1,33 @@
+"""Say which macro steps the schemes bear in a scene."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from master.verbs.arguments import assignment
+
+
+def add_to(verbs: Any) -> None:
+    """Add the verb to the command."""
+    verb = verbs.add_parser("advise", help="which macro step each coupling scheme bears in a scene")
+    verb.add_argument("scene", help="name of a scene, or path of a .toml")
+    verb.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="set COMPONENT.VARIABLE"
+    )
+    verb.set_defaults(run=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from master.advisor import advise
+    from master.scene import load
+    from master.schemes import SCHEMES
+
+    chosen = load(options.scene).with_settings(dict(assignment(text, "--set") for text in options.set))
+    found = advise(chosen, SCHEMES)
+    print(f"{chosen.name}: {found[chosen.run.scheme].reason}")
+    for name, advice in found.items():
+        scheme = SCHEMES[name]
+        print(f"  {name:<18}{1e6 * advice.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")
+    return 0
