@@ -14,7 +14,7 @@ import numpy as np
 
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
-from modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState
+from modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState, PointMotion
 from modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from modelkit.variables import array, group, groups, integer, real
 from rotor import modal_motion, stress_report
@@ -67,21 +67,11 @@ class StationState(FlexibleSeatState):
 
 
 @dataclass(frozen=True)
-class SensorState:
-    """Motion where a sensor looks."""
-
-    x: float = real(0.0, "m", "horizontal position", nominal=1e-4)
-    y: float = real(0.0, "m", "vertical position", nominal=1e-4)
-    vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
-    vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
-
-
-@dataclass(frozen=True)
 class Outputs:
     """Motion at the stations, stresses, energy."""
 
     station: tuple = groups(StationState, MOST_STATIONS)
-    sensor: tuple = groups(SensorState, MOST_STATIONS)
+    sensor: tuple = groups(PointMotion, MOST_STATIONS)
     energy: Energy = group(Energy)
     stress: stress_report.StressReport = group(stress_report.StressReport)
     node: tuple = groups(stress_report.NodeStress, MOST_NODES)
