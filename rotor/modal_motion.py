@@ -24,9 +24,9 @@ import numpy as np
 from modelkit import oscillator
 from modelkit.kernel import kernel
 from modelkit.ports import MODES
+from rotor.drag import drag
 
 ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
-DRAG_SPEED = 0.1  # rad/s; below it the constant drag torque fades, so that it cannot reverse the spin
 
 
 @kernel
@@ -40,12 +40,6 @@ def modal(y, m):
 def rest(y, m):
     """What is behind them: angle, spin, loss, work."""
     return y[4 * m.d.modes :]
-
-
-@kernel
-def drag(spin, p):
-    """Torque (N m) against the spin."""
-    return p.drag * math.tanh(spin / DRAG_SPEED) + p.viscous_drag * spin
 
 
 @kernel
