@@ -184,7 +184,7 @@ def start(words):
 def _state_constants(m, j):
     """What stays at station j; modes that share a place there become one of the same static flexibility."""
     d, o = m.d, m.o.station[j]
-    o.static_fx, o.static_fy = d.static_fx[j], d.static_fy[j]
+    o.static_fy = d.static_fy[j]
     o.inv_m = d.inv_m[j]
     o.inv_I = 1.0 / d.inertia
     for i in range(int(d.slots[j])):

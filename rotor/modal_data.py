@@ -37,8 +37,7 @@ class Derived:
     inertia: float = real(0.0, "kg.m2", "polar")
     damping_ratio: float = real(0.0, "1", "of the elastic modes")
     inv_m: np.ndarray = array(MOST_STATIONS)
-    static_fx: np.ndarray = array(MOST_STATIONS)
-    static_fy: np.ndarray = array(MOST_STATIONS)
+    static_fy: np.ndarray = array(MOST_STATIONS)  # N, holds the rotor at rest at the start
     sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start
     stiffness: np.ndarray = array(MOST_MODES)  # omega^2
     damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega
