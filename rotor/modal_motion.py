@@ -79,13 +79,8 @@ def accelerate(y, m, s, ax, ay):
     loads(m, s, False, ax, ay)
     reaction, inertia = 0.0, d.inertia
     for k in range(n):
-        gvx, gvy, gpx, gpy = 0.0, 0.0, 0.0, 0.0
-        for i in range(n):
-            g = d.polar[k, i]
-            gvx += g * vx[i]
-            gvy += g * vy[i]
-            gpx += g * px[i]
-            gpy += g * py[i]
+        gvx, gvy = _polar(m, k, vx, vy)
+        gpx, gpy = _polar(m, k, px, py)
         wx, wy = _unbalance(m, k, c, sn)
         ax[k] += spin * spin * wx - d.stiffness[k] * px[k] - d.damping[k] * vx[k] - spin * gvy
         ay[k] += spin * spin * wy - d.stiffness[k] * py[k] - d.damping[k] * vy[k] + spin * gvx
@@ -93,14 +88,21 @@ def accelerate(y, m, s, ax, ay):
         inertia += (gpx - wx) * wx + (gpy - wy) * wy
     alpha = (moment(m, s) - drag(spin, m.p) - reaction) / inertia
     for k in range(n):
-        gpx, gpy = 0.0, 0.0
-        for i in range(n):
-            gpx += d.polar[k, i] * px[i]
-            gpy += d.polar[k, i] * py[i]
+        gpx, gpy = _polar(m, k, px, py)
         wx, wy = _unbalance(m, k, c, sn)
         ax[k] += alpha * (wy - gpy)
         ay[k] += alpha * (gpx - wx)
     return alpha
+
+
+@kernel
+def _polar(m, k, x, y):
+    """Component k of G x and of G y."""
+    gx, gy = 0.0, 0.0
+    for i in range(m.d.modes):
+        gx += m.d.polar[k, i] * x[i]
+        gy += m.d.polar[k, i] * y[i]
+    return gx, gy
 
 
 @kernel
@@ -258,10 +260,7 @@ def _add_spin_up(y, m, alpha, force):
     """i alpha G p, all but constant over a macro step."""
     px, py, _, _ = modal(y, m)
     for k in range(m.d.modes):
-        gpx, gpy = 0.0, 0.0
-        for i in range(m.d.modes):
-            gpx += m.d.polar[k, i] * px[i]
-            gpy += m.d.polar[k, i] * py[i]
+        gpx, gpy = _polar(m, k, px, py)
         force[0, k] -= alpha * gpy
         force[1, k] += alpha * gpx
 
