@@ -6,6 +6,7 @@ motion are those of `rotor.modal_motion`; what the kernels read is prepared in `
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, replace
 from functools import partial
@@ -215,8 +216,7 @@ def _inputs(m):
 def advance(words, work, time, step):
     """One macro step under the given loads."""
     m = words.view(MEMORY)[0]
-    total = _inputs(m)
-    if total - total != 0.0:  # infinite or not a number
+    if not math.isfinite(_inputs(m)):
         return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
@@ -226,7 +226,7 @@ def advance(words, work, time, step):
     if m.p.stress.active:
         stress_report.report(m.y, m, time + step)
     told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
-    return OK if modal_motion.finite(m.y, m) and np.isfinite(told) else BAD_LOAD
+    return OK if modal_motion.finite(m.y, m) and math.isfinite(told) else BAD_LOAD
 
 
 def derive(shaft: Shaft, p: Parameters) -> Derived:
