@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -55,9 +56,9 @@ def memory_layout(
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Model:
-    """A component: its declarations and its kernels.
+    """A component: its declarations and its kernels. A model is equal to itself only.
 
     Kernels see one record `m`: parameters m.p, inputs m.u, outputs m.o, derived constants m.d, hidden
     memory m.s, the state m.y with m.n components in use, m.weight (error weights), m.time (s) at the
@@ -108,8 +109,12 @@ class Slot:
     index: int
 
 
-def slots(model: Model) -> list[Slot]:
-    """All exposed variables of `model`: parameters, inputs, outputs, in memory order."""
+@cache
+def slots(model: Model) -> tuple[Slot, ...]:
+    """All exposed variables of `model`: parameters, inputs, outputs, in memory order.
+
+    Found once for each model: a rotor has more than a thousand.
+    """
     found: list[Slot] = []
     for part, kind, causality in (
         ("p", model.parameters, "parameter"),
@@ -122,17 +127,7 @@ def slots(model: Model) -> list[Slot]:
             name = model.rename(v.name)
             if name is not None:
                 found.append(Slot(replace(v, name=name), causality, offset + i))
-    return found
-
-
-_known: dict[int, tuple[Model, list[Slot]]] = {}
-
-
-def _slots(model: Model) -> list[Slot]:
-    """`slots`, computed once for each model: a rotor has more than a thousand."""
-    if id(model) not in _known:
-        _known[id(model)] = model, slots(model)
-    return _known[id(model)][1]
+    return tuple(found)
 
 
 class Instance:
@@ -148,7 +143,7 @@ class Instance:
         self.reals = raw.cast("d")
         self.integers = raw.cast("q")
         self.work = dopri.scratch(len(self.memory["y"][0]))
-        self.slots = _slots(model)
+        self.slots = slots(model)
         self._bytes = raw
 
     @property
