@@ -37,7 +37,10 @@ def memory_layout(
     derived: type = Nothing,
     hidden: type = Nothing,
 ) -> np.dtype:
-    """Everything an instance is, as one record of 8-byte words: saving it is copying its bytes."""
+    """Everything an instance is, as one record of 8-byte words.
+
+    Derived constants come last: what stands before them is the state, and saving it is copying its bytes.
+    """
     return np.dtype(
         [
             ("time", "f8"),
@@ -48,10 +51,10 @@ def memory_layout(
             ("p", layout(parameters)),
             ("u", layout(inputs)),
             ("o", layout(outputs)),
-            ("d", layout(derived)),
             ("s", layout(hidden)),
             ("y", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
+            ("d", layout(derived)),
         ]
     )
 
@@ -131,7 +134,10 @@ def slots(model: Model) -> tuple[Slot, ...]:
 
 
 class Instance:
-    """A model with its memory. The FMU and the in-process component both drive this class."""
+    """A model with its memory. The FMU and the in-process component both drive this class.
+
+    `state` is the part of the memory that changes, parameters included; the rest follows from them.
+    """
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -144,7 +150,11 @@ class Instance:
         self.integers = raw.cast("q")
         self.work = dopri.scratch(len(self.memory["y"][0]))
         self.slots = slots(model)
-        self._bytes = raw
+        fields: Any = model.memory.fields
+        self.state = raw[: fields["d"][1]]
+        self._parameters = raw[fields["p"][1] : fields["u"][1]]
+        self._derived_from = b""  # the parameters m.d belongs to
+        self._outdated = False  # m.d belongs to others than m.p
 
     @property
     def record(self) -> Any:
@@ -157,13 +167,7 @@ class Instance:
         Raises ModelError where a parameter or an input is out of bounds.
         """
         self._check_bounds()
-        model, m = self.model, self.memory[0]
-        parameters = from_record(model.parameters, m["p"])
-        problem = model.check(parameters)
-        if problem:
-            raise ModelError(problem)
-        if model.derive is not None:
-            self.memory["d"] = np.array([as_tuple(model.derive(parameters))], layout(model.derived))
+        model, parameters = self.model, self._derive()
         self.memory["o"] = np.array([as_tuple(model.outputs())], layout(model.outputs))
         self.memory["s"] = np.array([as_tuple(model.hidden())], layout(model.hidden))
         self.memory["y"] = 0.0
@@ -180,17 +184,35 @@ class Instance:
         """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
             raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
+        if self._outdated:
+            self._derive()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
             raise ModelError(self._why(status, time, step))
 
     def save(self) -> bytes:
-        """The whole state."""
-        return self._bytes.tobytes()
+        """A copy of the state; constants that follow from its parameters are left out."""
+        return self.state.tobytes()
 
-    def restore(self, state: bytes) -> None:
-        """Go back to what `save` returned."""
-        self._bytes[:] = state
+    def restore(self, state: bytes | memoryview) -> None:
+        """Go back to what `save` returned, here or in another instance of the same model.
+
+        Where the parameters are others than before, constants are derived again ahead of the next step.
+        """
+        self.state[:] = state
+        self._outdated = self._parameters != self._derived_from
+
+    def _derive(self) -> Any:
+        """Compute from the parameters what follows from them; returns them."""
+        model = self.model
+        parameters = from_record(model.parameters, self.memory[0]["p"])
+        problem = model.check(parameters)
+        if problem:
+            raise ModelError(problem)
+        if model.derive is not None:
+            self.memory["d"] = np.array([as_tuple(model.derive(parameters))], layout(model.derived))
+        self._derived_from, self._outdated = self._parameters.tobytes(), False
+        return parameters
 
     def _check_bounds(self) -> None:
         for slot in self.slots:
