@@ -267,31 +267,30 @@ def exposed(shaft: Shaft, name: str) -> str | None:
 
 
 def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
+    """All nodes start alike but for the sag, and no elastic mode moves yet."""
     basis = ("modes", "residual")
-    motion = (*basis, "x", "y", "vx", "vy", "gravity")
-    turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle", "damping_ratio")
-    found = {
-        "energy.kinetic": (*motion, "speed", "unbalance_scale", "unbalance_angle"),
-        "energy.potential": motion,
-    }
+    sag = (*basis, "gravity") if shaft.levitated_at else ()
+    turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
     loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz")]
+    accelerations = (*basis, "gravity", *turning, *loads)
+    found = {
+        "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle"),
+        "energy.potential": tuple(dict.fromkeys(("y", "gravity", *sag))),
+    }
+    for place in (*shaft.stations, *shaft.sensors):
+        found |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
+        found[f"{place.name}.y"] = ("y", *sag)
     for s in shaft.stations:
-        found |= {f"{s.name}.{name}": motion for name in ("x", "y", "vx", "vy")}
-        accelerations = (*motion, *turning, *loads)
         found |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
-        found |= {
-            f"{s.name}.inv_m": basis,
-            f"{s.name}.omega": ("speed",),
-            f"{s.name}.static_fy": ("gravity",),
-        }
+        found |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
+        if s.name in shaft.levitated_at:
+            found[f"{s.name}.static_fy"] = ("gravity",)
         for k in range(1, MODES + 1):
             mode = f"{s.name}.mode[{k}]"
-            found |= {f"{mode}.{name}": motion for name in ("x", "y", "vx", "vy")}
+            found[f"{mode}.y"] = sag
             found |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
             found |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
             found[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
-    for s in shaft.sensors:
-        found |= {f"{s.name}.{name}": motion for name in ("x", "y", "vx", "vy")}
     return found
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from modelkit.ports import MODES
 from modelkit.variables import array, integer, real
-from rotor.assembly import assemble, translation
 from rotor.modes import RIGID, Basis, basis
 from rotor.shaft import MOST_NODES, MOST_STATIONS, Shaft
 from rotor.stresses import recovery
@@ -80,7 +79,8 @@ def prepare(
     n = len(found.omega)
     shape = found.deflections([s.node for s in shaft.stations])
     sensed = found.deflections([s.node for s in shaft.sensors])
-    weight = found.shapes.T @ assemble(shaft).mass @ translation(shaft)
+    weight = np.zeros(n)
+    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
     static = static_forces(shaft, gravity)
     slots, slot = _slots(shape)
     principal, turned = np.linalg.eigh(found.gyroscopic)

@@ -389,6 +389,27 @@ def test_a_mode_load_leaves_the_angular_momentum() -> None:
 # --- start
 
 
+def test_gravity_pulls_the_translation_only() -> None:
+    """And translation turns no section: exactly, so that no rounding error is told of as a cause."""
+    rotor = started(modes=20)
+    d = rotor.record["d"]
+    assert np.flatnonzero(d["weight"]).tolist() == [0]
+    assert d["weight"][0] == pytest.approx(math.sqrt(SHAFT.mass), rel=1e-15)
+    assert not d["polar"][0].any()
+    assert not d["polar"][:, 0].any()
+    assert np.count_nonzero(d["polar"]) > 100
+
+
+def test_a_rotor_that_nothing_holds_falls_straight_and_unbent() -> None:
+    """All modes of a stub that spins, and has no unbalance."""
+    rotor = started(model=flexible_rotor(parse(STUB, "stub.toml"), "stub"), modes=0, speed=FAST)
+    run(rotor, 50, 1e-4)
+    for o in (*rotor.record["o"]["station"][:2], rotor.record["o"]["sensor"][0]):
+        assert o["y"] == pytest.approx(-0.5 * G * 5e-3**2, rel=1e-12)
+        assert o["x"] == 0.0
+    assert not coordinates(rotor)[0][1:].any()
+
+
 def test_it_starts_at_rest_in_its_magnetic_bearings() -> None:
     """They carry the weight without a moment, bent as the rotor is; nothing accelerates anywhere."""
     rotor = Instance(MODEL)
