@@ -81,6 +81,29 @@ def test_a_state_with_parameters_that_cannot_be_says_so() -> None:
         instance.step(0.0, STEP)
 
 
+@pytest.mark.parametrize("name", ["bushing", "simplified_caged", "amb"])
+@pytest.mark.parametrize("field", ["x", "y", "vx", "vy", "ax_free", "ay_free"])
+def test_a_mode_whose_motion_is_not_finite_is_named(name: str, field: str) -> None:
+    """Of those that the journal has; what stands in places not in use is not read."""
+    instance = Instance(recipe(name).model)
+    modes = instance.record["u"]["journal"]["mode"]
+    modes[0]["inv_m"], modes[0]["k_over_m"] = 0.3, 1e8
+    instance.record["u"]["journal"]["inv_m"] = 1.0
+    instance.start(0.0)
+    modes[1][field] = np.nan
+    instance.step(0.0, STEP)
+    modes[0][field] = np.nan
+    with pytest.raises(ModelError, match=rf"input journal\.mode\[1\]\.{field} is nan"):
+        instance.step(STEP, STEP)
+
+
+def test_a_mode_load_that_is_not_finite_is_named() -> None:
+    instance = started(recipe("rotor_I").model)
+    instance.record["u"]["station"][1]["mode"][2]["py"] = np.inf
+    with pytest.raises(ModelError, match=r"input B\.mode\[3\]\.py is inf"):
+        instance.step(0.0, STEP)
+
+
 def test_models_are_told_apart_and_their_variables_found_once() -> None:
     model, other = recipe("rotor_I").model, recipe("rotor_I").model
     assert model != other
