@@ -20,7 +20,15 @@ from bearings import seat
 from modelkit import dopri
 from modelkit.kernel import kernel
 from modelkit.model import Model
-from modelkit.ports import FlexibleSeatMotion, Interface, Load, MountMotion, MountReaction, SeatReaction
+from modelkit.ports import (
+    FlexibleSeatMotion,
+    Interface,
+    Load,
+    MountMotion,
+    MountReaction,
+    PointMotion,
+    SeatReaction,
+)
 from modelkit.status import BAD_INPUT, OK
 from modelkit.variables import group, integer, real
 
@@ -53,22 +61,12 @@ class HeldMotion(FlexibleSeatMotion):
 
 
 @dataclass(frozen=True)
-class Sensed:
-    """Motion where the sensor looks, at the beginning of the macro step."""
-
-    x: float = real(0.0, "m", "horizontal position", nominal=1e-4)
-    y: float = real(0.0, "m", "vertical position", nominal=1e-4)
-    vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
-    vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
-
-
-@dataclass(frozen=True)
 class Inputs:
     """Motion of journal, stator and sensor."""
 
     journal: HeldMotion = group(HeldMotion)
     housing: MountMotion = group(MountMotion)
-    sensor: Sensed = group(Sensed)
+    sensor: PointMotion = group(PointMotion)
 
 
 @dataclass(frozen=True)

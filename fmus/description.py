@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from xml.etree.ElementTree import Element, SubElement, tostring
 
@@ -101,7 +101,7 @@ def describe(model: Model, identifier: str, log_categories: Mapping[str, str]) -
     return root
 
 
-def _units(root: Element, exposed: list[Slot]) -> None:
+def _units(root: Element, exposed: Sequence[Slot]) -> None:
     definitions = SubElement(root, "UnitDefinitions")
     for unit in sorted({s.variable.spec.unit for s in exposed if s.variable.spec.kind == "real"}):
         element = SubElement(definitions, "Unit", {"name": unit})
@@ -153,7 +153,7 @@ def _variable(slot: Slot) -> Element:
     return scalar
 
 
-def _structure(root: Element, model: Model, exposed: list[Slot]) -> None:
+def _structure(root: Element, model: Model, exposed: Sequence[Slot]) -> None:
     """Outputs follow from the state (a step must pass); initial unknowns from what the model names."""
     structure = SubElement(root, "ModelStructure")
     position = {slot.variable.name: i + 1 for i, slot in enumerate(exposed)}

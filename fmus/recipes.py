@@ -18,7 +18,7 @@ from modelkit.model import Model
 from rotor.flexible import flexible_rotor
 from rotor.rotor_file import parse, read, shipped
 
-_ROTOR_SCRIPT = '''"""FMU: flexible rotor from {file}."""
+_ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
 from fmus.slave import ModelSlave
 from rotor.flexible import flexible_rotor

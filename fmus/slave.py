@@ -3,7 +3,8 @@
 What pythonfmu leaves open is closed here. Its C++ side must never see an exception it did not ask for,
 so a failed step is logged and answered with False; where only an exception can report failure
 (initialisation), the references that its clean-up drops twice are held once more. The whole state of
-an instance is one block of memory, so saving it is copying bytes. Vectors are answered whole.
+an instance is one block of memory, so saving it is copying bytes; what follows from the parameters in it
+is derived again where they are others. Vectors are answered whole.
 """
 
 from __future__ import annotations
@@ -136,17 +137,17 @@ class ModelSlave(Fmi2Slave):
 
     def _get_fmu_state(self) -> bytes:  # type: ignore[override]
         status = b"I" if self._initialising else b"F" if self._failed else b"S"
-        return self._identity + status + self._instance.save()
+        return b"".join((self._identity, status, self._instance.state))
 
     def _set_fmu_state(self, state: bytes) -> None:  # type: ignore[override]
         own = self._identity
-        expected = len(own) + 1 + len(self._instance.save())
-        if len(state) != expected or not state.startswith(own):
+        head = len(own) + 1
+        if len(state) != head + len(self._instance.state) or not state.startswith(own):
             self._fail("the state to restore is not one of this FMU")
             return
-        status = state[len(own) : len(own) + 1]
-        self._instance.restore(state[len(own) + 1 :])
-        self._initialising = status == b"I"
+        status = state[len(own) : head]
+        self._instance.restore(memoryview(state)[head:])
+        self._initialising = self._stale = status == b"I"
         self._failed = self._failed or "restored a failed state" if status == b"F" else ""
         self._known.clear()
 

@@ -22,7 +22,7 @@ def nothing_to_watch(t, y, m):
 def advance(rhs, publish, m, work, time, step, load):
     """One macro step; `load` is the sum of all inputs, by which one that is not finite is noticed."""
     status = BAD_INPUT
-    if load - load == 0.0:  # false for infinities and NaN
+    if math.isfinite(load):
         m.time = time
         m.half = 0.5 * step
         m.h, status, evaluations = dopri.integrate(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,10 @@ def memory_layout(
     derived: type = Nothing,
     hidden: type = Nothing,
 ) -> np.dtype:
-    """Everything an instance is, as one record of 8-byte words: saving it is copying its bytes."""
+    """Everything an instance is, as one record of 8-byte words.
+
+    Derived constants come last: what stands before them is the state, and saving it is copying its bytes.
+    """
     return np.dtype(
         [
             ("time", "f8"),
@@ -47,17 +51,17 @@ def memory_layout(
             ("p", layout(parameters)),
             ("u", layout(inputs)),
             ("o", layout(outputs)),
-            ("d", layout(derived)),
             ("s", layout(hidden)),
             ("y", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
+            ("d", layout(derived)),
         ]
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Model:
-    """A component: its declarations and its kernels.
+    """A component: its declarations and its kernels. A model is equal to itself only.
 
     Kernels see one record `m`: parameters m.p, inputs m.u, outputs m.o, derived constants m.d, hidden
     memory m.s, the state m.y with m.n components in use, m.weight (error weights), m.time (s) at the
@@ -108,8 +112,12 @@ class Slot:
     index: int
 
 
-def slots(model: Model) -> list[Slot]:
-    """All exposed variables of `model`: parameters, inputs, outputs, in memory order."""
+@cache
+def slots(model: Model) -> tuple[Slot, ...]:
+    """All exposed variables of `model`: parameters, inputs, outputs, in memory order.
+
+    Found once for each model: a rotor has more than a thousand.
+    """
     found: list[Slot] = []
     for part, kind, causality in (
         ("p", model.parameters, "parameter"),
@@ -122,21 +130,14 @@ def slots(model: Model) -> list[Slot]:
             name = model.rename(v.name)
             if name is not None:
                 found.append(Slot(replace(v, name=name), causality, offset + i))
-    return found
-
-
-_known: dict[int, tuple[Model, list[Slot]]] = {}
-
-
-def _slots(model: Model) -> list[Slot]:
-    """`slots`, computed once for each model: a rotor has more than a thousand."""
-    if id(model) not in _known:
-        _known[id(model)] = model, slots(model)
-    return _known[id(model)][1]
+    return tuple(found)
 
 
 class Instance:
-    """A model with its memory. The FMU and the in-process component both drive this class."""
+    """A model with its memory. The FMU and the in-process component both drive this class.
+
+    `state` is the part of the memory that changes, parameters included; the rest follows from them.
+    """
 
     def __init__(self, model: Model) -> None:
         self.model = model
@@ -148,8 +149,12 @@ class Instance:
         self.reals = raw.cast("d")
         self.integers = raw.cast("q")
         self.work = dopri.scratch(len(self.memory["y"][0]))
-        self.slots = _slots(model)
-        self._bytes = raw
+        self.slots = slots(model)
+        fields: Any = model.memory.fields
+        self.state = raw[: fields["d"][1]]
+        self._parameters = raw[fields["p"][1] : fields["u"][1]]
+        self._derived_from = b""  # the parameters m.d belongs to
+        self._outdated = False  # m.d belongs to others than m.p
 
     @property
     def record(self) -> Any:
@@ -162,13 +167,7 @@ class Instance:
         Raises ModelError where a parameter or an input is out of bounds.
         """
         self._check_bounds()
-        model, m = self.model, self.memory[0]
-        parameters = from_record(model.parameters, m["p"])
-        problem = model.check(parameters)
-        if problem:
-            raise ModelError(problem)
-        if model.derive is not None:
-            self.memory["d"] = np.array([as_tuple(model.derive(parameters))], layout(model.derived))
+        model, parameters = self.model, self._derive()
         self.memory["o"] = np.array([as_tuple(model.outputs())], layout(model.outputs))
         self.memory["s"] = np.array([as_tuple(model.hidden())], layout(model.hidden))
         self.memory["y"] = 0.0
@@ -185,17 +184,35 @@ class Instance:
         """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
             raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
+        if self._outdated:
+            self._derive()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
             raise ModelError(self._why(status, time, step))
 
     def save(self) -> bytes:
-        """The whole state."""
-        return self._bytes.tobytes()
+        """A copy of the state; constants that follow from its parameters are left out."""
+        return self.state.tobytes()
 
-    def restore(self, state: bytes) -> None:
-        """Go back to what `save` returned."""
-        self._bytes[:] = state
+    def restore(self, state: bytes | memoryview) -> None:
+        """Go back to what `save` returned, here or in another instance of the same model.
+
+        Where the parameters are others than before, constants are derived again ahead of the next step.
+        """
+        self.state[:] = state
+        self._outdated = self._parameters != self._derived_from
+
+    def _derive(self) -> Any:
+        """Compute from the parameters what follows from them; returns them."""
+        model = self.model
+        parameters = from_record(model.parameters, self.memory[0]["p"])
+        problem = model.check(parameters)
+        if problem:
+            raise ModelError(problem)
+        if model.derive is not None:
+            self.memory["d"] = np.array([as_tuple(model.derive(parameters))], layout(model.derived))
+        self._derived_from, self._outdated = self._parameters.tobytes(), False
+        return parameters
 
     def _check_bounds(self) -> None:
         for slot in self.slots:

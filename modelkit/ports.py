@@ -21,13 +21,19 @@ MODES = 20  # of a flexible body that a seat can carry, per plane
 
 
 @dataclass(frozen=True)
-class BodyMotion:
-    """Translation of a body at the beginning of the macro step."""
+class PointMotion:
+    """Motion of a point, such as a sensor looks at, at the beginning of the macro step."""
 
     x: float = real(0.0, "m", "horizontal position", nominal=1e-4)
     y: float = real(0.0, "m", "vertical position", nominal=1e-4)
     vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
     vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
+
+
+@dataclass(frozen=True)
+class BodyMotion(PointMotion):
+    """Translation of a body at the beginning of the macro step."""
+
     ax_free: float = real(0.0, "m/s2", "horizontal acceleration from everything but this bearing's force")
     ay_free: float = real(0.0, "m/s2", "vertical acceleration from everything but this bearing's force")
     inv_m: float = real(

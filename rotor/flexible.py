@@ -6,6 +6,7 @@ motion are those of `rotor.modal_motion`; what the kernels read is prepared in `
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, replace
 from functools import partial
@@ -14,7 +15,7 @@ import numpy as np
 
 from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
-from modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState
+from modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState, PointMotion
 from modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from modelkit.variables import array, group, groups, integer, real
 from rotor import modal_motion, stress_report
@@ -67,21 +68,11 @@ class StationState(FlexibleSeatState):
 
 
 @dataclass(frozen=True)
-class SensorState:
-    """Motion where a sensor looks."""
-
-    x: float = real(0.0, "m", "horizontal position", nominal=1e-4)
-    y: float = real(0.0, "m", "vertical position", nominal=1e-4)
-    vx: float = real(0.0, "m/s", "horizontal velocity", nominal=0.1)
-    vy: float = real(0.0, "m/s", "vertical velocity", nominal=0.1)
-
-
-@dataclass(frozen=True)
 class Outputs:
     """Motion at the stations, stresses, energy."""
 
     station: tuple = groups(StationState, MOST_STATIONS)
-    sensor: tuple = groups(SensorState, MOST_STATIONS)
+    sensor: tuple = groups(PointMotion, MOST_STATIONS)
     energy: Energy = group(Energy)
     stress: stress_report.StressReport = group(stress_report.StressReport)
     node: tuple = groups(stress_report.NodeStress, MOST_NODES)
@@ -194,7 +185,7 @@ def start(words):
 def _state_constants(m, j):
     """What stays at station j; modes that share a place there become one of the same static flexibility."""
     d, o = m.d, m.o.station[j]
-    o.static_fx, o.static_fy = d.static_fx[j], d.static_fy[j]
+    o.static_fy = d.static_fy[j]
     o.inv_m = d.inv_m[j]
     o.inv_I = 1.0 / d.inertia
     for i in range(int(d.slots[j])):
@@ -225,8 +216,7 @@ def _inputs(m):
 def advance(words, work, time, step):
     """One macro step under the given loads."""
     m = words.view(MEMORY)[0]
-    total = _inputs(m)
-    if total - total != 0.0:  # infinite or not a number
+    if not math.isfinite(_inputs(m)):
         return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
@@ -236,7 +226,7 @@ def advance(words, work, time, step):
     if m.p.stress.active:
         stress_report.report(m.y, m, time + step)
     told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
-    return OK if modal_motion.finite(m.y, m) and np.isfinite(told) else BAD_LOAD
+    return OK if modal_motion.finite(m.y, m) and math.isfinite(told) else BAD_LOAD
 
 
 def derive(shaft: Shaft, p: Parameters) -> Derived:
@@ -277,31 +267,30 @@ def exposed(shaft: Shaft, name: str) -> str | None:
 
 
 def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
+    """All nodes start alike but for the sag, and no elastic mode moves yet."""
     basis = ("modes", "residual")
-    motion = (*basis, "x", "y", "vx", "vy", "gravity")
-    turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle", "damping_ratio")
-    found = {
-        "energy.kinetic": (*motion, "speed", "unbalance_scale", "unbalance_angle"),
-        "energy.potential": motion,
-    }
+    sag = (*basis, "gravity") if shaft.levitated_at else ()
+    turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
     loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz")]
+    accelerations = (*basis, "gravity", *turning, *loads)
+    found = {
+        "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle"),
+        "energy.potential": tuple(dict.fromkeys(("y", "gravity", *sag))),
+    }
+    for place in (*shaft.stations, *shaft.sensors):
+        found |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
+        found[f"{place.name}.y"] = ("y", *sag)
     for s in shaft.stations:
-        found |= {f"{s.name}.{name}": motion for name in ("x", "y", "vx", "vy")}
-        accelerations = (*motion, *turning, *loads)
         found |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
-        found |= {
-            f"{s.name}.inv_m": basis,
-            f"{s.name}.omega": ("speed",),
-            f"{s.name}.static_fy": ("gravity",),
-        }
+        found |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
+        if s.name in shaft.levitated_at:
+            found[f"{s.name}.static_fy"] = ("gravity",)
         for k in range(1, MODES + 1):
             mode = f"{s.name}.mode[{k}]"
-            found |= {f"{mode}.{name}": motion for name in ("x", "y", "vx", "vy")}
+            found[f"{mode}.y"] = sag
             found |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
             found |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
             found[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
-    for s in shaft.sensors:
-        found |= {f"{s.name}.{name}": motion for name in ("x", "y", "vx", "vy")}
     return found
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from modelkit.ports import MODES
 from modelkit.variables import array, integer, real
-from rotor.assembly import assemble, translation
 from rotor.modes import RIGID, Basis, basis
 from rotor.shaft import MOST_NODES, MOST_STATIONS, Shaft
 from rotor.stresses import recovery
@@ -37,8 +36,7 @@ class Derived:
     inertia: float = real(0.0, "kg.m2", "polar")
     damping_ratio: float = real(0.0, "1", "of the elastic modes")
     inv_m: np.ndarray = array(MOST_STATIONS)
-    static_fx: np.ndarray = array(MOST_STATIONS)
-    static_fy: np.ndarray = array(MOST_STATIONS)
+    static_fy: np.ndarray = array(MOST_STATIONS)  # N, holds the rotor at rest at the start
     sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start
     stiffness: np.ndarray = array(MOST_MODES)  # omega^2
     damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega
@@ -81,7 +79,8 @@ def prepare(
     n = len(found.omega)
     shape = found.deflections([s.node for s in shaft.stations])
     sensed = found.deflections([s.node for s in shaft.sensors])
-    weight = found.shapes.T @ assemble(shaft).mass @ translation(shaft)
+    weight = np.zeros(n)
+    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
     static = static_forces(shaft, gravity)
     slots, slot = _slots(shape)
     principal, turned = np.linalg.eigh(found.gyroscopic)

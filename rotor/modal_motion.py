@@ -24,9 +24,10 @@ import numpy as np
 from modelkit import oscillator
 from modelkit.kernel import kernel
 from modelkit.ports import MODES
+from rotor.drag import drag
 
 ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
-DRAG_SPEED = 0.1  # rad/s; below it the constant drag torque fades, so that it cannot reverse the spin
+SLOW = 1e-4  # (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
 
 
 @kernel
@@ -40,12 +41,6 @@ def modal(y, m):
 def rest(y, m):
     """What is behind them: angle, spin, loss, work."""
     return y[4 * m.d.modes :]
-
-
-@kernel
-def drag(spin, p):
-    """Torque (N m) against the spin."""
-    return p.drag * math.tanh(spin / DRAG_SPEED) + p.viscous_drag * spin
 
 
 @kernel
@@ -85,13 +80,8 @@ def accelerate(y, m, s, ax, ay):
     loads(m, s, False, ax, ay)
     reaction, inertia = 0.0, d.inertia
     for k in range(n):
-        gvx, gvy, gpx, gpy = 0.0, 0.0, 0.0, 0.0
-        for i in range(n):
-            g = d.polar[k, i]
-            gvx += g * vx[i]
-            gvy += g * vy[i]
-            gpx += g * px[i]
-            gpy += g * py[i]
+        gvx, gvy = _polar(m, k, vx, vy)
+        gpx, gpy = _polar(m, k, px, py)
         wx, wy = _unbalance(m, k, c, sn)
         ax[k] += spin * spin * wx - d.stiffness[k] * px[k] - d.damping[k] * vx[k] - spin * gvy
         ay[k] += spin * spin * wy - d.stiffness[k] * py[k] - d.damping[k] * vy[k] + spin * gvx
@@ -99,14 +89,21 @@ def accelerate(y, m, s, ax, ay):
         inertia += (gpx - wx) * wx + (gpy - wy) * wy
     alpha = (moment(m, s) - drag(spin, m.p) - reaction) / inertia
     for k in range(n):
-        gpx, gpy = 0.0, 0.0
-        for i in range(n):
-            gpx += d.polar[k, i] * px[i]
-            gpy += d.polar[k, i] * py[i]
+        gpx, gpy = _polar(m, k, px, py)
         wx, wy = _unbalance(m, k, c, sn)
         ax[k] += alpha * (wy - gpy)
         ay[k] += alpha * (gpx - wx)
     return alpha
+
+
+@kernel
+def _polar(m, k, x, y):
+    """Component k of G x and of G y."""
+    gx, gy = 0.0, 0.0
+    for i in range(m.d.modes):
+        gx += m.d.polar[k, i] * x[i]
+        gy += m.d.polar[k, i] * y[i]
+    return gx, gy
 
 
 @kernel
@@ -175,9 +172,33 @@ def turn_velocities(vx, vy, angle, m, a, b):
 
 
 @kernel
-def _swing(y, m, force, rate, s, h, alpha):
-    """Each mode alone for h seconds about s after the middle, under `force` and `rate` (2, n)."""
-    d, c = m.d, m.s.stride
+def _along(m, k, h, z, v, f, g):
+    """Mode k in one plane over a stride of h seconds under the load f + g (t - h/2), from z and v.
+
+    Returns both at its end, int z dt and int c z'^2 dt. The area follows from the equation of motion, the
+    heat is the work of the load less the energy gained.
+    """
+    c, stiffness, damping = m.s.stride, m.d.stiffness[k], m.d.damping[k]
+    z1 = c.zz[k] * z + c.zv[k] * v + c.zf[k] * f + c.zg[k] * g
+    v1 = c.vz[k] * z + c.vv[k] * v + c.vf[k] * f + c.vg[k] * g
+    if stiffness * h * h < SLOW:
+        area = 0.5 * h * (z + z1) + h * h / 12.0 * (v - v1)
+    else:
+        area = (f * h - (v1 - v) - damping * (z1 - z)) / stiffness
+    heat = 0.0
+    if damping > 0.0:
+        heat = f * (z1 - z) + g * (0.5 * h * (z1 + z) - area)
+        heat -= 0.5 * ((v1 - v) * (v1 + v) + stiffness * (z1 - z) * (z1 + z))
+    return z1, v1, area, heat
+
+
+@kernel
+def _swing(y, m, force, rate, s, h, alpha, area_x, area_y):
+    """Each mode alone for h seconds about s after the middle, under `force` and `rate` (2, n).
+
+    Adds int p dt to the areas; returns the heat.
+    """
+    d = m.d
     px, py, vx, vy = modal(y, m)
     spin, angle = rest(y, m)[SPIN], rest(y, m)[ANGLE] + m.p.unbalance_angle
     ca, sa = math.cos(angle), math.sin(angle)
@@ -195,13 +216,12 @@ def _swing(y, m, force, rate, s, h, alpha):
             bx, by = e2 * bx + alpha * by, e2 * by - alpha * bx
             fx, fy = fx + 0.5 * (ax + bx), fy + 0.5 * (ay + by)
             gx, gy = gx + (bx - ax) / h, gy + (by - ay) / h
-        x, y0, u, v = px[k], py[k], vx[k], vy[k]
-        px[k] = c.zz[k] * x + c.zv[k] * u + c.zf[k] * fx + c.zg[k] * gx
-        py[k] = c.zz[k] * y0 + c.zv[k] * v + c.zf[k] * fy + c.zg[k] * gy
-        vx[k] = c.vz[k] * x + c.vv[k] * u + c.vf[k] * fx + c.vg[k] * gx
-        vy[k] = c.vz[k] * y0 + c.vv[k] * v + c.vf[k] * fy + c.vg[k] * gy
-        lost += d.damping[k] * (u * u + v * v + vx[k] * vx[k] + vy[k] * vy[k])
-    return 0.5 * h * lost
+        px[k], vx[k], under_x, heat_x = _along(m, k, h, px[k], vx[k], fx, gx)
+        py[k], vy[k], under_y, heat_y = _along(m, k, h, py[k], vy[k], fy, gy)
+        area_x[k] += under_x
+        area_y[k] += under_y
+        lost += heat_x + heat_y
+    return lost
 
 
 @kernel
@@ -233,7 +253,7 @@ def advance(y, m, step, longest, work):
     _add_spin_up(y, m, (moment(m, 0.0) - drag(tail[SPIN], m.p)) / d.inertia, force)
     for k in range(n):
         start_x[k], start_y[k], area_x[k], area_y[k] = px[k], py[k], 0.0, 0.0
-    turned, spun = tail[ANGLE], tail[SPIN]
+    turned, swept = tail[ANGLE], 0.0
     kick = 0.0  # of the spin, by the unbalance's reaction, as it was in the stride before
     if d.unbalanced:
         kick = (
@@ -247,16 +267,17 @@ def advance(y, m, step, longest, work):
         alpha = torque / d.inertia + kick
         middle = tail[ANGLE] + m.p.unbalance_angle + 0.5 * h * tail[SPIN]
         before = _spun(vx, vy, m, middle)
-        _fill(px, py, vx, vy, h, n, area_x, area_y)
         turn_velocities(vx, vy, 0.5 * h * tail[SPIN], m, a, b)
-        tail[LOSS] += _swing(y, m, force, rate, s, h, alpha) + braking * tail[SPIN] * h
+        tail[LOSS] += _swing(y, m, force, rate, s, h, alpha, area_x, area_y)
         turn_velocities(vx, vy, 0.5 * h * (tail[SPIN] + alpha * h), m, a, b)
-        _fill(px, py, vx, vy, -h, n, area_x, area_y)
         change = (torque * h - _spun(vx, vy, m, middle) + before) / d.inertia
-        tail[ANGLE] += h * (tail[SPIN] + 0.5 * change)
+        turn = h * (tail[SPIN] + 0.5 * change)
+        tail[LOSS] += braking * turn
+        tail[ANGLE] += turn
         tail[SPIN] += change
+        swept += s * turn
         kick = (change - torque * h / d.inertia) / h
-    _account(y, m, step, start_x, start_y, area_x, area_y, turned, spun)
+    _account(y, m, step, start_x, start_y, area_x, area_y, tail[ANGLE] - turned, swept)
 
 
 @kernel
@@ -264,28 +285,17 @@ def _add_spin_up(y, m, alpha, force):
     """i alpha G p, all but constant over a macro step."""
     px, py, _, _ = modal(y, m)
     for k in range(m.d.modes):
-        gpx, gpy = 0.0, 0.0
-        for i in range(m.d.modes):
-            gpx += m.d.polar[k, i] * px[i]
-            gpy += m.d.polar[k, i] * py[i]
+        gpx, gpy = _polar(m, k, px, py)
         force[0, k] -= alpha * gpy
         force[1, k] += alpha * gpx
 
 
 @kernel
-def _fill(px, py, vx, vy, h, n, area_x, area_y):
-    """Half of the Hermite quadrature of p over a stride: h > 0 at its beginning, h < 0 at its end."""
-    half, twelfth = 0.5 * abs(h), abs(h) * h / 12.0
-    for k in range(n):
-        area_x[k] += half * px[k] + twelfth * vx[k]
-        area_y[k] += half * py[k] + twelfth * vy[k]
-
-
-@kernel
-def _account(y, m, step, start_x, start_y, area_x, area_y, turned, spun):
+def _account(y, m, step, start_x, start_y, area_x, area_y, turned, swept):
     """Work of each load: mean times displacement, and slope times the first moment of the velocity.
 
     int s v dt over the step is its half times the sum of both ends' displacements less the area under it.
+    Of the spin, they are the angle `turned` and what the strides have `swept`.
     """
     px, py, _, _ = modal(y, m)
     tail = rest(y, m)
@@ -302,18 +312,21 @@ def _account(y, m, step, start_x, start_y, area_x, area_y, turned, spun):
             qx += shape * (half * (px[k] + start_x[k]) - area_x[k])
             qy += shape * (half * (py[k] + start_y[k]) - area_y[k])
         work = u.fx * dx + u.fy * dy + u.dfx * qx + u.dfy * qy
-        work += u.mz * (tail[ANGLE] - turned) + u.dmz * step * step / 12.0 * (tail[SPIN] - spun)
-        tail[WORK + j] += work
+        tail[WORK + j] += work + u.mz * turned + u.dmz * swept
 
 
 @kernel
 def take_mode_loads(y, m):
-    """Give each mode what mean and slope did not say of the loads; their work is what energy it brings."""
+    """Give each mode what mean and slope did not say of the loads; their work is what energy it brings.
+
+    What they change of the unbalance's momentum is taken from the spin.
+    """
     px, py, vx, vy = modal(y, m)
     tail = rest(y, m)
     angle = tail[ANGLE] + m.p.unbalance_angle
-    before = _spun(vx, vy, m, angle)
+    after = _spun(vx, vy, m, angle)
     for j in range(m.d.stations):
+        before = after
         u, lumped = m.u.station[j], m.d.lumped[j] > 0.0
         for k in range(m.d.modes):
             place = int(m.d.slot[j, k])
@@ -328,7 +341,10 @@ def take_mode_loads(y, m):
             py[k] += y1
             vx[k] += u1
             vy[k] += v1
-    tail[SPIN] -= (_spun(vx, vy, m, angle) - before) / m.d.inertia
+        after = _spun(vx, vy, m, angle)
+        change = (before - after) / m.d.inertia
+        tail[WORK + j] += 0.5 * change * (before + after)
+        tail[SPIN] += change
 
 
 @kernel

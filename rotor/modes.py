@@ -61,6 +61,7 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
         shapes = np.hstack((shapes, extra))
         omega = np.concatenate((omega, extra_omega))
     gyroscopic = shapes.T @ matrices.polar @ shapes
+    gyroscopic[0, :] = gyroscopic[:, 0] = 0.0  # translation turns no section
     return Basis(shapes, omega, 0.5 * (gyroscopic + gyroscopic.T), kept)
 
 

@@ -23,10 +23,10 @@ from modelkit.kernel import kernel
 from modelkit.model import Model, memory_layout
 from modelkit.ports import Energy, SeatLoad, SeatState
 from modelkit.variables import group, real
+from rotor.drag import drag
 
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
 SIZE = 9
-DRAG_SPEED = 0.1  # rad/s; below it the constant drag torque fades, so that it cannot reverse the spin
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,8 @@ def rhs(t, y, dy, m):
     s = t - m.half
     ax, ay, am = a.fx + a.dfx * s, a.fy + a.dfy * s, a.mz + a.dmz * s
     bx, by, bm = b.fx + b.dfx * s, b.fy + b.dfy * s, b.mz + b.dmz * s
-    drag = _drag(y[SPIN], p)
-    dvx, dvy, alpha = _accelerations(y, ax + bx, ay + by, am + bm - drag, p)
+    braking = drag(y[SPIN], p)
+    dvx, dvy, alpha = _accelerations(y, ax + bx, ay + by, am + bm - braking, p)
     dy[X] = y[VX]
     dy[Y] = y[VY]
     dy[VX] = dvx
@@ -86,12 +86,7 @@ def rhs(t, y, dy, m):
     dy[SPIN] = alpha
     dy[WORK_A] = ax * y[VX] + ay * y[VY] + am * y[SPIN]
     dy[WORK_AMB] = bx * y[VX] + by * y[VY] + bm * y[SPIN]
-    dy[LOSS] = drag * y[SPIN]
-
-
-@kernel
-def _drag(spin, p):
-    return p.drag * math.tanh(spin / DRAG_SPEED) + p.viscous_drag * spin
+    dy[LOSS] = braking * y[SPIN]
 
 
 @kernel
@@ -134,7 +129,7 @@ def _publish_seat(y, p, seat, other, half):
         y,
         other.fx + other.dfx * half,
         other.fy + other.dfy * half,
-        other.mz + other.dmz * half - _drag(y[SPIN], p),
+        other.mz + other.dmz * half - drag(y[SPIN], p),
         p,
     )
     seat.inv_m = 1.0 / p.mass

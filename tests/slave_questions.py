@@ -100,9 +100,29 @@ def moved(slave: Slave, first: int, count: int) -> list[dict[str, str]]:
     return rows
 
 
+def unlike_defaults(folder: str) -> Slave:
+    """An initialised instance with every real parameter a hundredth larger than by default."""
+    slave = Slave(folder, "unlike")
+    real = [name for name in slave.named("parameter") if slave.variables[name].type == "Real"]
+    return slave.start({name: 1.01 * float(slave.variables[name].start) for name in real})
+
+
+def saved_early(folder: str, _: str) -> bool:
+    """Whether a state saved before initialisation brings back the outputs of its own parameters."""
+    slave = Slave(folder)
+    name = next(n for n in slave.named("parameter") if slave.variables[n].type == "Real")
+    slave.set({name: 1.01 * float(slave.variables[name].start)})
+    state = slave.fmu.getFMUstate()
+    before = slave.outputs()
+    slave.fmu.setFMUstate(state)
+    after = slave.outputs()
+    slave.free()
+    return after == before
+
+
 def replay(folder: str, _: str) -> dict[str, Any]:
-    """Whether what follows a saved state is repeated to the last bit, here and in another instance."""
-    slave, other = started(folder), Slave(folder, "other").start()
+    """Whether what follows a saved state is repeated to the last bit, here and in other instances."""
+    slave, other, unlike = started(folder), Slave(folder, "other").start(), unlike_defaults(folder)
     moved(slave, 0, 4)
     before = slave.outputs()
     state = slave.fmu.getFMUstate()
@@ -111,7 +131,8 @@ def replay(folder: str, _: str) -> dict[str, Any]:
     slave.fmu.setFMUstate(state)
     found: dict[str, Any] = {"outputs": slave.outputs() == before, "again": moved(slave, 4, 6) == first}
     slave.fmu.freeFMUstate(state)
-    for where, instance in (("from bytes", slave), ("in another instance", other)):
+    places = {"from bytes": slave, "in another instance": other, "where parameters were others": unlike}
+    for where, instance in places.items():
         state = instance.fmu.deSerializeFMUstate(saved)
         instance.fmu.setFMUstate(state)
         instance.fmu.freeFMUstate(state)
@@ -301,8 +322,9 @@ def mixed_types(folder: str, _: str) -> list[Any]:
 
 
 QUESTIONS: tuple[Callable[[str, str], Any], ...] = (
-    two_instances, fifty_instances, reset, replay, foreign_states, inputs_not_finite, failure_lasts,
-    absurd_inputs, bad_parameters, set_too_late, bad_steps, too_early, unknown_references, mixed_types,
+    two_instances, fifty_instances, reset, replay, saved_early, foreign_states, inputs_not_finite,
+    failure_lasts, absurd_inputs, bad_parameters, set_too_late, bad_steps, too_early, unknown_references,
+    mixed_types,
 )  # fmt: skip
 
 

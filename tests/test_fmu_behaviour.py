@@ -143,7 +143,13 @@ def test_reset_starts_anew(fmu: str, answers: Answers):
 @every_fmu
 def test_restored_state_replays_to_the_last_bit(fmu: str, answers: Answers):
     found = {key: value for key, value in answers(fmu)["replay"].items() if key != "force"}
-    assert found == dict.fromkeys(("outputs", "again", "from bytes", "in another instance", "moves"), True)
+    places = ("again", "from bytes", "in another instance", "where parameters were others")
+    assert found == dict.fromkeys(("outputs", *places, "moves"), True)
+
+
+@every_fmu
+def test_a_state_saved_before_initialisation_is_that_of_its_parameters(fmu: str, answers: Answers):
+    assert answers(fmu)["saved_early"]
 
 
 def test_bearings_replay_in_contact(answers: Answers):

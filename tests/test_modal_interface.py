@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from systems import DISK, GRAVITY
+from systems import DISK, GRAVITY, history
 
 from bearings import bushing, seat
 from master.monolithic import Monolith
-from master.scene import Scene, load
+from master.scene import ComponentSpec, RunSpec, Scene, load
 from master.simulation import Outcome, open_system, simulate
 from modelkit import oscillator
 from modelkit.model import Instance
@@ -126,13 +126,43 @@ def test_more_modes_than_a_seat_tells_of() -> None:
     system = open_system(scene, in_process=True)
     system.initialise()
     rotor = system.components["rotor"].instance.record  # type: ignore[attr-defined]
-    a = rotor["o"]["station"][0]
+    a, n = rotor["o"]["station"][0], int(rotor["d"]["modes"])
     assert rotor["d"]["lumped"][0] == 1.0
-    rigid = rotor["d"]["shape"][0, :2]
-    assert sum(mode["inv_m"] for mode in a["mode"]) == pytest.approx(a["inv_m"] - rigid @ rigid)
+    gain, stiffness = rotor["d"]["shape"][0, :n] ** 2, rotor["d"]["stiffness"][2:n]
+    assert np.sum(a["mode"]["inv_m"]) == pytest.approx(a["inv_m"] - np.sum(gain[:2]))
+    flexibility = np.sum(a["mode"]["inv_m"] / a["mode"]["k_over_m"])
+    assert flexibility == pytest.approx(np.sum(gain[2:] / stiffness), rel=1e-8)
     assert np.all(np.isfinite(found))
     assert min(forces) > 500.0
     assert 0.0 < outcome.residual < 0.1
+
+
+def landing(modes: int) -> Scene:
+    """Rotor I, turning and a micrometre above a bushing at its end A; 5 ms, with the impact."""
+    start = {"modes": modes, "speed": "9000 rpm", "y": "-0.299 mm", "vy": -0.05}
+    return Scene(
+        "test", "test", {"rotor": ComponentSpec("rotor_I", start), "bearing": ComponentSpec("bushing")},
+        attach=(("bearing.journal", "rotor.A"),), run=RunSpec(duration=5e-3, macro_step=4e-5),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("modes", [20, 0])
+def test_fast_modes_make_no_energy_in_contact(modes: int) -> None:
+    """Of rotor and bearing together, over what the contact turns into heat; and they hardly matter."""
+    energies = [
+        f"{c}.energy.{kind}"
+        for c in ("rotor", "bearing")
+        for kind in ("kinetic", "potential", "dissipated")
+    ]
+    names = [*energies, *JOURNALS[:2], "bearing.contact.peak_force"]
+    _, found, outcome = history(landing(modes), names)
+    assert found["bearing.contact.peak_force"][-1] > 100.0
+    whole, lost = sum(found[name] for name in energies), found["bearing.energy.dissipated"][-1]
+    assert lost > 1e-4
+    assert np.max(np.abs(whole - whole[0])) < 1e-6 * lost
+    assert outcome.residual < 1e-6 * lost
+    few = history(landing(5), names)[1]
+    assert np.hypot(*(found[name][-1] - few[name][-1] for name in JOURNALS[:2])) < 1e-8
 
 
 def test_modes_the_rotor_does_not_have_are_not_exchanged() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -107,6 +109,22 @@ def test_build_and_check_a_rotor_file(rotor_file: Path, capsys: pytest.CaptureFi
 
 
 @pytest.mark.parametrize(
+    "name", ["2. Läufer", "it's", 'say "so"', 'quoted """ thrice', "back\\under", "转子"]
+)
+def test_a_rotor_file_of_any_name_becomes_an_fmu(rotor_file: Path, name: str) -> None:
+    """Built, and the script inside it is one that Python reads as it was meant."""
+    path = rotor_file.rename(rotor_file.with_name(f"{name}.toml"))
+    built = rotor_file.parent / "built"
+    assert main(["build", str(path), "-o", str(built)]) == 0
+    (fmu,) = built.glob("*.fmu")
+    with zipfile.ZipFile(fmu) as archive:
+        description = archive.read("modelDescription.xml").decode()
+        (script,) = (n for n in archive.namelist() if re.fullmatch(r"resources/[^/]*\.py", n))
+        compile(archive.read(script), script, "exec")
+    assert "Small shaft" in description
+
+
+@pytest.mark.parametrize(
     ("old", "new", "named"),
     [
         ('length = "50 mm"', "length = 50", "element[1].length"),
@@ -148,6 +166,8 @@ def test_a_mistake_in_a_rotor_file_is_one_line(
     [
         (("rotor.modes", 1), "modes = 1 must be from 2"),
         (("rotor.modes", 41), "to 40, all that the model has"),
+        (("rotor.modes", -1), "rotor.modes = -1 must be at least 0"),
+        (("rotor.C.fx", 1.0), "no variable C.fx"),
         (("rotor.stress.node", 21), "nodes count from 1 to 20"),
         (("rotor.damping_ratio", 2.0), "rotor.damping_ratio = 2 must be at most 1"),
         (("run.record", "rotor.C"), "there is nothing called rotor.C"),
@@ -165,6 +185,9 @@ def test_settings_that_cannot_be(tmp_path: Path, setting: tuple[str, object], na
         ('attach = [["amb_A.journal", "rotor.C"]]', "rotor_I.* has no variable C.x"),
         ('sense = [["amb_A.sensors", "rotor.sensor_A"]]', "amb.* has no variable sensors.x"),
         ('sense = [["amb_A.sensor", "rotor.sensor_Z"]]', "rotor_I.* has no variable sensor_Z.x"),
+        ('sense = [["amb_A.journal", "rotor.sensor_A"]]', "amb_A.journal.x has two sources"),
+        ('sense = ["amb_A.sensor", "rotor.sensor_A"]', "sense must be a list of pairs"),
+        ('sense = [["amb_C.sensor", "rotor.sensor_A"]]', "no component amb_C"),
     ],
 )
 def test_ports_that_are_not_there(tmp_path: Path, text: str, named: str) -> None:
@@ -197,9 +220,17 @@ fmu = "bushing"
 
 
 @pytest.mark.parametrize(
-    ("base", "named"), [("rotor1-900", "did you mean rotor1-9000"), ("scene.toml", "leads back to itself")]
+    ("base", "named"),
+    [
+        ("rotor1-900", "did you mean rotor1-9000"),
+        ("scene.toml", "leads back to itself"),
+        ("other.toml", "leads back to itself"),
+        ("none.toml", "cannot read scene"),
+        ("", "extends = ''"),
+    ],
 )
 def test_a_scene_that_extends_what_it_cannot(tmp_path: Path, base: str, named: str) -> None:
+    (tmp_path / "other.toml").write_text('extends = "scene.toml"', encoding="utf-8")
     with pytest.raises(TouchdownError, match=named):
         scene_of(tmp_path, f'extends = "{base}"\n')
 
