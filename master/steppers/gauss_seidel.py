@@ -13,20 +13,24 @@ class GaussSeidel(Stepper):
 
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
-        self._rates = Rates(system, run.macro_step)
+        self.follow()
+
+    def follow(self) -> None:
+        system = self.system
+        rates = Rates(system, self.run.macro_step)
+        self._turns = [
+            (system.components[name], system.take[name], system.every[name], rates.parts(name))
+            for name in system.order
+        ]
 
     def step(self, number: int, time: float, step: float) -> None:
-        system = self.system
-        for name in system.order:
-            every = system.every[name]
+        signals = self.system.signals
+        for component, take, every, parts in self._turns:
             if number % every:
                 continue
-            system.take_inputs(name)
-            self._rates.restrict(name, number)
-            component = system.components[name]
+            component.inputs[:] = signals[take]
+            for part in parts:
+                part.cut(component.inputs, number)
             component.push()
             component.step(time, every * step)
             component.pull()
-
-    def follow(self) -> None:
-        self._rates = Rates(self.system, self.run.macro_step)

@@ -6,30 +6,21 @@ energy, unless the bearings lead: then they hand over the load of the step to co
 
 from __future__ import annotations
 
-from master.scene import RunSpec
-from master.steppers.rates import Rates
-from master.steppers.stepper import Stepper
-from master.system import System
+from master.steppers.gauss_seidel import GaussSeidel
 
 
-class Jacobi(Stepper):
+class Jacobi(GaussSeidel):
     """Inputs for all, then steps, then outputs of all."""
 
-    def __init__(self, system: System, run: RunSpec) -> None:
-        super().__init__(system, run)
-        self._rates = Rates(system, run.macro_step)
-
     def step(self, number: int, time: float, step: float) -> None:
-        system = self.system
-        due = [name for name in system.order if number % system.every[name] == 0]
-        for name in due:
-            system.take_inputs(name)
-            self._rates.restrict(name, number)
-            system.components[name].push()
-        for name in due:
-            system.components[name].step(time, system.every[name] * step)
-        for name in due:
-            system.components[name].pull()
-
-    def follow(self) -> None:
-        self._rates = Rates(self.system, self.run.macro_step)
+        signals = self.system.signals
+        due = [turn for turn in self._turns if number % turn[2] == 0]
+        for component, take, _, parts in due:
+            component.inputs[:] = signals[take]
+            for part in parts:
+                part.cut(component.inputs, number)
+            component.push()
+        for component, _, every, _ in due:
+            component.step(time, every * step)
+        for component, _, _, _ in due:
+            component.pull()

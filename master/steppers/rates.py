@@ -17,7 +17,7 @@ from master.system import System
 
 
 @dataclass(frozen=True)
-class _Part:
+class Part:
     """A body's inputs from a bearing that takes `bearing` macro steps while the body takes `body`."""
 
     bearing: int
@@ -28,6 +28,7 @@ class _Part:
     last: np.ndarray  # what is due at the end of the bearing's step only
 
     def cut(self, inputs: np.ndarray, number: int) -> None:
+        """Leave in `inputs` what acts in the body's step that begins with macro step `number`."""
         begins = number % self.bearing
         middle = (begins + 0.5 * (self.body - self.bearing)) * self.step  # from that of the bearing's step
         inputs[self.means[: len(self.slopes)]] += inputs[self.slopes] * middle
@@ -39,27 +40,25 @@ class Rates:
     """Hands bodies their part of the loads of bearings that take longer steps."""
 
     def __init__(self, system: System, step: float) -> None:
-        self._system = system
-        self._parts: dict[str, list[_Part]] = {}
+        self._parts: dict[str, list[Part]] = {}
         for a in system.attachments:
             bearing, body = system.every[a.bearing], system.every[a.body]
             if bearing % body:
                 raise TouchdownError(
-                    f"{a.body} takes every {body}th macro step and {a.bearing} on it every {bearing}th; a "
-                    f"bearing's must be a multiple of its body's, change `every` of one of them"
+                    f"{a.body} takes {body} macro steps in one, and {a.bearing}, which holds it, {bearing}; "
+                    "a bearing's number must be a multiple of its body's: change `every` of one of them"
                 )
             if bearing > body and not system.retired & {a.bearing, a.body}:
                 self._parts.setdefault(a.body, []).append(_part(system, a, bearing, body, step))
 
-    def restrict(self, name: str, number: int) -> None:
-        """Cut the inputs of component `name` to its own macro step, which begins with step `number`."""
-        for part in self._parts.get(name, ()):
-            part.cut(self._system.components[name].inputs, number)
+    def parts(self, name: str) -> list[Part]:
+        """What cuts the inputs of component `name` to its own macro steps."""
+        return self._parts.get(name, [])
 
 
-def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> _Part:
+def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> Part:
     places = system.inputs_of(a.body)
     means = [places[f"{a.body_port}.{name}"] for name in LOAD if f"{a.body_port}.{name}" in places]
     slopes = [places[f"{a.body_port}.{name}"] for name in SLOPE if f"{a.body_port}.{name}" in places]
     last = [place for name, place in places.items() if name.startswith(f"{a.body_port}.mode[")]
-    return _Part(bearing, body, step, *(np.array(found, dtype=np.intp) for found in (means, slopes, last)))
+    return Part(bearing, body, step, *(np.array(found, dtype=np.intp) for found in (means, slopes, last)))
