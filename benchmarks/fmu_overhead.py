@@ -3,7 +3,9 @@
 Runs a drop through FMUs and in process, in pairs, and times in the same run, per component, what the
 master spends on it (inputs, step, outputs) and what the compiled kernel alone takes.
 
-    python benchmarks/fmu_overhead.py [--scene disk-caged-simplified] [--duration 0.3] [--pairs 5]
+The last lines set the whole run beside its kernels' own time, which one compiled program would need.
+
+    python benchmarks/fmu_overhead.py [--scene disk-caged-simplified] [--macro-step "20 us"] [--duration 0.3]
 """
 
 from __future__ import annotations
@@ -62,23 +64,43 @@ def _per_step(scene: Scene, system: System, spent: dict[str, float]) -> dict[str
     return {name: 1e6 * seconds / outcome.steps for name, seconds in spent.items()}
 
 
+def whole_run(scene: Scene) -> float:
+    """us per macro step of the whole run through FMUs, nothing recorded."""
+    system = open_system(scene)
+    try:
+        outcome = simulate(scene, system)
+        return 1e6 * outcome.wall_time / outcome.steps
+    finally:
+        system.close()
+
+
 def main() -> None:
     """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--scene", default="disk-caged-simplified")
+    parser.add_argument("--macro-step", help="default: the scene's")
     parser.add_argument("--duration", type=float, default=0.3, help="s")
     parser.add_argument("--pairs", type=int, default=5)
     options = parser.parse_args()
     scene = load(options.scene).with_setting("run.duration", options.duration)
+    scene = scene.with_setting("run.stop_residual", 1e9)
+    if options.macro_step is not None:
+        scene = scene.with_setting("run.macro_step", options.macro_step)
     kernel_times(scene), fmu_times(scene)  # compile and warm up
-    pairs = [(kernel_times(scene), fmu_times(scene)) for _ in range(options.pairs)]
-    print(f"{scene.name}, macro step {scene.run.macro_step:g} s, median of {options.pairs} pairs")
+    runs = [(kernel_times(scene), fmu_times(scene), whole_run(scene)) for _ in range(options.pairs)]
+    step = scene.run.macro_step
+    print(f"{scene.name}, macro step {1e6 * step:g} us, median of {options.pairs}")
     print(f"{'component':<12}{'kernel [us]':>13}{'FMU [us]':>13}{'beyond [us]':>13}")
-    for name in pairs[0][0]:
-        kernel = statistics.median(k[name] for k, _ in pairs)
-        fmu = statistics.median(f[name] for _, f in pairs)
-        beyond = statistics.median(f[name] - k[name] for k, f in pairs)
+    for name in runs[0][0]:
+        kernel = statistics.median(k[name] for k, _, _ in runs)
+        fmu = statistics.median(f[name] for _, f, _ in runs)
+        beyond = statistics.median(f[name] - k[name] for k, f, _ in runs)
         print(f"{name:<12}{kernel:>13.2f}{fmu:>13.2f}{beyond:>13.2f}")
+    kernels = statistics.median(sum(k.values()) for k, _, _ in runs)
+    whole = statistics.median(w for _, _, w in runs)
+    ratio = statistics.median(w / sum(k.values()) for k, _, w in runs)
+    print(f"whole run: {whole:.1f} us per macro step, its kernels {kernels:.1f} us: {ratio:.2f} times;")
+    print(f"{1e-6 * whole / step:.2f} s per simulated s, the kernels alone {1e-6 * kernels / step:.2f}")
 
 
 if __name__ == "__main__":
