@@ -74,12 +74,30 @@ def test_a_row_says_what_the_ledger_would_have_done(disk: Comparison) -> None:
     assert row(disk, "interface", 8e-5).ledger == ""
 
 
+def made(disk: Comparison, *rows: Row) -> Comparison:
+    return Comparison(**{**vars(disk), "rows": rows})
+
+
+def good(name: str, wall: float, error: float, ledger: str = "") -> Row:
+    return Row(name, 1e-5, {"position": error}, wall, ledger)
+
+
 def test_the_cheapest_that_is_good_enough_is_recommended(disk: Comparison) -> None:
-    best = disk.recommended()
-    assert best is not None
-    assert best.errors["position"] <= disk.asked.wanted
-    assert best.wall == min(r.wall for r in disk.rows if r.wall and r.errors["position"] <= 1e-7)
-    assert f"--scheme {best.name}" in advice(disk)[0]
+    slow, fast, rough = good("slow", 3.0, 1e-9), good("fast", 1.0, 5e-8), good("rough", 0.1, 1e-6)
+    assert made(disk, slow, fast, rough).recommended() is fast
+    assert made(disk, slow, fast, good("as fast", 1.1, 1e-8)).recommended() == good("as fast", 1.1, 1e-8)
+    assert '--scheme fast --macro-step "10 us"' in advice(made(disk, slow, fast))[0]
+
+
+def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:
+    slow, warned = good("slow", 3.0, 1e-9), good("warned", 1.0, 1e-9, "warns")
+    stopped = good("stopped", 0.1, 1e-9, "stops")
+    assert made(disk, slow, warned, stopped).recommended() is slow
+    assert made(disk, warned, stopped).recommended() is warned
+    assert made(disk, stopped).recommended() is None
+
+
+def test_nothing_good_enough_is_said(disk: Comparison) -> None:
     strict = Comparison(**{**vars(disk), "asked": Asked(wanted=1e-20)})
     assert strict.recommended() is None
     assert "none of these" in advice(strict)[0]
