@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _joined(arguments: list[str]) -> list[str]:
     """Tie options to their values where these may be negative: argparse would take them for options."""
     found = list(arguments)
-    for option in ("--macro-step", "--speed"):
+    for option in ("--macro-step", "--macro-steps", "--speed", "--wanted"):
         if option in found[:-1]:
             i = found.index(option)
             found[i : i + 2] = [f"{option}={found[i + 1]}"]

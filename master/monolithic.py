@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from master.errors import TouchdownError
 from master.scene import Scene
 from master.simulation import open_system
 from master.system import System
@@ -38,9 +39,13 @@ class Monolith:
         self._twins: dict[str, TwinComponent] = {}
         for name, component in system.components.items():
             if not isinstance(component, TwinComponent):
-                raise TypeError(f"{name} is an FMU; only the project's own models have equations to join")
+                raise TouchdownError(
+                    f"component {name} ({component.origin}) is an FMU; only the project's own models have "
+                    "equations to join, and there is no monolithic reference without them"
+                )
             self._twins[name] = component
         self.zero = system.value(scene.zero) if scene.zero else 0.0
+        self._switches = _switches(system) | {self.zero}
         system.initialise()
         bearings = {a.bearing for a in system.attachments}
         self._bodies = [n for n in self._twins if n not in bearings]
@@ -81,6 +86,11 @@ class Monolith:
             )
             for (source, target), places in pairs.items()
         ]
+
+    @property
+    def moving(self) -> int:
+        """Number of states that others depend on: all but quadratures."""
+        return int(np.count_nonzero(self._weights()))
 
     def initial(self) -> np.ndarray:
         """State at the start."""
@@ -149,9 +159,10 @@ class Monolith:
         self.evaluations = 0
         found: list[np.ndarray] = []
         clock = np.asarray(times) + self.zero
-        for end in (*([self.zero] if self.zero > 0.0 else []), float(clock[-1])):
+        last = float(clock[-1])
+        for end in (*sorted(s for s in self._switches if 0.0 < s < last), last):
             asked = clock[(clock > now) & (clock <= end)]
-            middle = 0.5 * (now + end)  # components switch at the scene's zero, not within a stretch
+            middle = 0.5 * (now + end)  # components switch between stretches, not within
             solution = solve_ivp(
                 lambda _, y, at=middle: self.rhs(at, y),
                 (now, end),
@@ -163,7 +174,7 @@ class Monolith:
                 first_step=1e-6,
             )
             if not solution.success:
-                raise RuntimeError(f"{method}: {solution.message}")
+                raise TouchdownError(f"scipy's {method} gave up: {solution.message}")
             found += list(solution.y.T[: len(asked)])
             state, now = solution.y[:, -1], end
         return self._series(np.asarray(times), found, watched)
@@ -178,3 +189,9 @@ class Monolith:
         rows = np.array(states)
         parts = {name: rows[:, part] for name, part in self._parts.items()}
         return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations, parts)
+
+
+def _switches(system: System) -> set[float]:
+    """Times (s) at which magnetic bearings shut down."""
+    names = [n for n, c in system.components.items() if "shutdown_time" in c.variables]
+    return {system.value(f"{name}.shutdown_time") for name in names}

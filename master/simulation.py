@@ -51,6 +51,16 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     return assemble(scene, scheme(scene.run.scheme), load_one)
 
 
+@contextmanager
+def opened(scene: Scene, in_process: bool = False) -> Iterator[System]:
+    """The scene's system, freed at the end."""
+    system = open_system(scene, in_process)
+    try:
+        yield system
+    finally:
+        system.close()
+
+
 def simulate(
     scene: Scene,
     system: System,

@@ -33,7 +33,7 @@ def parse(text: str) -> Variation:
         raise TouchdownError(f"--vary {text}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT")
     if not right:
         raise TouchdownError(f"--vary {text}: the list of values is empty")
-    return Variation(name, _range(text, right) if ":" in right else _list(text, right))
+    return Variation(name, _range(text, right) if ":" in right else listed(right, f"--vary {text}"))
 
 
 def parse_all(texts: Iterable[str]) -> dict[str, tuple[str, ...]]:
@@ -62,10 +62,11 @@ def number_and_unit(value: object) -> tuple[float, str] | None:
         return None
 
 
-def _list(text: str, right: str) -> tuple[str, ...]:
-    items = [item.strip() for item in right.split(",")]
+def listed(text: str, what: str) -> tuple[str, ...]:
+    """Values with commas between them; a unit at the end is everyone's. `what`: for a complaint."""
+    items = [item.strip() for item in text.split(",")]
     if not all(items):
-        raise TouchdownError(f"--vary {text}: a value is missing between the commas")
+        raise TouchdownError(f"{what}: a value is missing between the commas")
     parts = [number_and_unit(item) for item in items]
     last = parts[-1]
     if last is None or not last[1]:

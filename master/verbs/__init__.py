@@ -6,6 +6,7 @@ from master.verbs import (
     advise,
     build,
     check,
+    compare,
     compare_bearings,
     compare_modes,
     compare_rotors,
@@ -15,4 +16,16 @@ from master.verbs import (
     sweep,
 )
 
-ALL = (scenes, run, advise, sweep, rotor, compare_bearings, compare_rotors, compare_modes, build, check)
+ALL = (
+    scenes,
+    run,
+    advise,
+    sweep,
+    rotor,
+    compare,
+    compare_bearings,
+    compare_rotors,
+    compare_modes,
+    build,
+    check,
+)
