@@ -5,7 +5,7 @@ master spends on it (inputs, step, outputs) and what the compiled kernel alone t
 
 The last lines set the whole run beside its kernels' own time, which one compiled program would need.
 
-    python benchmarks/fmu_overhead.py [--scene disk-caged-simplified] [--macro-step "20 us"] [--duration 0.3]
+    python benchmarks/fmu_overhead.py [--scene disk-caged-simplified] [--macro-step "20 us"]
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ class Rates:
             bearing, body = system.every[a.bearing], system.every[a.body]
             if bearing % body:
                 raise TouchdownError(
-                    f"{a.body} takes {body} macro steps in one, and {a.bearing}, which holds it, {bearing}; "
+                    f"{a.body} takes {body} macro steps in one, {a.bearing}, which holds it, {bearing}; "
                     "a bearing's number must be a multiple of its body's: change `every` of one of them"
                 )
             if bearing > body and not system.retired & {a.bearing, a.body}:
