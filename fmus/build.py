@@ -12,23 +12,32 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
+from fmus.documentation import page
+from fmus.icon import icon
+from fmus.link import Interpreter, linked
 from fmus.recipes import Recipe
-from fmus.sources import write_package, write_script
+from fmus.sources import write_host, write_package, write_script
 from modelkit.kernel import user_cache
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 
 
-def build(recipe: Recipe, folder: Path) -> Path:
-    """Build an FMU into `folder` as NAME.fmu; returns its path. An older one is replaced."""
+def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) -> Path:
+    """Build an FMU into `folder` as NAME.fmu; returns its path. An older one is replaced.
+
+    With an interpreter the FMU is linked to it, for hosts without Python on this machine; raises LinkError
+    where that fails.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
-        script = write_script(recipe.script, recipe.module, Path(temporary))
-        package = write_package(Path(temporary))
-        with _untouched_interpreter(recipe.module):
-            raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=[package])
-        fresh = folder / f".{recipe.name}.{os.getpid()}.fmu"
-        _normalise(Path(raw), fresh)
+    entries = _entries(recipe, interpreter)
+    entries["documentation/index.html"] = page(recipe, interpreter).encode()
+    entries["model.png"] = icon(recipe.model)
+    if interpreter is not None:
+        entries = {name: e for name, e in entries.items() if not name.endswith((".dll", ".dylib"))}
+        for name in [name for name in entries if name.endswith(".so")]:
+            entries[name] = linked(entries[name], interpreter.library)
+    fresh = folder / f".{recipe.name}.{os.getpid()}.fmu"
+    _write(entries, fresh)
     return fresh.replace(folder / f"{recipe.name}.fmu")
 
 
@@ -37,6 +46,18 @@ def cached(recipe: Recipe) -> Path:
     folder = user_cache() / "fmus" / recipe.content
     path = folder / f"{recipe.name}.fmu"
     return path if path.is_file() else build(recipe, folder)
+
+
+def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes]:
+    """What pythonfmu makes of a recipe: contents by name."""
+    with tempfile.TemporaryDirectory(prefix="touchdown_") as temporary:
+        literal = "None" if interpreter is None else interpreter.as_text()
+        script = write_script(recipe.script, recipe.module, Path(temporary), literal)
+        parts = [write_package(Path(temporary)), write_host(Path(temporary))]
+        with _untouched_interpreter(recipe.module):
+            raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=parts)
+        with zipfile.ZipFile(raw) as archive:
+            return {name: archive.read(name) for name in archive.namelist()}
 
 
 @contextmanager
@@ -50,10 +71,10 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
         sys.modules.pop(module, None)
 
 
-def _normalise(raw: Path, target: Path) -> None:
-    """Rewrite an archive with sorted names, fixed times and no compression."""
-    with zipfile.ZipFile(raw) as source, zipfile.ZipFile(target, "w") as archive:
-        for name in sorted(source.namelist()):
+def _write(entries: dict[str, bytes], target: Path) -> None:
+    """Write an archive with sorted names, fixed times and no compression."""
+    with zipfile.ZipFile(target, "w") as archive:
+        for name in sorted(entries):
             entry = zipfile.ZipInfo(name, EPOCH)
             entry.external_attr = 0o644 << 16
-            archive.writestr(entry, source.read(name))
+            archive.writestr(entry, entries[name])

@@ -2,15 +2,16 @@
 
 What pythonfmu leaves open is closed here. Its C++ side must never see an exception it did not ask for,
 so a failed step is logged and answered with False; where only an exception can report failure
-(initialisation), the references that its clean-up drops twice are held once more. The whole state of
-an instance is one block of memory, so saving it is copying bytes; what follows from the parameters in it
-is derived again where they are others. Vectors are answered whole.
+(initialisation, reading), the references that its clean-up drops twice are held once more. The whole
+state of an instance is one block of memory, so saving it is copying bytes; what follows from the
+parameters in it is derived again where they are others. Vectors are answered whole.
 """
 
 from __future__ import annotations
 
 import ctypes
 import math
+import struct
 import sys
 import traceback
 from pathlib import Path
@@ -22,6 +23,10 @@ from pythonfmu.enums import Fmi2Status
 
 from fmus.description import describe, guid
 from modelkit.model import Instance, Model, ModelError
+
+NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
+_LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
+_LATE = 1e-2  # of a step: how far it may begin from the end of the last one
 
 
 class ModelSlave(Fmi2Slave):
@@ -37,12 +42,14 @@ class ModelSlave(Fmi2Slave):
         self._reals = self._instance.reals
         self._integers = self._instance.integers
         self._known: set[tuple[object, ...]] = set()  # vectors of value references checked before
-        self._initialising = True
+        self._phase = NEW
+        self._end = 0.0  # s, of the last step
         self._stale = True  # outputs do not yet follow from what was set
         self._failed = ""
         self._start_time = 0.0
         if self.resources:
-            _let_go_of_the_interpreter(Path(self.resources), type(self).__name__)
+            _list_once(str(self.resources))
+            _settle_the_end(Path(self.resources), type(self).__name__)
 
     # -- description ---------------------------------------------------------------------------------
 
@@ -53,27 +60,48 @@ class ModelSlave(Fmi2Slave):
     # -- life cycle ----------------------------------------------------------------------------------
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        if self._phase != NEW:
+            self._raise("the experiment can be set up before initialisation only")
+        if not math.isfinite(start_time):
+            self._raise(f"the start time is {start_time} s; it must be a finite number")
         self._start_time = start_time
 
+    def enter_initialization_mode(self) -> None:
+        if self._phase != NEW:
+            self._raise("initialisation can be entered once; reset the FMU to start anew")
+        self._phase = INITIALISING
+
     def exit_initialization_mode(self) -> None:
+        if self._phase != INITIALISING:
+            self._raise("initialisation must be entered before it is left")
         problem = self._refresh()
         if problem:
             self._raise(problem)
-        self._initialising = False
+        self._phase, self._end = STEPPING, self._start_time
         self._known.clear()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         try:
             if self._failed:
                 raise ModelError(f"stopped before: {self._failed}")
-            if self._initialising:
-                raise ModelError("cannot step before initialisation is complete")
+            if self._phase != STEPPING:
+                when = "after the end" if self._phase == ENDED else "before initialisation is complete"
+                raise ModelError(f"cannot step {when}")
+            if abs(current_time - self._end) > _LATE * step_size:
+                raise ModelError(
+                    f"cannot step from t = {current_time:.9g} s by {step_size:g} s; "
+                    f"the last step ended at {self._end:.9g} s"
+                )
             self._instance.step(current_time, step_size)
+            self._end = current_time + step_size
         except ModelError as error:
             return self._fail(str(error))
         except Exception:
             return self._fail(traceback.format_exc())
         return True
+
+    def terminate(self) -> None:
+        self._phase = ENDED
 
     # -- variables -----------------------------------------------------------------------------------
 
@@ -97,7 +125,7 @@ class ModelSlave(Fmi2Slave):
     def _set(self, kind: str, store: Any, vrs: list[int], values: list[Any]) -> None:
         key = ("set", kind, *vrs)
         if key not in self._known:
-            causes = ("parameter", "input") if self._initialising else ("input",)
+            causes = ("parameter", "input") if self._phase < STEPPING else ("input",)
             wrong = self._others(kind, vrs, causes)
             if wrong:
                 self._fail(
@@ -110,14 +138,13 @@ class ModelSlave(Fmi2Slave):
         self._stale = True
 
     def _may_get(self, kind: str, vrs: list[int]) -> bool:
-        if self._initialising and self._stale and self._refresh():
+        if self._phase < STEPPING and self._stale and self._refresh():
             return False
         key = ("get", kind, *vrs)
         if key not in self._known:
             wrong = self._others(kind, vrs, ("parameter", "input", "output"))
-            if wrong:
-                self._fail(f"{wrong} cannot be read as {kind}")
-                return False
+            if wrong:  # no value is answered: hosts would go on with it
+                self._raise(f"{wrong} cannot be read as {kind}")
             self._known.add(key)
         return True
 
@@ -136,19 +163,19 @@ class ModelSlave(Fmi2Slave):
     # -- state ---------------------------------------------------------------------------------------
 
     def _get_fmu_state(self) -> bytes:  # type: ignore[override]
-        status = b"I" if self._initialising else b"F" if self._failed else b"S"
-        return b"".join((self._identity, status, self._instance.state))
+        life = _LIFE.pack(self._phase, bool(self._failed), self._start_time, self._end)
+        return b"".join((self._identity, life, self._instance.state))
 
     def _set_fmu_state(self, state: bytes) -> None:  # type: ignore[override]
         own = self._identity
-        head = len(own) + 1
+        head = len(own) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(own):
             self._fail("the state to restore is not one of this FMU")
             return
-        status = state[len(own) : head]
+        self._phase, failed, self._start_time, self._end = _LIFE.unpack_from(state, len(own))
         self._instance.restore(memoryview(state)[head:])
-        self._initialising = self._stale = status == b"I"
-        self._failed = self._failed or "restored a failed state" if status == b"F" else ""
+        self._stale = self._phase < STEPPING
+        self._failed = self._failed or "restored a failed state" if failed else ""
         self._known.clear()
 
     @staticmethod
@@ -189,18 +216,35 @@ class ModelSlave(Fmi2Slave):
         raise RuntimeError(message)
 
 
-def _let_go_of_the_interpreter(resources: Path, identifier: str) -> None:
-    """Free what pythonfmu would otherwise free twice when the process ends.
+def _list_once(folder: str) -> None:
+    """Keep one entry of the search path: pythonfmu puts another one there for every instance."""
+    while sys.path.count(folder) > 1:
+        sys.path.remove(folder)
 
-    Its library keeps a handle on the interpreter that a static destructor and a library destructor
-    both release, which aborts about every other process. The handle only matters where the library
-    started the interpreter itself; where a Python program loads the FMU it can go at once.
+
+_ending: set[Path] = set()  # libraries that end the interpreter of a host without Python
+
+
+def _settle_the_end(resources: Path, identifier: str) -> None:
+    """See that pythonfmu's library frees its interpreter once when the process ends.
+
+    The library keeps a handle on the interpreter that a static destructor and a library destructor both
+    release, which aborts or crashes most processes. In a Python program the handle is of no use and can go
+    at once. Elsewhere it ends the interpreter, so it goes before all else when the process ends; the
+    library stays loaded until then, whatever the host does.
     """
-    if not sys.platform.startswith("linux") or not sys.orig_argv:
+    if not sys.platform.startswith("linux"):
         return
     binary = resources.parent / "binaries" / "linux64" / f"{identifier}.so"
     try:
         library = ctypes.PyDLL(str(binary), mode=ctypes.RTLD_LOCAL | 4)  # RTLD_NOLOAD: only if loaded
-        library.finalizePythonInterpreter()
+        release = library.finalizePythonInterpreter
     except (OSError, AttributeError):
         return
+    if sys.orig_argv:  # a Python program
+        release()
+    elif binary not in _ending:
+        _ending.add(binary)
+        at_exit = ctypes.CDLL(None).__cxa_atexit
+        at_exit.argtypes = [ctypes.c_void_p] * 3
+        at_exit(ctypes.cast(release, ctypes.c_void_p), None, None)

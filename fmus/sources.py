@@ -27,6 +27,11 @@ def package_name() -> str:
     return f"touchdown_{content_hash()}"
 
 
+def host_module() -> str:
+    """Name of the module that meets the host's interpreter."""
+    return f"{package_name()}_host"
+
+
 def rewritten(text: str) -> str:
     """`text` with the project's own imports turned to the package inside the FMU."""
     return _IMPORT.sub(lambda match: f"{match[1]} {package_name()}.{match[2]}", text)
@@ -44,9 +49,19 @@ def write_package(folder: Path) -> Path:
     return package
 
 
-def write_script(text: str, module: str, folder: Path) -> Path:
-    """Write an FMU's script, as `module`, into `folder`; returns its path."""
-    text = rewritten(text)
+def write_host(folder: Path) -> Path:
+    """Write the module that meets the host's interpreter into `folder`; returns its path."""
+    path = folder / f"{host_module()}.py"
+    _copy(ROOT / "fmus" / "host.py", path)
+    return path
+
+
+def write_script(text: str, module: str, folder: Path, interpreter: str = "None") -> Path:
+    """Write an FMU's script, as `module`, into `folder`; returns its path.
+
+    `interpreter` is the literal of the one it is linked for.
+    """
+    text = f"__import__({host_module()!r}).prepare({interpreter})\n\n{rewritten(text)}"
     text += (
         "\n\n# pythonfmu runs this file anew and drops one reference to these globals for every instance\n"
         f"__import__({package_name()!r}).HELD.append(globals())\n"

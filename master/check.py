@@ -117,18 +117,21 @@ def _check_ports(component: Component, report: Report) -> None:
 
 
 def _dry_run(component: Component, report: Report) -> None:
-    """A few steps from the defaults: outputs must be finite numbers."""
+    """A few steps from the defaults, set as such: outputs must be finite numbers."""
     outputs = [
         v.name
         for v in component.variables.values()
         if v.causality == "output" and v.kind in ("Real", "Integer")
     ]
+    settable = [v for v in component.variables.values() if v.settable and v.start is not None]
     try:
+        component.set({v.name: v.start for v in settable if v.start is not None})
         component.enter(0.0)
         component.exit()
+        values = component.read(outputs)
         for k in range(DRY_RUN_STEPS):
             component.step(k * DRY_RUN_STEP, DRY_RUN_STEP)
-        values = component.read(outputs)
+            values = component.read(outputs)
     except TouchdownError as error:
         report.problems.append(f"dry run: {error}")
         return

@@ -14,7 +14,7 @@ import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,9 +26,14 @@ from fmpy.fmi2 import (
     fmi2CallbackFreeMemoryTYPE,
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    fmi2False,
+    fmi2True,
 )
 
+from master.archive import refuse_hostile
 from master.component import Component, Variable
+from master.description import refuse_definitions, refuse_lies
 from master.errors import TouchdownError
 
 OK, WARNING = 0, 1
@@ -55,12 +60,7 @@ def unpack(path: Path, cache: Path) -> Path:
     fresh = Path(tempfile.mkdtemp(dir=folder.parent))
     try:
         with zipfile.ZipFile(path) as archive:
-            for name in archive.namelist():
-                parts = PurePosixPath(name).parts
-                if name.startswith("/") or ".." in parts or ":" in name or "\\" in name:
-                    raise TouchdownError(
-                        f"{path} holds an entry {name!r} that leads out of its folder; refused"
-                    )
+            refuse_hostile(path, archive)
             if "modelDescription.xml" not in archive.namelist():
                 raise TouchdownError(f"{path} is no FMU: it has no modelDescription.xml")
             archive.extractall(fresh)
@@ -79,6 +79,7 @@ def unpack(path: Path, cache: Path) -> Path:
 def describe(path: Path, folder: Path) -> Any:
     """fmpy's model description of an unpacked FMU that can be co-simulated here."""
     try:
+        refuse_definitions(folder / "modelDescription.xml")
         description = read_model_description(str(folder), validate=False)
     except Exception as error:
         first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
@@ -89,20 +90,26 @@ def describe(path: Path, folder: Path) -> Any:
             f"{path} is FMI {description.fmiVersion}, {kind}; FMI 2.0 for co-simulation is needed"
         )
     identifier = description.coSimulation.modelIdentifier
+    refuse_lies(path, description)
     if not (folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}").is_file():
         there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
         raise TouchdownError(
             f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
         )
-    if "PythonFMU" in (description.generationTool or ""):
+    if _by_pythonfmu(description):
         _check_script(path, folder)
     return description
+
+
+def _by_pythonfmu(description: Any) -> bool:
+    return "PythonFMU" in (description.generationTool or "")
 
 
 def _check_script(path: Path, folder: Path) -> None:
     """pythonfmu's library ends the process where the script it is to run is missing."""
     name = folder / "resources" / "slavemodule.txt"
-    if not name.is_file() or not (name.parent / f"{name.read_text(encoding='utf-8').strip()}.py").is_file():
+    module = name.read_bytes().decode("utf-8", "replace").strip() if name.is_file() else ""
+    if not module.isidentifier() or not (name.parent / f"{module}.py").is_file():
         raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
 
 
@@ -132,6 +139,20 @@ def variables_of(description: Any) -> dict[str, Variable]:
     }
 
 
+def _resources(folder: Path, description: Any) -> str:
+    """URI of an unpacked FMU's resources.
+
+    pythonfmu's library knows %20 for a space and takes everything else as it is; where that is not there
+    it crashes.
+    """
+    path = (folder / "resources").absolute()
+    if not _by_pythonfmu(description):
+        return path.as_uri()
+    if "%20" in str(path):
+        raise TouchdownError(f"pythonfmu cannot read {path}: it has %20 in it; set another TOUCHDOWN_CACHE")
+    return f"file://{path}"
+
+
 class FmuComponent(Component):
     """An FMU that is stepped."""
 
@@ -151,7 +172,7 @@ class FmuComponent(Component):
                 instanceName=name,
             )
             self._callbacks = self._make_callbacks()
-            self._fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
+            self._instantiate(_resources(folder, description))
         except Exception as error:
             os.chdir(here)  # fmpy leaves the library's folder current where loading fails
             raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
@@ -160,6 +181,19 @@ class FmuComponent(Component):
         self._bind_functions()
         self._in: tuple[int, int, int] = (0, 0, 0)
         self._out: tuple[int, int, int] = (0, 0, 0)
+
+    def _instantiate(self, resources: str) -> None:
+        self._fmu.component = self._fmu.fmi2Instantiate(
+            self.name.encode(),
+            fmi2CoSimulation,
+            self._fmu.guid.encode(),
+            resources.encode("utf-8", "surrogateescape"),
+            ctypes.byref(self._callbacks),
+            fmi2False,
+            fmi2True,
+        )
+        if self._fmu.component is None:
+            raise RuntimeError("it gave no instance")
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
         def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes) -> None:

@@ -284,6 +284,87 @@ def too_early(folder: str, _: str) -> list[Any]:
     return [taken, slave.said]
 
 
+def steps_apart(folder: str, _: str) -> list[Any]:
+    """Whether steps are taken that do not begin where the last one ended, and what is said."""
+    found = []
+    for time in (0.0, -STEP, 1.5 * STEP, 3.0 * STEP):
+        slave = started(folder, 2)
+        found.append([not slave.refuses(slave.fmu.doStep, time, STEP), slave.said])
+        slave.free()
+    return found
+
+
+def rounded_times(folder: str, _: str) -> bool:
+    """Whether steps are taken whose beginnings are off by what hosts round."""
+    slave = started(folder, 1)
+    taken = [
+        not slave.refuses(slave.fmu.doStep, k * STEP + error, STEP) for k, error in ((1, 1e-9), (2, 0.0))
+    ]
+    slave.free()
+    return all(taken)
+
+
+def begin_anew(folder: str, _: str) -> bool:
+    """Whether a start time other than 0 and a step back by the saved state are taken."""
+    slave = Slave(folder)
+    slave.fmu.setupExperiment(startTime=1.0)
+    slave.fmu.enterInitializationMode()
+    slave.fmu.exitInitializationMode()
+    slave.fmu.doStep(1.0, STEP)
+    state = slave.fmu.getFMUstate()
+    slave.fmu.doStep(1.0 + STEP, STEP)
+    slave.fmu.setFMUstate(state)
+    slave.fmu.freeFMUstate(state)
+    taken = not slave.refuses(slave.fmu.doStep, 1.0 + STEP, STEP)
+    slave.free()
+    return taken
+
+
+def out_of_order(folder: str, _: str) -> dict[str, Any]:
+    """Calls before or after their time, by name: whether they are refused, and what is said."""
+
+    def entered(slave: Slave) -> None:
+        slave.fmu.setupExperiment(startTime=0.0)
+        slave.fmu.enterInitializationMode()
+
+    def ended(slave: Slave) -> None:
+        slave.start(TOUCHING)
+        slave.fmu.terminate()
+
+    def nothing(_: Slave) -> None:
+        return
+
+    calls: dict[str, tuple[Callable[[Slave], Any], Callable[[Slave], Any]]] = {
+        "setup while initialising": (entered, lambda s: s.fmu.setupExperiment(startTime=0.0)),
+        "setup when running": (Slave.start, lambda s: s.fmu.setupExperiment(startTime=0.0)),
+        "setup at no time": (nothing, lambda s: s.fmu.setupExperiment(startTime=math.nan)),
+        "enter twice": (entered, lambda s: s.fmu.enterInitializationMode()),
+        "enter when running": (Slave.start, lambda s: s.fmu.enterInitializationMode()),
+        "exit without entering": (nothing, lambda s: s.fmu.exitInitializationMode()),
+        "exit twice": (Slave.start, lambda s: s.fmu.exitInitializationMode()),
+        "step when new": (nothing, lambda s: s.fmu.doStep(0.0, STEP)),
+        "step after the end": (ended, lambda s: s.fmu.doStep(0.0, STEP)),
+    }
+    found = {}
+    for name, (before, call) in calls.items():
+        slave = Slave(folder)
+        before(slave)
+        found[name] = [slave.refuses(call, slave), slave.messages[0] if slave.messages else ""]
+        slave.free()
+    started(folder, 1).free()
+    return found
+
+
+def read_after_the_end(folder: str, _: str) -> bool:
+    """Whether outputs stay what they were when the instance is terminated."""
+    slave = started(folder, 2)
+    before = slave.outputs()
+    slave.fmu.terminate()
+    after = slave.outputs()
+    slave.free()
+    return before == after
+
+
 def unknown_references(folder: str, _: str) -> dict[str, Any]:
     """Value references that no variable has and that can be read or set all the same."""
     probe = Slave(folder)
@@ -324,7 +405,7 @@ def mixed_types(folder: str, _: str) -> list[Any]:
 QUESTIONS: tuple[Callable[[str, str], Any], ...] = (
     two_instances, fifty_instances, reset, replay, saved_early, foreign_states, inputs_not_finite,
     failure_lasts, absurd_inputs, bad_parameters, set_too_late, bad_steps, too_early, unknown_references,
-    mixed_types,
+    mixed_types, steps_apart, rounded_times, begin_anew, out_of_order, read_after_the_end,
 )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import signal
+import stat
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ import h5py
 import pytest
 from conftest import ROOT
 
+import master.archive
 from master.cli import main
 from master.errors import FAILED, STOPPED
 from master.scene import SCENES
@@ -367,6 +369,154 @@ def test_an_fmu_that_leads_out_of_its_folder(
     assert ended.status == FAILED
     assert list(tmp_path.rglob("*evil*")) == []
     assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+def checked_and_swapped(path: Path, run: Command, touchdown: Command) -> list[str]:
+    """What `check` and a run with the FMU at `path` say; both must refuse it by one line."""
+    found = []
+    for ended in (touchdown("check", path), run(SCENE, "--swap", f"bearing={path}")):
+        assert ended.status == FAILED
+        assert str(path) in ended.line
+        found.append(ended.line)
+    return found
+
+
+def test_an_fmu_that_holds_a_link(
+    run: Command, touchdown: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    path = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(path, "w") as target:
+        for name, content in entries_of(built["bushing"]).items():
+            target.writestr(name, content)
+        link = zipfile.ZipInfo("resources/link")
+        link.external_attr = (stat.S_IFLNK | 0o777) << 16
+        target.writestr(link, "/etc/passwd")
+    for line in checked_and_swapped(path, run, touchdown):
+        assert "holds a link, 'resources/link'" in line
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "named"), [("LARGEST", "would unpack to 10 MB"), ("MOST", "entries, more than 5")]
+)
+def test_an_fmu_that_swells(
+    limit: str, named: str, run: Command, touchdown: Command, built: Mapping[str, Path], own_cache: Path,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+):  # fmt: skip
+    """Refused before anything is written; the limits are lowered here to keep the test small."""
+    monkeypatch.setattr(master.archive, limit, 5_000_000 if limit == "LARGEST" else 5)
+    path = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
+        target.writestr("modelDescription.xml", entries_of(built["bushing"])["modelDescription.xml"])
+        for k in range(9):
+            target.writestr(f"resources/{k}", bytes(1_100_000))
+    assert path.stat().st_size < 200_000
+    for line in checked_and_swapped(path, run, touchdown):
+        assert named in line
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+def test_an_fmu_that_states_too_small_a_size(touchdown: Command, own_cache: Path, tmp_path: Path):
+    """An entry never unpacks to more than it states."""
+    path = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
+        target.writestr("modelDescription.xml", bytes(1_000_000))
+    content = path.read_bytes()
+    path.write_bytes(content.replace((1_000_000).to_bytes(4, "little"), (1000).to_bytes(4, "little")))
+    assert "damaged" in touchdown("check", path).line
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+def described_as(built: Path, folder: Path, old: str, new: str) -> Path:
+    """A copy of an FMU whose model description says something else."""
+    entries = entries_of(built)
+    text, count = re.subn(old, new, entries["modelDescription.xml"].decode(), count=1)
+    assert count == 1
+    return archive(folder / "bad.fmu", {**entries, "modelDescription.xml": text.encode()})
+
+
+REFERENCE = r'(name="%s" valueReference=)"\d+"'
+LIES = {  # what the description of the bushing says: what becomes of it, and what the user is told
+    "reference too large": (REFERENCE % "clearance", r'\1"4294967296"', "value reference 4294967296"),
+    "reference negative": (REFERENCE % "clearance", r'\1"-1"', "value reference -1"),
+    "reference no number": (REFERENCE % "clearance", r'\1"one"', "modelDescription.xml"),
+    "references shared": (REFERENCE % "journal_radius", r'\1"5"', "share the value reference 5"),
+    "name twice": ('name="journal_radius"', 'name="clearance"', "clearance is declared twice"),
+    "name of the library": ('modelIdentifier="', 'modelIdentifier="../../', "'../../Bushing' is no name"),
+    "entities": (
+        r"(<fmiModelDescription)", r'<!DOCTYPE a [<!ENTITY b SYSTEM "/etc/passwd">]>\1', "document type",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "named"), LIES.values(), ids=LIES)
+def test_a_description_that_cannot_be_true(
+    old: str, new: str, named: str, run: Command, touchdown: Command, built: Mapping[str, Path],
+    own_cache: Path, tmp_path: Path,
+):  # fmt: skip
+    path = described_as(built["bushing"], tmp_path, old, new)
+    for line in checked_and_swapped(path, run, touchdown):
+        assert named in line
+
+
+FALSE = {  # what only the library can tell
+    "a variable it does not have": (REFERENCE % "journal.fy", r'\1"123456"', "value reference 123456"),
+    "an input that is an output": (
+        r'(name="contact.force"[^>]*) causality="local" variability="continuous" initial="calculated">'
+        r'(\s*<Real[^>]*)/>',
+        r'\1 causality="input" variability="continuous">\2 start="1.0"/>',
+        "contact.force cannot be set",
+    ),
+    "a real that is an integer": (
+        r'(name="friction.kind"[^>]* variability=)"fixed"([^>]*>\s*)<Integer[^>]*/>',
+        r'\1"fixed"\2<Real start="2.0"/>',
+        "friction.kind cannot be set as real",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "named"), FALSE.values(), ids=FALSE)
+def test_a_description_that_is_not_true(
+    old: str, new: str, named: str, built: Mapping[str, Path], own_cache: Path, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+):  # fmt: skip
+    """Found by a dry run."""
+    path = described_as(built["bushing"], tmp_path, old, new)
+    assert main(["check", str(path)]) == FAILED
+    said = capsys.readouterr().out
+    assert [line for line in said.splitlines() if line.startswith("  problem: dry run") and named in line]
+
+
+def test_a_run_with_a_variable_that_is_not_there(
+    run: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    path = described_as(built["bushing"], tmp_path, *FALSE["a variable it does not have"][:2])
+    ended = run(SCENE, *SHORT, "--swap", f"bearing={path}")
+    assert "component bearing: " in ended.line
+    assert "value reference 123456 cannot be read" in ended.line
+
+
+@pytest.mark.parametrize("script", [b"", b"../../evil", b"\xff\xfe", b"no_such_module", b"a b"])
+def test_an_fmu_without_its_script(
+    script: bytes,
+    run: Command,
+    touchdown: Command,
+    built: Mapping[str, Path],
+    own_cache: Path,
+    tmp_path: Path,
+):
+    """pythonfmu's library would end the process."""
+    entries = {**entries_of(built["bushing"]), "resources/slavemodule.txt": script}
+    for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, touchdown):
+        assert "lacks the script" in line
+
+
+def test_an_fmu_for_another_platform(
+    run: Command, touchdown: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    entries = {n: e for n, e in entries_of(built["bushing"]).items() if not n.endswith(".so")}
+    for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, touchdown):
+        assert "no binary for this platform (linux64); it has: win64" in line
 
 
 @pytest.mark.parametrize("path", ["missing.fmu", "/no/such/folder/missing.fmu"])

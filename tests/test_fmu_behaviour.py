@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -16,6 +19,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import ROOT
+from fmpy import extract
 
 from fmus.recipes import names
 
@@ -119,6 +124,91 @@ def test_fmpy_simulates_it(fmu: str, alone: Alone, built: Mapping[str, Path]):
     assert found["columns"] > 5
 
 
+# -- wherever it lies, beside whatever else ------------------------------------------------------------
+
+ODD = ("with spaces in it", "Größe und Maß", "日本", "100% + [x] #1")  # names of folders
+
+
+@pytest.mark.parametrize("name", ODD[:1])
+def test_any_host_loads_it_from(name: str, alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path):
+    folder = shutil.copytree(unpacked["housing"], tmp_path / name)
+    assert answer(alone(ALONE, folder))["outputs"]
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_the_master_loads_it_from(name: str, built: Mapping[str, Path], tmp_path: Path):
+    """FMU and cache in such a folder: its resources are named to pythonfmu as it reads them."""
+    fmu = shutil.copy(built["housing"], (tmp_path / name).with_suffix(".fmu"))
+    done = subprocess.run(
+        [sys.executable, "-c", "import sys; from master.cli import main; sys.exit(main())", "check", fmu],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TOUCHDOWN_CACHE": str(tmp_path / name)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "outputs finite" in done.stdout
+    assert (tmp_path / name / "unpacked").is_dir()
+
+
+BESIDE_ANOTHER_VERSION = """
+import json
+sys.meta_path.pop(0)
+sys.path.insert(0, sys.argv[2])
+import fmus, modelkit
+from slave_driver import TOUCHING, Slave
+slave = Slave(sys.argv[1]).start(TOUCHING)
+slave.run(0, 10)
+print(json.dumps({"installed": fmus.WHAT + modelkit.WHAT, "outputs": slave.outputs()}))
+"""
+
+
+def test_another_version_of_the_project_is_installed(
+    alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path
+):
+    """The FMU goes by its own sources, whatever is called as they were."""
+    for name in ("fmus", "modelkit", "rotor", "bearings", "master"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "__init__.py").write_text("WHAT = 'another'\n")
+    found = answer(alone(BESIDE_ANOTHER_VERSION, unpacked["housing"], tmp_path))
+    assert found["installed"] == "another" * 2
+    assert found["outputs"] == answer(alone(ALONE, unpacked["housing"]))["outputs"]
+
+
+TOGETHER = """
+import json
+from slave_driver import Slave
+slaves = [Slave(folder, str(i)).start() for i, folder in enumerate(sys.argv[1:])]
+for k in range(3):
+    for slave in slaves:
+        slave.set({"seat.fy": -20.0})
+        slave.run(k, 1)
+print(json.dumps([slave.get(["seat.y"])["seat.y"] for slave in slaves]))
+"""
+
+
+def test_two_versions_in_one_process(alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path):
+    """The other version's housing gives way downwards where this one's goes up."""
+    other = tmp_path / "other"
+    for name in ("modelkit", "rotor", "bearings", "fmus"):
+        shutil.copytree(ROOT / name, other / name, ignore=shutil.ignore_patterns("__pycache__"))
+    text = (other / "bearings" / "housing.py").read_text(encoding="utf-8")
+    changed = text.replace("stiffness: float = real(", "stiffness: float = real(0.5 * ", 1)
+    assert changed != text
+    (other / "bearings" / "housing.py").write_text(changed, encoding="utf-8")
+    script = "from pathlib import Path; from fmus.build import build; from fmus.recipes import recipe; "
+    subprocess.run(
+        [sys.executable, "-c", f"{script}build(recipe('housing'), Path('.'))"],
+        cwd=other,
+        env={**os.environ, "PYTHONPATH": str(other)},
+        check=True,
+    )
+    folder = extract(str(other / "housing.fmu"), str(tmp_path / "unpacked"))
+    first, second = answer(alone(TOGETHER, unpacked["housing"], folder))
+    assert answer(alone(TOGETHER, folder, unpacked["housing"])) == [second, first]
+    assert first != second
+
+
 # -- instances ---------------------------------------------------------------------------------------
 
 
@@ -135,6 +225,47 @@ def test_fifty_instances_one_after_the_other(fmu: str, answers: Answers):
 @every_fmu
 def test_reset_starts_anew(fmu: str, answers: Answers):
     assert answers(fmu)["reset"] is True
+
+
+FIVE_HUNDRED = """
+import gc, json, threading
+from slave_driver import Slave
+
+def resident():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1])
+
+def census():
+    gc.collect()
+    return {
+        "pages": resident(),
+        "objects": len(gc.get_objects()),
+        "search path": len(sys.path),
+        "modules": len(sys.modules),
+        "threads": len(os.listdir("/proc/self/task")),
+        "files": len(os.listdir("/proc/self/fd")),
+    }
+
+import os
+found = []
+for k in range(550):
+    slave = Slave(sys.argv[1]).start()
+    slave.run(0, 1)
+    slave.free()
+    if k in (49, 549):
+        found.append(census())
+print(json.dumps(found))
+"""
+
+
+@pytest.mark.long
+def test_five_hundred_instances_leave_nothing_behind(alone: Alone, unpacked: Mapping[str, Path]):
+    """What an instance leaves would slow the next one: memory, objects, search path, threads, files."""
+    early, late = answer(alone(FIVE_HUNDRED, unpacked["bushing"]))
+    assert late["pages"] <= 1.05 * early["pages"]
+    assert late.pop("objects") <= 1.05 * early.pop("objects")
+    del early["pages"], late["pages"]
+    assert late == early
 
 
 # -- state -------------------------------------------------------------------------------------------
@@ -246,6 +377,35 @@ def test_a_step_before_initialisation_is_refused(fmu: str, answers: Answers):
     taken, said = answers(fmu)["too_early"]
     assert not taken
     assert "initialisation" in said
+
+
+@every_fmu
+def test_steps_follow_each_other(fmu: str, answers: Answers):
+    """Back in time, or leaving a gap: refused. Off by what hosts round: taken."""
+    found = answers(fmu)["steps_apart"]
+    assert [taken for taken, _ in found] == [False] * 4
+    assert [said for _, said in found if "the last step ended at 4e-05 s" not in said] == []
+    assert answers(fmu)["rounded_times"]
+    assert answers(fmu)["begin_anew"]
+
+
+@every_fmu
+def test_calls_out_of_order_are_refused(fmu: str, answers: Answers):
+    """By one clear line, and the process runs on."""
+    found = answers(fmu)["out_of_order"]
+    assert len(found) == 9
+    assert {name: said for name, (refused, said) in found.items() if not refused} == {}
+    assert {name for name, (_, said) in found.items() if len(said.splitlines()) != 1} == set()
+    for name, said in (
+        ("setup when running", "before initialisation only"),
+        ("setup at no time", "start time is nan s"),
+        ("enter twice", "reset the FMU"),
+        ("exit without entering", "must be entered"),
+        ("step when new", "before initialisation is complete"),
+        ("step after the end", "after the end"),
+    ):
+        assert said in found[name][1]
+    assert answers(fmu)["read_after_the_end"]
 
 
 @every_fmu

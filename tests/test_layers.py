@@ -50,7 +50,7 @@ def test_a_layer_imports_only_what_it_may(package: str) -> None:
 
 def test_only_one_module_speaks_fmi() -> None:
     speakers = {p.name for p in (ROOT / "master").rglob("*.py") if "fmpy" in imports(p)}
-    assert speakers == {"fmi.py", "check.py"}
+    assert speakers == {"fmi.py", "check.py", "trial.py"}  # the last runs in a process of its own
 
 
 def test_only_the_twin_steps_models_in_the_master() -> None:

@@ -10,6 +10,7 @@ from master.verbs import (
     compare_bearings,
     compare_modes,
     compare_rotors,
+    doctor,
     rotor,
     run,
     scenes,
@@ -28,4 +29,5 @@ ALL = (
     compare_modes,
     build,
     check,
+    doctor,
 )

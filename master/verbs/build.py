@@ -16,12 +16,18 @@ def add_to(verbs: Any) -> None:
         "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
     )
     verb.add_argument("-o", "--output", type=Path, default=Path("build"), help="folder (default: build)")
+    verb.add_argument(
+        "--link-python",
+        action="store_true",
+        help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
+    )
     verb.set_defaults(run=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from fmus.build import build
+    from fmus.link import LinkError, interpreter
     from fmus.recipes import Recipe, names
     from master.library import locate
 
@@ -29,10 +35,16 @@ def execute(options: argparse.Namespace) -> int:
     for name, one in zip(options.names, found, strict=False):
         if not isinstance(one, Recipe):
             raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
+    try:
+        linked = interpreter() if options.link_python else None
+    except LinkError as error:
+        raise TouchdownError(str(error)) from None
     for one in found:
         assert isinstance(one, Recipe)
         try:
-            print(build(one, options.output))
+            print(build(one, options.output, linked))
+        except LinkError as error:
+            raise TouchdownError(str(error)) from None
         except OSError as error:
             raise TouchdownError(
                 f"cannot write to {options.output}: {error.strerror}; choose another folder with -o"

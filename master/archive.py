@@ -1,0 +1,34 @@
+"""What an archive from elsewhere must not hold, whatever kind it is of."""
+
+from __future__ import annotations
+
+import stat
+import zipfile
+from pathlib import Path, PurePosixPath
+
+from master.errors import TouchdownError
+
+LARGEST = 2 * 1024**3  # bytes, unpacked
+MOST = 20_000  # entries
+
+
+def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
+    """Raise TouchdownError where unpacking `archive`, read from `path`, would do harm.
+
+    Entries that lead out of the folder, links, and more than a disk should take. An entry never unpacks
+    to more than the size it states, so the sum of these is a bound.
+    """
+    entries = archive.infolist()
+    for entry in entries:
+        name = entry.filename
+        if name.startswith("/") or ".." in PurePosixPath(name).parts or ":" in name or "\\" in name:
+            raise TouchdownError(f"{path} holds an entry {name!r} that leads out of its folder; refused")
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            raise TouchdownError(f"{path} holds a link, {name!r}; refused")
+    size = sum(entry.file_size for entry in entries)
+    if size > LARGEST:
+        raise TouchdownError(
+            f"{path} would unpack to {size / 1e6:.0f} MB, more than {LARGEST / 1e6:.0f} MB; refused"
+        )
+    if len(entries) > MOST:
+        raise TouchdownError(f"{path} holds {len(entries)} entries, more than {MOST}; refused")

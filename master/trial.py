@@ -1,0 +1,76 @@
+"""Try one unpacked FMU: `python -I trial.py FOLDER` loads it, initialises it, steps it and frees it.
+
+It runs in a process of its own and imports nothing of the project, as another tool would. It prints the
+stage it enters and what the FMU logs, so that a crash, too, is known by its place.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from fmpy import calloc, free, read_model_description
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+
+STEPS, STEP = 10, 1e-5  # s
+STAGE, LOG = "stage: ", "log: "
+
+
+def say(text: str) -> None:
+    """One line, out before anything may crash."""
+    print(" ".join(text.split()), flush=True)
+
+
+def callbacks() -> fmi2CallbackFunctions:
+    """What the FMU may call."""
+
+    def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes) -> None:
+        if status > 1:
+            say(LOG + message.decode("utf-8", "replace"))
+
+    found = fmi2CallbackFunctions()
+    found.logger = fmi2CallbackLoggerTYPE(log)
+    found.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    found.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    return found
+
+
+def main() -> None:
+    """Try it."""
+    folder = sys.argv[1]
+    description = read_model_description(folder, validate=False)
+    assert description.coSimulation is not None
+    kept = callbacks()
+    say(STAGE + "loading")
+    fmu = FMU2Slave(
+        guid=description.guid,
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        unzipDirectory=folder,
+        instanceName="trial",
+    )
+    fmu.instantiate(callbacks=kept, loggingOn=True)
+    say(STAGE + "initialising")
+    fmu.setupExperiment(startTime=0.0)
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    say(STAGE + "stepping")
+    for k in range(STEPS):
+        fmu.doStep(k * STEP, STEP)
+    say(STAGE + "freeing")
+    fmu.terminate()
+    fmu.freeInstance()
+    say(STAGE + "ending")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except Exception as error:
+        say(LOG + str(error))
+        sys.exit(1)
