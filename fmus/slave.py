@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 from xml.etree.ElementTree import Element
 
+import numpy as np
 from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
@@ -39,9 +40,9 @@ class ModelSlave(Fmi2Slave):
         self.description = self.model.about
         self._instance = Instance(self.model)
         self._identity = guid(self.model).encode()
-        self._reals = self._instance.reals
-        self._integers = self._instance.integers
-        self._known: set[tuple[object, ...]] = set()  # vectors of value references checked before
+        self._stores = {"real": self._instance.words, "integer": self._instance.words.view("i8")}
+        self._known: dict[tuple[object, ...], np.ndarray] = {}  # vectors of value references checked before
+        self._last: dict[tuple[str, str], tuple[list[int], np.ndarray]] = {}
         self._phase = NEW
         self._end = 0.0  # s, of the last step
         self._stale = True  # outputs do not yet follow from what was set
@@ -78,7 +79,7 @@ class ModelSlave(Fmi2Slave):
         if problem:
             self._raise(problem)
         self._phase, self._end = STEPPING, self._start_time
-        self._known.clear()
+        self._forget()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         try:
@@ -106,25 +107,20 @@ class ModelSlave(Fmi2Slave):
     # -- variables -----------------------------------------------------------------------------------
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
-        self._set("real", self._reals, vrs, values)
+        self._set("real", vrs, values)
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        self._set("integer", self._integers, vrs, values)
+        self._set("integer", vrs, values)
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        if not self._may_get("real", vrs):
-            return [math.nan] * len(vrs)
-        reals = self._reals
-        return [reals[i] for i in vrs]
+        return self._get("real", vrs, math.nan)
 
     def get_integer(self, vrs: list[int]) -> list[int]:
-        if not self._may_get("integer", vrs):
-            return [0] * len(vrs)
-        return [self._integers[i] for i in vrs]
+        return self._get("integer", vrs, 0)
 
-    def _set(self, kind: str, store: Any, vrs: list[int], values: list[Any]) -> None:
-        key = ("set", kind, *vrs)
-        if key not in self._known:
+    def _set(self, kind: str, vrs: list[int], values: list[Any]) -> None:
+        places = self._places("set", kind, vrs)
+        if places is None:
             causes = ("parameter", "input") if self._phase < STEPPING else ("input",)
             wrong = self._others(kind, vrs, causes)
             if wrong:
@@ -132,21 +128,44 @@ class ModelSlave(Fmi2Slave):
                     f"{wrong} cannot be set as {kind} now; parameters are fixed after initialisation"
                 )
                 return
-            self._known.add(key)
-        for i, value in zip(vrs, values, strict=True):
-            store[i] = value
+            places = self._note("set", kind, vrs)
+        self._stores[kind][places] = values
         self._stale = True
 
-    def _may_get(self, kind: str, vrs: list[int]) -> bool:
+    def _get(self, kind: str, vrs: list[int], nothing: Any) -> list[Any]:
         if self._phase < STEPPING and self._stale and self._refresh():
-            return False
-        key = ("get", kind, *vrs)
-        if key not in self._known:
+            return [nothing] * len(vrs)
+        places = self._places("get", kind, vrs)
+        if places is None:
             wrong = self._others(kind, vrs, ("parameter", "input", "output"))
             if wrong:  # no value is answered: hosts would go on with it
                 self._raise(f"{wrong} cannot be read as {kind}")
-            self._known.add(key)
-        return True
+            places = self._note("get", kind, vrs)
+        return self._stores[kind][places].tolist()
+
+    def _places(self, access: str, kind: str, vrs: list[int]) -> np.ndarray | None:
+        """Where a vector of value references that was checked before lies in the memory.
+
+        Mostly it is the one that came last: comparing lists is cheaper than looking a long one up.
+        """
+        last = self._last.get((access, kind))
+        if last is not None and last[0] == vrs:
+            return last[1]
+        found = self._known.get((access, kind, *vrs))
+        if found is not None:
+            self._last[access, kind] = (list(vrs), found)
+        return found
+
+    def _note(self, access: str, kind: str, vrs: list[int]) -> np.ndarray:
+        """Keep a vector that was checked."""
+        found = np.array(vrs, dtype=np.intp)
+        self._known[(access, kind, *vrs)] = found
+        return found
+
+    def _forget(self) -> None:
+        """What may be set is another matter from now on."""
+        self._known.clear()
+        self._last.clear()
 
     def _others(self, kind: str, vrs: list[int], causes: tuple[str, ...]) -> str:
         """Names of the variables among `vrs` that are not of this kind and these causalities."""
@@ -176,7 +195,7 @@ class ModelSlave(Fmi2Slave):
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
         self._failed = self._failed or "restored a failed state" if failed else ""
-        self._known.clear()
+        self._forget()
 
     @staticmethod
     def _fmu_state_to_bytes(state: bytes) -> bytes:  # type: ignore[override]
