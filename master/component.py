@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from master.errors import TouchdownError, one_of
+from master.units import Unit
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ class Component(ABC):
         self.name = name
         self.origin = origin  # what it is made of, for people
         self.variables = variables
+        self.units: Mapping[str, Unit] = {}  # those it defines, by name
         self.inputs = np.zeros(0)
         self.outputs = np.zeros(0)
 

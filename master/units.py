@@ -1,9 +1,29 @@
-"""Values with units, as people write them; a mistake is the user's to mend."""
+"""Values with units, as people write them, and units as FMI and SSP define them."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
 from master.errors import TouchdownError
 from modelkit import units
+
+BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit by its SI base units: value in SI = factor * value + offset."""
+
+    exponents: Mapping[str, int] = field(default_factory=dict)  # of BASE; those that are not 0
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def to(self, other: Unit) -> tuple[float, float] | None:
+        """Factor and offset that turn a value in this unit into `other`; None where they do not measure alike."""
+        if dict(self.exponents) != dict(other.exponents):
+            return None
+        return self.factor / other.factor, (self.offset - other.offset) / other.factor
 
 
 def to_si(value: object, unit: str | None, name: str) -> float:

@@ -14,6 +14,7 @@ from master.verbs import (
     rotor,
     run,
     scenes,
+    ssp,
     sweep,
 )
 
@@ -28,6 +29,7 @@ ALL = (
     compare_rotors,
     compare_modes,
     build,
+    ssp,
     check,
     doctor,
 )
