@@ -178,6 +178,12 @@ def units_of(description: Any) -> dict[str, Unit]:
     return found
 
 
+def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
+    """Variables and units of an FMU, which is not loaded."""
+    description = describe(path, unpack(path, cache))
+    return variables_of(description), units_of(description)
+
+
 class FmuComponent(Component):
     """An FMU that is stepped."""
 
@@ -243,6 +249,7 @@ class FmuComponent(Component):
         step = ctypes.PYFUNCTYPE(integer, pointer, real, real, integer)
         self._set_real = exchange(("fmi2SetReal", self._fmu.dll))
         self._get_real = exchange(("fmi2GetReal", self._fmu.dll))
+        self._set_boolean = exchange(("fmi2SetBoolean", self._fmu.dll))
         self._set_integer = exchange(("fmi2SetInteger", self._fmu.dll))
         self._get_integer = exchange(("fmi2GetInteger", self._fmu.dll))
         self._do_step = step(("fmi2DoStep", self._fmu.dll))
@@ -253,7 +260,13 @@ class FmuComponent(Component):
         return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
 
     def set(self, values: Mapping[str, float]) -> None:
-        for kind, call, dtype in (("Real", self._set_real, "f8"), ("Integer", self._set_integer, "i4")):
+        calls = (
+            ("Real", self._set_real, "f8"),
+            ("Integer", self._set_integer, "i4"),
+            ("Enumeration", self._set_integer, "i4"),
+            ("Boolean", self._set_boolean, "i4"),
+        )
+        for kind, call, dtype in calls:
             names = [n for n in values if self.variable(n).kind == kind]
             if names:
                 references = self._references(names)

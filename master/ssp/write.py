@@ -105,19 +105,25 @@ def _structure(scene: Scene, system: System, sources: Mapping[str, str], zero: f
     elements = SubElement(whole, "ssd:Elements")
     units = _units(system)
     for name, source in sources.items():
-        _component(elements, system, name, source, units)
+        element = _component(elements, system, name, source, units)
+        if system.every[name] > 1:
+            _step_hint(element, system.every[name] * scene.run.macro_step)
     connections = SubElement(whole, "ssd:Connections")
     for c in system.connections:
-        SubElement(
+        element = SubElement(
             connections,
             "ssd:Connection",
             {
                 "startElement": c.source,
-                "startConnector": c.output,
+                "startConnector": system.components[c.source].own_name(c.output),
                 "endElement": c.target,
-                "endConnector": c.input,
+                "endConnector": system.components[c.target].own_name(c.input),
+                **({"suppressUnitConversion": "true"} if c.scale else {}),
             },
         )
+        if c.scale:
+            details = {"factor": repr(c.scale[0]), "offset": repr(c.scale[1])}
+            SubElement(element, "ssc:LinearTransformation", details)
     _unit_definitions(root, units)
     _experiment(root, scene, zero)
     return root
@@ -125,7 +131,7 @@ def _structure(scene: Scene, system: System, sources: Mapping[str, str], zero: f
 
 def _component(
     elements: Element, system: System, name: str, source: str, units: Mapping[str, Unit]
-) -> None:
+) -> Element:
     """A component with the variables that are connected or set, and their values."""
     component = system.components[name]
     element = SubElement(
@@ -146,7 +152,7 @@ def _component(
         _connector(connectors, component, variable, units)
     values = {**settings, **dict(zip(taken, component.read(taken), strict=True))}
     if not values:
-        return
+        return element
     binding = SubElement(SubElement(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
     parameter_set = SubElement(
         SubElement(binding, "ssd:ParameterValues"),
@@ -155,10 +161,18 @@ def _component(
     )
     parameters = SubElement(parameter_set, "ssv:Parameters")
     for variable, value in values.items():
-        parameter = SubElement(parameters, "ssv:Parameter", {"name": variable})
+        parameter = SubElement(parameters, "ssv:Parameter", {"name": component.own_name(variable)})
         kind, details = _type(component, variable, units)
         number = repr(float(value)) if kind == "Real" else str(int(value))
         SubElement(parameter, f"ssv:{kind}", {"value": number, **details})
+    return element
+
+
+def _step_hint(element: Element, step: float) -> None:
+    """The macro step (s) of a component that takes several of the system's in one."""
+    annotations = SubElement(element, "ssd:Annotations")
+    annotation = SubElement(annotations, "ssc:Annotation", {"type": STEP_ANNOTATION})
+    SubElement(annotation, "osp:StepSizeHint", {"value": repr(step)})
 
 
 def _connector(connectors: Element, component: Component, name: str, units: Mapping[str, Unit]) -> None:
@@ -168,7 +182,7 @@ def _connector(connectors: Element, component: Component, name: str, units: Mapp
             f"{component.name}.{name} has the causality {causality}, and SSP connects outputs only; "
             "take it out of the scene's connect"
         )
-    element = SubElement(connectors, "ssd:Connector", {"name": name, "kind": causality})
+    element = SubElement(connectors, "ssd:Connector", {"name": component.own_name(name), "kind": causality})
     kind, details = _type(component, name, units)
     SubElement(element, f"ssc:{kind}", details)
 
@@ -219,6 +233,7 @@ def _experiment(root: Element, scene: Scene, zero: float) -> None:
         "zero": scene.zero or "",
         "energy_scale": " ".join(scene.energy_scale),
         "scheme": run.scheme,
+        "tolerance": repr(run.tolerance),
         "record_every": str(run.record_every),
         "record": ",".join(run.record),
         "record_arrays": str(run.record_arrays).lower(),
@@ -228,4 +243,9 @@ def _experiment(root: Element, scene: Scene, zero: float) -> None:
     annotation = SubElement(
         SubElement(root, "ssd:Annotations"), "ssc:Annotation", {"type": SCENE_ANNOTATION}
     )
-    SubElement(annotation, "touchdown:Scene", {key: value for key, value in details.items() if value})
+    note = SubElement(
+        annotation, "touchdown:Scene", {key: value for key, value in details.items() if value}
+    )
+    for name, spec in scene.components.items():
+        for here, own in spec.names.items():
+            SubElement(note, "touchdown:Name", {"component": name, "name": here, "own": own})
