@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from master.errors import TouchdownError
@@ -24,6 +25,13 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
     )
+    verb.add_argument(
+        "--names",
+        action="append",
+        default=[],
+        metavar="COMPONENT=FILE",
+        help="TOML: what a component's FMU calls the contract's variables",
+    )
 
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
@@ -33,6 +41,9 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     chosen = load(options.scene)
     for text in options.swap:
         chosen = chosen.with_swap(*assignment(text, "--swap"))
+    for text in options.names:
+        name, file = assignment(text, "--names")
+        chosen = chosen.with_names(name, Path(file))
     for text in options.set:
         chosen = chosen.with_setting(*assignment(text, "--set"))
     if options.scheme is not None:
