@@ -7,15 +7,13 @@ constants such as `inv_m` over during initialisation. Equal scenes give equal by
 
 from __future__ import annotations
 
-import os
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from fmus.build import EPOCH
 from fmus.description import VERSION
+from master.archive import write_archive
 from master.component import Component
 from master.errors import TouchdownError
 from master.fmi import FmuComponent
@@ -52,28 +50,8 @@ def write(scene: Scene, path: Path) -> Written:
         system.close()
     indent(structure)
     text = b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(structure) + b"\n"
-    try:
-        _archive(path, {HEART: text, **content})
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write {path}: {error.strerror}; choose another file with -o"
-        ) from None
+    write_archive(path, {HEART: text, **content})
     return written
-
-
-def _archive(path: Path, content: Mapping[str, bytes]) -> None:
-    """A ZIP with fixed times and no compression: equal content, equal bytes."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with zipfile.ZipFile(fresh, "w") as archive:
-            for name, data in content.items():
-                entry = zipfile.ZipInfo(name, EPOCH)
-                entry.external_attr = 0o644 << 16
-                archive.writestr(entry, data)
-        fresh.replace(path)
-    finally:
-        fresh.unlink(missing_ok=True)
 
 
 def _resources(system: System) -> dict[str, tuple[str, Path]]:

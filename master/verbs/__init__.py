@@ -10,6 +10,7 @@ from master.verbs import (
     compare_bearings,
     compare_modes,
     compare_rotors,
+    container,
     doctor,
     rotor,
     run,
@@ -30,6 +31,7 @@ ALL = (
     compare_modes,
     build,
     ssp,
+    container,
     check,
     doctor,
 )
