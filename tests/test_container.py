@@ -25,7 +25,7 @@ def dropped(**more: object) -> Scene:
 
 @pytest.mark.parametrize(("scheme", "close"), [("interface", 1e-7), ("jacobi-lead", 0.0)])
 def test_a_container_drops_the_rotor_as_the_master_does(scheme: str, close: float, tmp_path: Path) -> None:
-    """Bit for bit until the contact; then, where bearings go first, their ring, which starts free, matters."""
+    """Bit for bit, where bearings go first only until the contact: their ring starts free."""
     scene = dropped(**{"run.scheme": scheme})
     path = write(scene, tmp_path / "whole-disk.fmu")
     assert validate_fmu(str(path)) == []

@@ -16,7 +16,7 @@ from systems import history
 from fmus.build import cached
 from fmus.recipes import recipe
 from master.errors import TouchdownError
-from master.scene import Scene, load
+from master.scene import Scene, load, parse
 from master.simulation import open_system
 from master.ssp.names import HEART, NAMESPACES
 from master.ssp.write import write
@@ -135,6 +135,31 @@ def test_units_and_types_survive(package: Path, tmp_path: Path) -> None:
 
 def _plain(element: etree._Element) -> tuple[object, ...]:
     return element.tag, sorted(element.attrib.items())
+
+
+def test_macro_steps_of_their_own_and_scales_survive(tmp_path: Path) -> None:
+    """Every second step for a component; a sensor that reads twice the height and 1 um."""
+    scene = parse(
+        {
+            "components": {
+                "rotor": {"fmu": "rigid_rotor", "set": {"y": "10 um"}},
+                "amb": {"fmu": "amb", "every": 2},
+            },
+            "attach": [["amb.journal", "rotor.amb"]],
+            "connect": [["rotor.A.y", "amb.sensor.y", 2.0, 1e-6]],
+            "run": {"duration": 1e-3},
+        },
+        "scaled",
+        tmp_path,
+    )
+    again = load(str(write(scene, tmp_path / "scaled.ssp").path))
+    assert again.components["amb"].every == 2
+    assert again.connect[-1] == scene.connect[0]
+    times, values, _ = history(again, ["rotor.A.y", "amb.sensor.y"], in_process=False)
+    assert len(times) > 10
+    before = values["rotor.A.y"][np.arange(len(times)) // 2 * 2 - 1][2:]
+    assert len(np.unique(before)) > 10
+    assert np.array_equal(values["amb.sensor.y"][2:], 2.0 * before + 1e-6)
 
 
 def test_settings_and_swaps_work_on_a_package(package: Path) -> None:
