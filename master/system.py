@@ -27,6 +27,19 @@ from master.schemes import Scheme
 from master.units import scaled, to_si
 
 
+@dataclass(frozen=True)
+class Scaling:
+    """Scales of a component's exchanged inputs."""
+
+    factors: np.ndarray
+    offsets: np.ndarray
+
+    def cut(self, inputs: np.ndarray, number: int = 0) -> None:
+        """Apply them to `inputs`, in whatever macro step."""
+        inputs *= self.factors
+        inputs += self.offsets
+
+
 @dataclass
 class System:
     """Components ready to be stepped; `signals` holds every exchanged output."""
@@ -40,7 +53,7 @@ class System:
     signals: np.ndarray = field(init=False)
     position: dict[tuple[str, str], int] = field(init=False)  # of an output in the signals
     take: dict[str, np.ndarray] = field(init=False)  # where each input of a component comes from
-    scales: dict[str, np.ndarray] = field(init=False)  # factors and offsets, where a component has any
+    scales: dict[str, list[Scaling]] = field(init=False)  # of its inputs, where a component has any
     retired: set[str] = field(init=False, default_factory=set)
 
     def __post_init__(self) -> None:
@@ -86,10 +99,8 @@ class System:
         """Fill a component's inputs from the signals, not yet handing them over."""
         inputs = self.components[name].inputs
         inputs[:] = self.signals[self.take[name]]
-        if name in self.scales:
-            factors, offsets = self.scales[name]
-            inputs *= factors
-            inputs += offsets
+        for scaling in self.scales.get(name, ()):
+            scaling.cut(inputs)
 
     def inputs_of(self, name: str) -> dict[str, int]:
         """Where each exchanged input of a component stands in its `inputs`."""
@@ -146,7 +157,7 @@ class System:
             component.bind([c.input for c in mine], stretch, list(outputs[name]))
             self.take[name] = np.array([self.position[c.source, c.output] for c in mine], dtype=np.intp)
             if any(c.scale for c in mine):
-                self.scales[name] = np.array([c.scale or (1.0, 0.0) for c in mine]).T
+                self.scales[name] = [Scaling(*np.array([c.scale or (1.0, 0.0) for c in mine]).T)]
 
 
 def housing_port(system: System, a: Attachment) -> str | None:
