@@ -55,7 +55,7 @@ def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | Non
 
 
 def _dry_run(component: Component, report: Report) -> None:
-    """A few steps from the defaults, set as such, under small motions and loads at its ports: outputs must be finite numbers."""
+    """A few steps from the defaults, set as such, under small motions and loads: outputs are finite."""
     outputs = [
         v.name
         for v in component.variables.values()
