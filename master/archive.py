@@ -1,11 +1,14 @@
-"""What an archive from elsewhere must not hold, whatever kind it is of."""
+"""ZIP archives: what one from elsewhere must not hold, and one that is equal for equal content."""
 
 from __future__ import annotations
 
+import os
 import stat
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
+from fmus.build import EPOCH
 from master.errors import TouchdownError
 
 LARGEST = 2 * 1024**3  # bytes, unpacked
@@ -32,3 +35,26 @@ def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
         )
     if len(entries) > MOST:
         raise TouchdownError(f"{path} holds {len(entries)} entries, more than {MOST}; refused")
+
+
+def write_archive(path: Path, content: Mapping[str, bytes]) -> None:
+    """Write `content`, files by name, in that order; an older archive is replaced.
+
+    Fixed times and no compression. Raises TouchdownError where it cannot be written.
+    """
+    fresh = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with zipfile.ZipFile(fresh, "w") as archive:
+                for name, data in content.items():
+                    entry = zipfile.ZipInfo(name, EPOCH)
+                    entry.external_attr = 0o644 << 16
+                    archive.writestr(entry, data)
+            fresh.replace(path)
+        finally:
+            fresh.unlink(missing_ok=True)
+    except OSError as error:
+        raise TouchdownError(
+            f"cannot write {path}: {error.strerror}; choose another file with -o"
+        ) from None

@@ -10,11 +10,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from master.errors import TouchdownError, one_of
+from master.units import Unit
+
+SETTABLE = ("Real", "Integer", "Boolean", "Enumeration")  # kinds; an enumeration by its number
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,7 @@ class Variable:
 
     name: str
     reference: int
-    kind: str  # "Real" or "Integer"; others are known by name only
+    kind: str  # "Real" or "Integer"; of others, "Boolean" and "Enumeration" can be set
     causality: str
     variability: str
     unit: str | None
@@ -35,7 +38,7 @@ class Variable:
     @property
     def settable(self) -> bool:
         """Whether a scene may give it a value."""
-        return self.causality in ("parameter", "input") and self.kind in ("Real", "Integer")
+        return self.causality in ("parameter", "input") and self.kind in SETTABLE
 
     @property
     def constant(self) -> bool:
@@ -50,6 +53,8 @@ class Component(ABC):
         self.name = name
         self.origin = origin  # what it is made of, for people
         self.variables = variables
+        self.units: Mapping[str, Unit] = {}  # those it defines, by name
+        self._own: Mapping[str, str] = {}  # names of variables that go by another name here
         self.inputs = np.zeros(0)
         self.outputs = np.zeros(0)
 
@@ -62,6 +67,26 @@ class Component(ABC):
                 f"component {self.name} ({self.origin}) has no variable {name}; "
                 + one_of(name, self.variables)
             ) from None
+
+    def rename(self, names: Mapping[str, str]) -> None:
+        """Let variables go by other names: `names` gives the component's own for each.
+
+        Raises TouchdownError where it has no such variable, or one that goes by the new name already.
+        """
+        owners = {self.variable(own).name: name for name, own in names.items()}
+        for own, name in owners.items():
+            if name in self.variables and name not in owners:
+                raise TouchdownError(
+                    f"component {self.name} ({self.origin}) has a variable {name} of its own; "
+                    f"{own} cannot go by that name"
+                )
+        renamed = {owners.get(name, name): variable for name, variable in self.variables.items()}
+        self.variables = {name: replace(variable, name=name) for name, variable in renamed.items()}
+        self._own = dict(names)
+
+    def own_name(self, name: str) -> str:
+        """What the component itself calls the variable `name`."""
+        return self._own.get(name, name)
 
     @abstractmethod
     def set(self, values: Mapping[str, float]) -> None:
@@ -127,5 +152,5 @@ def check_value(component: Component, variable: Variable, value: float) -> None:
         raise TouchdownError(f"{what} must be at least {variable.minimum:g}")
     if variable.maximum is not None and value > variable.maximum:
         raise TouchdownError(f"{what} must be at most {variable.maximum:g}")
-    if variable.kind == "Integer" and value != round(value):
+    if variable.kind != "Real" and value != round(value):
         raise TouchdownError(f"{what} must be a whole number")

@@ -12,7 +12,9 @@ from itertools import count
 
 from master.component import Component, Variable
 from master.errors import TouchdownError, one_of
+from master.scene import Wire
 from master.schemes import Scheme
+from master.units import Scale
 
 MOTION = (
     "x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m",
@@ -34,6 +36,7 @@ class Connection:
     output: str
     target: str  # component
     input: str
+    scale: Scale | None = None  # where given, the input is factor * output + offset
 
 
 @dataclass(frozen=True)
@@ -144,9 +147,29 @@ def used_modes(connections: Iterable[Connection], components: Mapping[str, Compo
     return [c for c in kept if used(c.source, c.output) and used(c.target, c.input)]
 
 
-def connection(pair: tuple[str, str], components: Mapping[str, Component]) -> Connection:
-    (source, output), (target, given) = (split(end, components) for end in pair)
-    return Connection(source.name, output.name, target.name, given.name)
+def connection(wire: Wire, components: Mapping[str, Component]) -> Connection:
+    (source, output), (target, given) = (split(end, components) for end in (wire.source, wire.target))
+    return Connection(source.name, output.name, target.name, given.name, wire.scale)
+
+
+def recognised(connections: Iterable[Connection]) -> list[Attachment]:
+    """Bearings' ports on bodies' ports that the connections amount to: motion one way and load the other.
+
+    A port is what stands before the last dot of the names; both sides call the variables the same.
+    """
+    ways: dict[tuple[str, str, str, str], set[str]] = {}
+    for c in connections:
+        output_port, _, output = c.output.rpartition(".")
+        input_port, _, given = c.input.rpartition(".")
+        if output == given:
+            ways.setdefault((c.source, output_port, c.target, input_port), set()).add(output)
+    found: list[Attachment] = []
+    for way, loads in ways.items():
+        bearing, bearing_port, body, body_port = way
+        motions = ways.get((body, body_port, bearing, bearing_port), set())
+        if loads.issuperset(NEEDED["load"]) and motions.issuperset(NEEDED["motion"]):
+            found.append(Attachment(*way))
+    return found
 
 
 def check_connections(connections: list[Connection], components: Mapping[str, Component]) -> None:
@@ -165,8 +188,10 @@ def check_connections(connections: list[Connection], components: Mapping[str, Co
             )
         if output.kind != "Real" or given.kind != "Real":
             raise TouchdownError(f"{what}: only Real variables can be connected")
-        if output.unit and given.unit and output.unit != given.unit:
-            raise TouchdownError(f"{what}: the units {output.unit} and {given.unit} differ")
+        if c.scale is None and output.unit and given.unit and output.unit != given.unit:
+            raise TouchdownError(
+                f"{what}: the units {output.unit} and {given.unit} differ; give factor and offset"
+            )
         first = fed.setdefault((c.target, c.input), c)
         if first is not c:
             raise TouchdownError(

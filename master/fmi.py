@@ -14,6 +14,7 @@ import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -35,22 +36,33 @@ from master.archive import refuse_hostile
 from master.component import Component, Variable
 from master.description import refuse_definitions, refuse_lies
 from master.errors import TouchdownError
+from master.units import BASE, Unit
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
 
 
-def unpack(path: Path, cache: Path) -> Path:
-    """Unpack an FMU into a folder named by its content; returns the folder.
+@dataclass(frozen=True)
+class Format:
+    """A kind of archive."""
 
-    Refuses what is no FMU and entries that would leave the folder.
+    name: str  # for people, with its article
+    heart: str  # the file it must have
+    maker: str  # what makes one
+
+
+FMU = Format("an FMU", "modelDescription.xml", "`touchdown build` makes the project's own")
+
+
+def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
+    """Unpack an archive into a folder named by its content; returns the folder.
+
+    Refuses what is not of that kind and entries that would leave the folder.
     """
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise TouchdownError(
-            f"there is no FMU at {path}; `touchdown build` makes the project's own"
-        ) from None
+        raise TouchdownError(f"there is no file {path}; {kind.maker}") from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     folder = cache / "unpacked" / hashlib.sha256(content).hexdigest()[:24]
@@ -61,8 +73,8 @@ def unpack(path: Path, cache: Path) -> Path:
     try:
         with zipfile.ZipFile(path) as archive:
             refuse_hostile(path, archive)
-            if "modelDescription.xml" not in archive.namelist():
-                raise TouchdownError(f"{path} is no FMU: it has no modelDescription.xml")
+            if kind.heart not in archive.namelist():
+                raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
             archive.extractall(fresh)
         try:
             fresh.rename(folder)
@@ -70,7 +82,9 @@ def unpack(path: Path, cache: Path) -> Path:
             if not folder.is_dir():  # else another process was first
                 raise
     except (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, OSError, zlib.error) as error:
-        raise TouchdownError(f"{path} is damaged or no FMU ({error}); build or download it again") from None
+        raise TouchdownError(
+            f"{path} is damaged or not {kind.name} ({error}); build or download it again"
+        ) from None
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
     return folder
@@ -153,6 +167,23 @@ def _resources(folder: Path, description: Any) -> str:
     return f"file://{path}"
 
 
+def units_of(description: Any) -> dict[str, Unit]:
+    """Units that the description defines by SI base units, by name."""
+    found: dict[str, Unit] = {}
+    for unit in description.unitDefinitions:
+        base = unit.baseUnit
+        if base is not None:
+            exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
+            found[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
+    return found
+
+
+def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
+    """Variables and units of an FMU, which is not loaded."""
+    description = describe(path, unpack(path, cache))
+    return variables_of(description), units_of(description)
+
+
 class FmuComponent(Component):
     """An FMU that is stepped."""
 
@@ -161,6 +192,8 @@ class FmuComponent(Component):
         description = describe(path, folder)
         super().__init__(name, origin or str(path), variables_of(description))
         self.can_save = bool(description.coSimulation.canGetAndSetFMUstate)
+        self.path = path
+        self.units = units_of(description)
         self._messages: list[str] = []
         self._open = False
         here = Path.cwd()
@@ -216,6 +249,7 @@ class FmuComponent(Component):
         step = ctypes.PYFUNCTYPE(integer, pointer, real, real, integer)
         self._set_real = exchange(("fmi2SetReal", self._fmu.dll))
         self._get_real = exchange(("fmi2GetReal", self._fmu.dll))
+        self._set_boolean = exchange(("fmi2SetBoolean", self._fmu.dll))
         self._set_integer = exchange(("fmi2SetInteger", self._fmu.dll))
         self._get_integer = exchange(("fmi2GetInteger", self._fmu.dll))
         self._do_step = step(("fmi2DoStep", self._fmu.dll))
@@ -226,7 +260,13 @@ class FmuComponent(Component):
         return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
 
     def set(self, values: Mapping[str, float]) -> None:
-        for kind, call, dtype in (("Real", self._set_real, "f8"), ("Integer", self._set_integer, "i4")):
+        calls = (
+            ("Real", self._set_real, "f8"),
+            ("Integer", self._set_integer, "i4"),
+            ("Enumeration", self._set_integer, "i4"),
+            ("Boolean", self._set_boolean, "i4"),
+        )
+        for kind, call, dtype in calls:
             names = [n for n in values if self.variable(n).kind == kind]
             if names:
                 references = self._references(names)

@@ -6,7 +6,8 @@ zero = "amb.shutdown_time"                     # times and the duration count fr
 energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
 attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
 sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
-connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target
+connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target; where the target is
+                                               # to be scaled, then factor and offset
 
 [run]
 duration = 5.0        # s
@@ -18,6 +19,8 @@ preset = "6004"       # a bearing of the catalogue: its values, as far as the FM
 every = 2             # macro steps of the run that it takes in one (default: 1)
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
+[components.rotor.names]
+"A.x" = "shaft_x"     # a variable of the contract, and what this FMU calls it; or names = "FILE.toml"
 
 A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
 gives takes the place of what stands there, table by table; a component that names its fmu is a new one.
@@ -30,12 +33,12 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from fmus.presets import presets
 from master import schemes
 from master.errors import TouchdownError, one_of
-from master.units import to_si
+from master.units import Scale, to_si
 
 SCENES = Path(__file__).parent / "scenes"
 
@@ -48,8 +51,18 @@ class ComponentSpec:
     set: Mapping[str, object] = field(default_factory=dict)
     preset: str | None = None  # a named set of parameters, applied first
     every: int = 1  # macro steps of the run that it takes in one
+    names: Mapping[str, str] = field(default_factory=dict)
+    """Variables of the contract, and what this FMU calls them."""
     inherited: Mapping[str, object] = field(default_factory=dict)
     """Settings of the component it was swapped for; those it has are applied before `set`."""
+
+
+class Wire(NamedTuple):
+    """A single variable feeding another, COMPONENT.VARIABLE both."""
+
+    source: str
+    target: str
+    scale: Scale | None = None  # factor and offset; None: as it is, in equal units
 
 
 @dataclass(frozen=True)
@@ -87,7 +100,7 @@ class Scene:
     about: str = ""
     attach: tuple[tuple[str, str], ...] = ()
     sense: tuple[tuple[str, str], ...] = ()
-    connect: tuple[tuple[str, str], ...] = ()
+    connect: tuple[Wire, ...] = ()
     zero: str | None = None
     energy_scale: tuple[str, ...] = ()
     run: RunSpec = RunSpec()
@@ -119,7 +132,8 @@ class Scene:
     def with_swap(self, name: str, fmu: str) -> Scene:
         """A copy with component `name` made of another FMU.
 
-        It starts from its own defaults and takes over what the scene sets, as far as it has it.
+        It starts from its own defaults and takes over what the scene sets, as far as it has it. Names
+        that the scene gives belong to the FMU that goes; `with_names` gives the new one's.
         """
         before = self._component(name)
         if fmu.endswith(".fmu"):
@@ -131,6 +145,11 @@ class Scene:
                 name: ComponentSpec(fmu, every=before.every, inherited={**before.inherited, **before.set}),
             },
         )
+
+    def with_names(self, name: str, path: Path) -> Scene:
+        """A copy with the names of component `name` read from a TOML file."""
+        spec = replace(self._component(name), names=read_names(path))
+        return replace(self, components={**self.components, name: spec})
 
     def _component(self, name: str) -> ComponentSpec:
         try:
@@ -147,23 +166,24 @@ def names() -> list[str]:
 
 
 def load(name: str) -> Scene:
-    """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    """A scene of the project's by name, or of the user's by the path of a TOML file or an SSP package."""
+    if name.endswith(".ssp"):
+        from master.ssp.read import read  # it makes scenes
+
+        return read(Path(name))
     path = SCENES / f"{name}.toml"
     if name.endswith(".toml"):
         path = Path(name)
     elif name not in names():
-        raise TouchdownError(f"unknown scene {name}; {one_of(name, names())}, or give the path of a .toml")
+        raise TouchdownError(
+            f"unknown scene {name}; {one_of(name, names())}, or give the path of a .toml or .ssp"
+        )
     return parse(_tables(path, ()), path.stem, path.parent)
 
 
 def _tables(path: Path, before: tuple[Path, ...]) -> dict[str, Any]:
     """The tables of a scene's file over those of the scene it extends; `before`: files that led here."""
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise TouchdownError(f"cannot read scene {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise TouchdownError(f"scene {path} is not valid TOML: {error}") from None
+    data = _toml(path, "scene")
     if "extends" not in data:
         return data
     base = str(data.pop("extends"))
@@ -176,6 +196,15 @@ def _tables(path: Path, before: tuple[Path, ...]) -> dict[str, Any]:
     if start.resolve() in (*before, path.resolve()):
         raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
     return _over(_tables(start, (*before, path.resolve())), data)
+
+
+def _toml(path: Path, what: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TouchdownError(f"cannot read {what} {path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TouchdownError(f"{what} {path} is not valid TOML: {error}") from None
 
 
 def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -198,12 +227,13 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     for key, table in _table(data.get("components"), f"scene {name}: [components]").items():
         where = f"scene {name}: [components.{key}]"
         table = _table(table, where)
-        _refuse_unknown(table, ("fmu", "preset", "every", "set"), where)
+        _refuse_unknown(table, ("fmu", "preset", "every", "set", "names"), where)
         if not isinstance(table.get("fmu"), str):
             raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
         settings = _flat(_table(table.get("set", {}), where))
         preset, every = _preset(table.get("preset"), where), _whole(table.get("every", 1), f"{where} every")
-        components[key] = ComponentSpec(table["fmu"], settings, preset, every)
+        names = _names(table.get("names", {}), where, folder)
+        components[key] = ComponentSpec(table["fmu"], settings, preset, every, names)
     if not components:
         raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
     return Scene(
@@ -213,7 +243,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         components=components,
         attach=_pairs(data.get("attach", []), f"scene {name}: attach"),
         sense=_pairs(data.get("sense", []), f"scene {name}: sense"),
-        connect=_pairs(data.get("connect", []), f"scene {name}: connect"),
+        connect=_wires(data.get("connect", []), f"scene {name}: connect"),
         zero=_reference(data["zero"], f"scene {name}: zero") if "zero" in data else None,
         energy_scale=_references(data.get("energy_scale", []), f"scene {name}: energy_scale"),
         run=_run(_table(data.get("run", {}), f"scene {name}: [run]"), RunSpec()),
@@ -299,6 +329,46 @@ def _pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
     ):
         raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
     return tuple((p[0], p[1]) for p in value)
+
+
+def _wires(value: object, where: str) -> tuple[Wire, ...]:
+    """Pairs, some with factor and offset."""
+    if not isinstance(value, list) or not all(isinstance(wire, list) for wire in value):
+        raise TouchdownError(f'{where} must be a list such as [["rotor.A.x", "probe.x"]]')
+    found: list[Wire] = []
+    for wire in value:
+        ((source, target),) = _pairs([wire[:2]], where)
+        scale = None
+        if len(wire) > 2:
+            if len(wire) != 4:
+                raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
+            what = f"{where}: {source} to {target}"
+            scale = to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset")
+        found.append(Wire(source, target, scale))
+    return tuple(found)
+
+
+def _names(value: object, where: str, folder: Path) -> dict[str, str]:
+    """Of a component's variables: a table, or the path of a TOML file."""
+    if isinstance(value, str):
+        return read_names(folder / value)
+    return _checked_names(_table(value, f"{where}.names"), f"{where}: names")
+
+
+def read_names(path: Path) -> dict[str, str]:
+    """Names of an FMU's variables from a TOML file: "journal.x" = "shaft_x". Raises TouchdownError."""
+    return _checked_names(_toml(path, "names"), f"names in {path}")
+
+
+def _checked_names(table: Mapping[str, Any], where: str) -> dict[str, str]:
+    names = _flat(table)
+    for name, own in names.items():
+        if not isinstance(own, str):
+            raise TouchdownError(f'{where}: {name} = {own!r}; write such as "journal.x" = "shaft_x"')
+    twice = [own for own in names.values() if list(names.values()).count(own) > 1]
+    if twice:
+        raise TouchdownError(f"{where}: {twice[0]} is given twice")
+    return {name: str(own) for name, own in names.items()}
 
 
 def _reference(value: object, where: str) -> str:

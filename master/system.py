@@ -16,6 +16,7 @@ from master.connections import (
     check_connections,
     connection,
     port_connections,
+    recognised,
     sensor_connections,
     split,
     used_modes,
@@ -23,7 +24,20 @@ from master.connections import (
 from master.errors import TouchdownError
 from master.scene import Scene
 from master.schemes import Scheme
-from master.units import to_si
+from master.units import scaled, to_si
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """Scales of a component's exchanged inputs."""
+
+    factors: np.ndarray
+    offsets: np.ndarray
+
+    def cut(self, inputs: np.ndarray, number: int = 0) -> None:
+        """Apply them to `inputs`, in whatever macro step."""
+        inputs *= self.factors
+        inputs += self.offsets
 
 
 @dataclass
@@ -39,6 +53,7 @@ class System:
     signals: np.ndarray = field(init=False)
     position: dict[tuple[str, str], int] = field(init=False)  # of an output in the signals
     take: dict[str, np.ndarray] = field(init=False)  # where each input of a component comes from
+    scales: dict[str, list[Scaling]] = field(init=False)  # of its inputs, where a component has any
     retired: set[str] = field(init=False, default_factory=set)
 
     def __post_init__(self) -> None:
@@ -82,7 +97,10 @@ class System:
 
     def take_inputs(self, name: str) -> None:
         """Fill a component's inputs from the signals, not yet handing them over."""
-        self.components[name].inputs[:] = self.signals[self.take[name]]
+        inputs = self.components[name].inputs
+        inputs[:] = self.signals[self.take[name]]
+        for scaling in self.scales.get(name, ()):
+            scaling.cut(inputs)
 
     def inputs_of(self, name: str) -> dict[str, int]:
         """Where each exchanged input of a component stands in its `inputs`."""
@@ -104,7 +122,7 @@ class System:
             for source in dict.fromkeys(c.source for c in mine):
                 theirs = [c for c in mine if c.source == source]
                 found = self.components[source].read([c.output for c in theirs])
-                values |= dict(zip((c.input for c in theirs), found, strict=True))
+                values |= {c.input: scaled(value, c.scale) for c, value in zip(theirs, found, strict=True)}
             self.components[target].set(values)
 
     def _live(self) -> list[Connection]:
@@ -130,7 +148,7 @@ class System:
         places = [(name, variable) for name, chosen in outputs.items() for variable in chosen]
         self.position = {place: i for i, place in enumerate(places)}
         self.signals = np.zeros(len(places))
-        self.take = {}
+        self.take, self.scales = {}, {}
         start = 0
         for name, component in self.components.items():
             mine = [c for c in live if c.target == name]
@@ -138,6 +156,8 @@ class System:
             start += len(outputs[name])
             component.bind([c.input for c in mine], stretch, list(outputs[name]))
             self.take[name] = np.array([self.position[c.source, c.output] for c in mine], dtype=np.intp)
+            if any(c.scale for c in mine):
+                self.scales[name] = [Scaling(*np.array([c.scale or (1.0, 0.0) for c in mine]).T)]
 
 
 def housing_port(system: System, a: Attachment) -> str | None:
@@ -154,11 +174,12 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
     try:
         for name, spec in scene.components.items():
             components[name] = load(name, spec.fmu)
+            components[name].rename(spec.names)
         settings = _apply_settings(scene, scheme, components)
-        attachments = [attachment(pair, components) for pair in scene.attach]
-        connections = [c for a in attachments for c in port_connections(a, components, scheme)]
+        attached = [attachment(pair, components) for pair in scene.attach]
+        connections = [c for a in attached for c in port_connections(a, components, scheme)]
         connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
-        connections += [connection(pair, components) for pair in scene.connect]
+        connections += [connection(wire, components) for wire in scene.connect]
         check_connections(connections, components)
         for c in connections:
             if c.input in scene.components[c.target].set:
@@ -166,7 +187,7 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
                     f"{c.target}.{c.input} cannot be set: it is connected to {c.source}.{c.output}"
                 )
         every = {name: spec.every for name, spec in scene.components.items()}
-        return System(components, attachments, connections, settings, every)
+        return System(components, recognised(connections), connections, settings, every)
     except BaseException:
         for component in components.values():
             component.close()

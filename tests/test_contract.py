@@ -7,8 +7,9 @@ import pytest
 from systems import history, rotor_on
 
 from fmus.recipes import names, recipe
-from master.check import check_fmu, ports
+from master.check import check_fmu
 from master.component import Variable
+from master.contract import ports
 from master.twin import TwinComponent
 
 PORTS = {name: ports(TwinComponent(name, recipe(name).model)) for name in names()}

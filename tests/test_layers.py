@@ -16,7 +16,8 @@ ALLOWED = {  # package: what it may import beside the standard library
     "rotor": {"modelkit", "rotor"} | SCIENCE,
     "bearings": {"modelkit", "bearings"} | SCIENCE,
     "fmus": {"modelkit", "rotor", "bearings", "fmus", "pythonfmu"} | SCIENCE,
-    "master": {"modelkit", "fmus", "master", "fmpy", "h5py", "matplotlib", "tqdm", "numpy", "scipy"},
+    "master": {"modelkit", "fmus", "master", "fmpy", "h5py", "matplotlib", "tqdm", "numpy", "scipy"}
+    | {"fmu_manipulation_toolbox"},
 }
 
 

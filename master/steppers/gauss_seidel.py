@@ -19,7 +19,12 @@ class GaussSeidel(Stepper):
         system = self.system
         rates = Rates(system, self.run.macro_step)
         self._turns = [
-            (system.components[name], system.take[name], system.every[name], rates.parts(name))
+            (
+                system.components[name],
+                system.take[name],
+                system.every[name],
+                [*system.scales.get(name, ()), *rates.parts(name)],
+            )
             for name in system.order
         ]
 

@@ -10,10 +10,12 @@ from master.verbs import (
     compare_bearings,
     compare_modes,
     compare_rotors,
+    container,
     doctor,
     rotor,
     run,
     scenes,
+    ssp,
     sweep,
 )
 
@@ -28,6 +30,8 @@ ALL = (
     compare_rotors,
     compare_modes,
     build,
+    ssp,
+    container,
     check,
     doctor,
 )

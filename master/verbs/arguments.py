@@ -2,8 +2,61 @@
 
 from __future__ import annotations
 
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 from master.errors import TouchdownError
+from master.schemes import DEFAULT, SCHEMES
 from master.units import to_si
+
+if TYPE_CHECKING:
+    from master.scene import Scene
+
+
+def add_scene(verb: argparse.ArgumentParser) -> None:
+    """Add what names a scene and changes it; `chosen_scene` reads it."""
+    verb.add_argument("scene", help="name of a scene, or path of a .toml or .ssp")
+    verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})")
+    verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
+    verb.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="set run.KEY or COMPONENT.VARIABLE"
+    )
+    verb.add_argument(
+        "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
+    )
+    verb.add_argument(
+        "--names",
+        action="append",
+        default=[],
+        metavar="COMPONENT=FILE",
+        help="TOML: what a component's FMU calls the contract's variables",
+    )
+
+
+def chosen_scene(options: argparse.Namespace) -> Scene:
+    """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
+    from master.scene import load
+
+    chosen = load(options.scene)
+    for text in options.swap:
+        chosen = chosen.with_swap(*assignment(text, "--swap"))
+    for text in options.names:
+        name, file = assignment(text, "--names")
+        chosen = chosen.with_names(name, Path(file))
+    for text in options.set:
+        chosen = chosen.with_setting(*assignment(text, "--set"))
+    if options.scheme is not None:
+        chosen = chosen.with_setting("run.scheme", options.scheme)
+    if options.macro_step == "auto":
+        from master.advisor import advise
+
+        advice = advise(chosen)[chosen.run.scheme]
+        print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
+        chosen = chosen.with_setting("run.macro_step", advice.macro_step)
+    elif options.macro_step is not None:
+        chosen = chosen.with_setting("run.macro_step", options.macro_step)
+    return chosen
 
 
 def assignment(text: str, option: str) -> tuple[str, str]:

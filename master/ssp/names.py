@@ -1,0 +1,17 @@
+"""Names of the formats: namespaces, files, and the annotations that are read beside the standard's own."""
+
+from __future__ import annotations
+
+_STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
+NAMESPACES = {
+    "ssd": f"{_STANDARD}Description",
+    "ssc": f"{_STANDARD}Common",
+    "ssv": f"{_STANDARD}ParameterValues",
+    "ssm": f"{_STANDARD}ParameterMapping",
+    "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
+    "touchdown": "urn:touchdown-cosim:scene",
+}
+HEART = "SystemStructure.ssd"
+RESOURCES = "resources"
+STEP_ANNOTATION = "com.opensimulationplatform"  # holds the macro step; libcosim's, read by other tools too
+SCENE_ANNOTATION = "touchdown-cosim.scene"  # what a scene says beyond its structure
