@@ -71,6 +71,10 @@ class System:
         component, variable = split(name, self.components)
         return component.read([variable.name])[0]
 
+    def constant(self, c: Connection) -> bool:
+        """Whether what crosses is settled once its source is initialised."""
+        return self.components[c.source].variable(c.output).constant
+
     def initialise(self) -> None:
         """Bring all components through initialisation, exchanging until every input has its value."""
         for component in self.components.values():
@@ -115,7 +119,7 @@ class System:
             self.components[name].pull()
 
     def _feed_constants(self) -> None:
-        constant = [c for c in self.connections if self.components[c.source].variable(c.output).constant]
+        constant = [c for c in self.connections if self.constant(c)]
         for target in dict.fromkeys(c.target for c in constant):
             mine = [c for c in constant if c.target == target]
             values: dict[str, float] = {}
@@ -128,10 +132,7 @@ class System:
     def _live(self) -> list[Connection]:
         """Connections that carry something at every step."""
         return [
-            c
-            for c in self.connections
-            if not self.components[c.source].variable(c.output).constant
-            and not self.retired & {c.source, c.target}
+            c for c in self.connections if not self.constant(c) and not self.retired & {c.source, c.target}
         ]
 
     def _lay_out(self) -> None:

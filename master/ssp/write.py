@@ -2,7 +2,8 @@
 
 Connections are those the scheme lays out, between started FMUs, so that of a rotor's elastic modes only
 those in use are there. Inputs carry their value at t = 0 as start value, for tools that do not hand
-constants such as `inv_m` over during initialisation. Equal scenes give equal bytes.
+constants such as `inv_m` over during initialisation; for those that cannot even connect them, as they are
+no outputs, they are start values only. Equal scenes give equal bytes.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from fmus.description import VERSION
 from master.archive import write_archive
 from master.component import Component
+from master.connections import Connection
 from master.errors import TouchdownError
 from master.fmi import FmuComponent
 from master.scene import Scene
@@ -36,16 +38,21 @@ class Written:
     connections: int
 
 
-def write(scene: Scene, path: Path) -> Written:
-    """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot."""
+def write(scene: Scene, path: Path, outputs_only: bool = False) -> Written:
+    """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot.
+
+    With `outputs_only` constants, which are calculated parameters, are not connected.
+    """
     system = open_system(scene)
     try:
         zero = system.value(scene.zero) if scene.zero else 0.0
         system.initialise()
         files = _resources(system)
-        structure = _structure(scene, system, {name: place for name, (place, _) in files.items()}, zero)
+        connected = [c for c in system.connections if not (outputs_only and system.constant(c))]
+        places = {name: place for name, (place, _) in files.items()}
+        structure = _structure(scene, system, connected, places, zero)
         content = {place: path.read_bytes() for place, path in sorted(files.values())}
-        written = Written(path, len(system.components), len(system.connections))
+        written = Written(path, len(system.components), len(connected))
     finally:
         system.close()
     indent(structure)
@@ -72,7 +79,9 @@ def _resources(system: System) -> dict[str, tuple[str, Path]]:
 # -- SystemStructure.ssd -----------------------------------------------------------------------------------
 
 
-def _structure(scene: Scene, system: System, sources: Mapping[str, str], zero: float) -> Element:
+def _structure(
+    scene: Scene, system: System, connected: list[Connection], sources: Mapping[str, str], zero: float
+) -> Element:
     used = [prefix for prefix in NAMESPACES if prefix != "ssm"]
     root = Element(
         "ssd:SystemStructureDescription",
@@ -83,11 +92,11 @@ def _structure(scene: Scene, system: System, sources: Mapping[str, str], zero: f
     elements = SubElement(whole, "ssd:Elements")
     units = _units(system)
     for name, source in sources.items():
-        element = _component(elements, system, name, source, units)
+        element = _component(elements, system, connected, name, source, units)
         if system.every[name] > 1:
             _step_hint(element, system.every[name] * scene.run.macro_step)
     connections = SubElement(whole, "ssd:Connections")
-    for c in system.connections:
+    for c in connected:
         element = SubElement(
             connections,
             "ssd:Connection",
@@ -108,7 +117,12 @@ def _structure(scene: Scene, system: System, sources: Mapping[str, str], zero: f
 
 
 def _component(
-    elements: Element, system: System, name: str, source: str, units: Mapping[str, Unit]
+    elements: Element,
+    system: System,
+    connected: list[Connection],
+    name: str,
+    source: str,
+    units: Mapping[str, Unit],
 ) -> Element:
     """A component with the variables that are connected or set, and their values."""
     component = system.components[name]
@@ -122,13 +136,14 @@ def _component(
             "implementation": "CoSimulation",
         },
     )
-    given = [c.output for c in system.connections if c.source == name]
-    taken = [c.input for c in system.connections if c.target == name]
+    given = [c.output for c in connected if c.source == name]
+    taken = [c.input for c in connected if c.target == name]
+    starts = [c.input for c in system.connections if c.target == name]
     settings = {variable: value for (owner, variable), value in system.settings.items() if owner == name}
     connectors = SubElement(element, "ssd:Connectors")
     for variable in dict.fromkeys([*taken, *given, *settings]):
         _connector(connectors, component, variable, units)
-    values = {**settings, **dict(zip(taken, component.read(taken), strict=True))}
+    values = {**settings, **dict(zip(starts, component.read(starts), strict=True))}
     if not values:
         return element
     binding = SubElement(SubElement(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")

@@ -13,6 +13,11 @@ def add_to(verbs: Any) -> None:
     """Add the verb to the command."""
     verb = verbs.add_parser("ssp", help="write a scene as an SSP package, for other tools")
     add_scene(verb)
+    verb.add_argument(
+        "--outputs-only",
+        action="store_true",
+        help="connect outputs only; constants such as inv_m are start values (for libcosim and others)",
+    )
     verb.add_argument("-o", "--output", type=Path, help="file (default: SCENE.ssp)")
     verb.set_defaults(run=execute)
 
@@ -22,7 +27,7 @@ def execute(options: argparse.Namespace) -> int:
     from master.ssp.write import write
 
     scene = chosen_scene(options)
-    found = write(scene, options.output or Path(f"{scene.name}.ssp"))
+    found = write(scene, options.output or Path(f"{scene.name}.ssp"), options.outputs_only)
     print(
         f"{found.path}: {found.components} components, {found.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"
