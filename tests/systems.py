@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from master.scene import ComponentSpec, RunSpec, Scene
+from master.scene import ComponentSpec, RunSpec, Scene, load
 from master.simulation import Outcome, open_system, simulate
 from master.system import System
 
@@ -15,6 +15,18 @@ DISK = 1.65  # kg
 GRAVITY = 9.81  # m/s2
 CLEARANCE = 0.3e-3  # m
 LANDING = (2.0 * GRAVITY * CLEARANCE) ** 0.5  # m/s
+
+AT = 9e-3  # s after the shutdown; rotor I falls for 7.8 ms
+LEVITATED = 2e-3  # s
+CAGED = {
+    "preset": "6004",
+    "contact.exponent": 10.0 / 9.0,
+    "contact.dissipation": 0.12,
+    "contact.damping": 0.0,
+    "friction.kind": 0,
+    "friction.static": 0.15,
+    "friction.dynamic": 0.15,
+}
 
 
 def rotor_on(
@@ -34,6 +46,18 @@ def rotor_on(
         components["housing"] = ComponentSpec("housing", dict(housing))
         attach.append(("bearing.housing", "housing.seat"))
     return Scene("test", "test", components, attach=tuple(attach), run=RunSpec(**run))  # type: ignore[arg-type]
+
+
+def dropped(modes: int = 5) -> Scene:
+    """Rotor I from 9000 rpm into two simplified caged bearings, up to just after the first impacts."""
+    scene = load("rotor1-9000")
+    for end in "AB":
+        scene = scene.with_swap(f"bearing_{end}", "simplified_caged")
+        for name, value in CAGED.items():
+            scene = scene.with_setting(f"bearing_{end}.{name}", value)
+        scene = scene.with_setting(f"amb_{end}.shutdown_time", LEVITATED)
+    scene = scene.with_setting("rotor.modes", modes)
+    return scene.with_setting("run.duration", AT).with_setting("run.stop_residual", 1e9)
 
 
 def history(

@@ -5,39 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from systems import DISK, GRAVITY, history
+from systems import AT, DISK, GRAVITY, dropped, history
 
 from bearings import bushing, seat
 from master.monolithic import Monolith
-from master.scene import ComponentSpec, RunSpec, Scene, load
+from master.scene import ComponentSpec, RunSpec, Scene
 from master.simulation import Outcome, open_system, simulate
 from modelkit import oscillator
 from modelkit.model import Instance
 
-AT = 9e-3  # s after the shutdown; the rotor falls for 7.8 ms
-LEVITATED = 2e-3  # s
 JOURNALS = ["rotor.A.x", "rotor.A.y", "rotor.B.x", "rotor.B.y"]
-BEARING = {
-    "preset": "6004",
-    "contact.exponent": 10.0 / 9.0,
-    "contact.dissipation": 0.12,
-    "contact.damping": 0.0,
-    "friction.kind": 0,
-    "friction.static": 0.15,
-    "friction.dynamic": 0.15,
-}
-
-
-def dropped(modes: int = 5) -> Scene:
-    """Rotor I from 9000 rpm into two simplified caged bearings, up to just after the first impacts."""
-    scene = load("rotor1-9000")
-    for end in "AB":
-        scene = scene.with_swap(f"bearing_{end}", "simplified_caged")
-        for name, value in BEARING.items():
-            scene = scene.with_setting(f"bearing_{end}.{name}", value)
-        scene = scene.with_setting(f"amb_{end}.shutdown_time", LEVITATED)
-    scene = scene.with_setting("rotor.modes", modes)
-    return scene.with_setting("run.duration", AT).with_setting("run.stop_residual", 1e9)
 
 
 def reference(scene: Scene) -> np.ndarray:

@@ -1,0 +1,141 @@
+"""What other co-simulation tools cost on the same FMUs, and how far off they are.
+
+The drops of tests/peers at a macro step of 5 us: by this project's master with its default scheme, and by
+libcosim, ecos, fmpy's SSP runner and cofmupy, which step all FMUs in parallel with loads predicted one step
+ahead (scheme jacobi-lead). Cost is what is spent beyond the kernels, per FMU that is stepped and macro
+step: processor time of all threads, and time on the wall. Errors are those against the same drop at a
+macro step of 1 us. The tools are installed from PyPI; ecos needs Debian's libtbb12.
+
+    python benchmarks/peers.py [--repeat 7] [--falls disk,"rotor I"]
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import sys
+import tempfile
+import time as clock
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+sys.path.extend(str(Path(__file__).resolve().parents[1] / part) for part in ("tests", "tests/peers"))
+
+from drops import FALLS, Fall
+from environments import REQUIREMENTS, Found, UnavailableError, run, title
+
+from master.scene import Scene
+from master.simulation import open_system, simulate
+from master.system import System
+from master.twin import TwinComponent
+
+WARM_UP = 200  # macro steps before the clock starts
+LEAD = "jacobi-lead"
+SLOW = ("fmpy", "cofmupy")  # run once
+
+
+@dataclass
+class Kernels:
+    """What the compiled kernels take."""
+
+    time: float  # us per macro step, of all components together
+    stepped: float  # components per macro step
+
+
+def kernels(scene: Scene, repeat: int, retire: bool) -> Kernels:
+    """Of the scene's own motion; each call counts with its shortest time, as all runs are equal.
+
+    Without `retire` components that have nothing left to do go on being stepped, as other tools do.
+    """
+    runs = []
+    for _ in range(repeat):
+        system = open_system(scene, in_process=True)
+        if not retire:
+            system.retire = lambda names: None  # type: ignore[method-assign]
+        spent: list[float] = []
+        for component in system.components.values():
+            assert isinstance(component, TwinComponent)
+            instance = component.instance
+
+            def step(time: float, size: float, instance=instance, spent=spent) -> None:
+                began = clock.perf_counter()
+                instance.model.advance(instance.words, instance.work, time, size)
+                spent.append(clock.perf_counter() - began)
+
+            component.step = step  # type: ignore[method-assign]
+        steps = simulate(scene, system).steps
+        runs.append(spent)
+    return Kernels(1e6 * float(np.min(runs, axis=0).sum()) / steps, len(runs[0]) / steps)
+
+
+def ours(fall: Fall) -> Found:
+    """The project's master through FMUs."""
+    system = open_system(fall.scene)
+    marks: list[tuple[float, float]] = []
+
+    def watch(_: float, __: System) -> None:
+        nonlocal done
+        done += 1
+        if done == WARM_UP:
+            marks.append((clock.perf_counter(), clock.process_time()))
+
+    done = 0
+    try:
+        simulate(fall.scene, system, watch=watch)
+        marks.append((clock.perf_counter(), clock.process_time()))
+        wall, processor = (1e6 * (b - a) / (done - WARM_UP) for a, b in zip(*marks, strict=True))
+        return Found({name: system.value(name) for name in fall.wanted}, wall, processor)
+    finally:
+        system.close()
+
+
+def report(fall: Fall, repeat: int, folder: Path) -> None:
+    """Print the fall's table."""
+    exact, _ = Fall(fall.scene.with_setting("run.macro_step", 1e-6), fall.journals, fall.bearings).ours()
+    package = fall.package(LEAD, folder)
+    own = kernels(fall.scene, repeat, retire=True)
+    parallel = kernels(fall.with_scheme(LEAD), repeat, retire=False)
+    found: dict[str, list[Found]] = {}
+    for k in range(repeat):
+        found.setdefault("touchdown-cosim", []).append(ours(fall))
+        for peer in REQUIREMENTS:
+            if k > 0 and peer in SLOW:
+                continue
+            try:
+                found.setdefault(title(peer), []).append(run(peer, package, fall.wanted))
+            except UnavailableError as reason:
+                print(f"{title(peer)} left out: {reason}")
+    print(f"\n{fall.scene.name}, {len(fall.scene.components)} FMUs, median of {repeat} runs; kernels take")
+    print(f"{own.time:.2f} us per macro step, {parallel.time:.2f} us with loads predicted")
+    print(f"{'':<20}{'cost beyond the kernels':^30}{'error':^36}")
+    print(f"{'tool':<20}{'processor':>16}{'wall':>14}{'journal':>13}{'peak force':>12}{'impact':>11}")
+    for tool, runs in found.items():
+        if not runs:
+            continue
+        base = own if tool == "touchdown-cosim" else parallel
+        beyond = [
+            (statistics.median(values) - base.time) / base.stepped
+            for values in ([r.processor for r in runs], [r.wall for r in runs])
+        ]
+        error = fall.error(runs[0].values, exact)
+        print(
+            f"{tool:<20}{beyond[0]:>13.1f} us{beyond[1]:>11.1f} us{error.journal:>10.2g} um"
+            f"{100 * error.peak:>10.2g} %{error.impact:>8.2g} us"
+        )
+
+
+def main() -> None:
+    """Print one table for each drop."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeat", type=int, default=7)
+    parser.add_argument("--falls", default=",".join(FALLS), help=f"of {', '.join(FALLS)}")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        for name in options.falls.split(","):
+            report(FALLS[name](), options.repeat, Path(folder))
+
+
+if __name__ == "__main__":
+    main()

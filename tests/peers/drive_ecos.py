@@ -1,0 +1,23 @@
+"""A drop in ecos; the package, as `touchdown ssp --outputs-only` writes it, goes in whole."""
+
+from __future__ import annotations
+
+from driver import WARM_UP, Answer, Drop, Watch, main
+from ecospy import EcosLib, EcosSimulation
+
+START_VALUES = "initialValues"  # of the package; ecos applies the set that it is told by name
+
+
+def drive(drop: Drop) -> Answer:
+    """The macro step is an argument: ecos does not read the package's."""
+    EcosLib.set_log_level("warn")
+    simulation = EcosSimulation(drop.step, ssp_path=str(drop.path))
+    simulation.init(parameter_set=START_VALUES)
+    simulation.step(WARM_UP)
+    watch = Watch()
+    simulation.step(drop.steps - WARM_UP)
+    spent = watch.read()
+    return Answer([simulation.get_real(f"{name}::{wanted}") for name, wanted in drop.wanted], spent)
+
+
+main(drive)

@@ -1,0 +1,106 @@
+"""The project's FMUs in other co-simulation tools: same drop, same numbers.
+
+They come from PyPI, so these tests run only when asked for: pytest -m peers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+
+import pytest
+from drops import FALLS, Error, Fall
+from environments import REQUIREMENTS, Found, UnavailableError, interpreter, run
+from systems import LEVITATED
+
+pytestmark = pytest.mark.peers
+
+LEAD = [(peer, fall, "jacobi-lead") for peer in REQUIREMENTS for fall in FALLS]
+PLAIN = [("ecos", fall, "jacobi-interface") for fall in FALLS]
+ORDERED = [("cofmupy", "disk", "interface")]
+BEARINGS_FIRST = "amb,bearing;rotor,housing"
+JOURNAL = {"fmpy": 0.5}  # um; its first step has all inputs 0, so the rotor falls before it is held
+Key = tuple[str, str, str]  # peer, fall, scheme
+
+
+@pytest.fixture(scope="session")
+def falls() -> dict[str, Fall]:
+    return {name: make() for name, make in FALLS.items()}
+
+
+@pytest.fixture(scope="session")
+def ours(falls: dict[str, Fall]) -> dict[str, dict[str, float]]:
+    """What is exact, and that something happened."""
+    found = {name: fall.ours()[0] for name, fall in falls.items()}
+    for name, fall in falls.items():
+        for bearing in fall.bearings:
+            assert found[name][f"{bearing}.contact.peak_force"] > 300.0
+            assert found[name][f"{bearing}.contact.first_time"] > LEVITATED
+    return found
+
+
+@pytest.fixture(scope="session")
+def runs(falls: dict[str, Fall], tmp_path_factory: pytest.TempPathFactory) -> dict[Key, Future[Found]]:
+    """All runs, two at a time."""
+    folder = tmp_path_factory.mktemp("peers")
+    keys = [*LEAD, *PLAIN, *ORDERED]
+    packages = {
+        (fall, scheme): falls[fall].package(scheme, folder)
+        for fall, scheme in dict.fromkeys((fall, scheme) for _, fall, scheme in keys)
+    }
+    with ThreadPoolExecutor(2) as pool:
+        made = {"ssp": pool.submit(interpreter, "fmpy"), "cofmupy": pool.submit(interpreter, "cofmupy")}
+
+        def one(key: Key) -> Found:
+            peer, fall, scheme = key
+            made[REQUIREMENTS[peer]].result()
+            order = {"ORDER": BEARINGS_FIRST} if key in ORDERED else {}
+            return run(peer, packages[fall, scheme], falls[fall].wanted, **order)
+
+        return {key: pool.submit(one, key) for key in keys}
+
+
+@pytest.fixture(scope="session")
+def error(
+    runs: dict[Key, Future[Found]], falls: dict[str, Fall], ours: dict[str, dict[str, float]]
+) -> Callable[..., Error]:
+    """Of a run; skips where its tool cannot be had."""
+
+    def of(peer: str, fall: str, scheme: str) -> Error:
+        try:
+            found = runs[peer, fall, scheme].result()
+        except UnavailableError as reason:
+            pytest.skip(str(reason))
+        return falls[fall].error(found.values, ours[fall])
+
+    return of
+
+
+@pytest.mark.parametrize(("peer", "fall", "scheme"), LEAD)
+def test_a_tool_that_steps_all_fmus_in_parallel(
+    peer: str, fall: str, scheme: str, error: Callable[..., Error]
+) -> None:
+    """With loads predicted one macro step ahead."""
+    found = error(peer, fall, scheme)
+    assert found.peak < 2e-3
+    assert found.journal < JOURNAL.get(peer, 0.05)
+    assert found.impact < 5.0
+
+
+@pytest.mark.parametrize(("peer", "fall", "scheme"), PLAIN)
+def test_without_the_prediction_it_errs_more(
+    peer: str, fall: str, scheme: str, error: Callable[..., Error]
+) -> None:
+    plain, led = error(peer, fall, scheme), error(peer, fall, "jacobi-lead")
+    assert plain.peak > 0.01
+    assert plain.journal > 20.0 * led.journal
+
+
+@pytest.mark.parametrize(("peer", "fall", "scheme"), ORDERED)
+def test_a_tool_that_can_be_told_the_order(
+    peer: str, fall: str, scheme: str, error: Callable[..., Error]
+) -> None:
+    """Bearings first, as the project's own master: the same numbers but for the clock's rounding."""
+    found = error(peer, fall, scheme)
+    assert found.peak < 1e-9
+    assert found.journal < 1e-7
