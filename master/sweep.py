@@ -4,27 +4,16 @@ from __future__ import annotations
 
 import itertools
 import math
-import multiprocessing
-import os
-import signal
-import threading
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 from master.errors import TouchdownError
+from master.processes import run_all
 from master.run import make_writable, run_scene
 from master.scene import Scene
 from master.simulation import open_system
 from master.sweep_report import Member, write_csv
-
-GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
-INTERRUPTED = "interrupted"
 
 
 @dataclass(frozen=True)
@@ -35,9 +24,6 @@ class Task:
     folder: Path
     in_process: bool
     keep: bool
-
-
-Ended = tuple[dict[str, object], str]  # summary, and why the run failed or ""
 
 
 def sweep(
@@ -69,11 +55,10 @@ def sweep(
         Task(scene.with_settings(given), folder / f"{number:0{width}}", in_process, keep)
         for number, given in enumerate(settings, start=1)
     ]
-    ended = _run_all(tasks, min(jobs, len(tasks)), done)
-    members = [
-        Member(number, given, *ended.get(number - 1, ({}, INTERRUPTED)))
-        for number, given in enumerate(settings, start=1)
-    ]
+    members = []
+    for number, ended in enumerate(run_all(_run_task, tasks, jobs, done), start=1):
+        summary, stopped_because = ended.value or ({}, ended.failed)
+        members.append(Member(number, settings[number - 1], summary, stopped_because))
     write_csv(members, folder / "sweep.csv")
     return members
 
@@ -91,98 +76,12 @@ def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:
             open_system(first.with_setting(name, value), in_process=True).close()
 
 
-def _run_all(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> dict[int, Ended]:
-    """How each task ended, by its place; Ctrl-C leaves the rest out."""
-    ended: dict[int, Ended] = {}
-    try:
-        _run_pool(dict(enumerate(tasks)), jobs, ended, done)
-        for place, task in enumerate(tasks):
-            if place not in ended:  # a process that dies takes its pool along: which one shows alone
-                _run_pool({place: task}, 1, ended, done)
-                if place not in ended:
-                    ended[place] = ({}, "its process died")
-                    done()
-    except KeyboardInterrupt:
-        pass
-    return ended
-
-
-def _run_pool(
-    tasks: Mapping[int, Task], jobs: int, ended: dict[int, Ended], done: Callable[[], object]
-) -> None:
-    """Run tasks and note how they ended; those of a pool that broke are left out."""
-    others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"))
-    waiting = list(tasks)
-    running: dict[Future[Ended], int] = {}
-    try:
-        while waiting or running:
-            while waiting and len(running) < jobs:  # a queue in the pool would go on after Ctrl-C
-                place = waiting.pop(0)
-                with _interrupts_ignored():
-                    running[pool.submit(_run_task, tasks[place])] = place
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                ended[running.pop(future)] = _outcome(future)
-                done()
-    except BrokenProcessPool:
-        pass
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        _end([child for child in multiprocessing.active_children() if child not in others])
-        raise
-    pool.shutdown()
-
-
-def _outcome(future: Future[Ended]) -> Ended:
-    """What a run's process handed back; raises BrokenProcessPool where it died."""
-    try:
-        return future.result()
-    except BrokenProcessPool:
-        raise
-    except Exception as error:
-        return {}, str(error) if isinstance(error, TouchdownError) else f"{type(error).__name__}: {error}"
-
-
-def _run_task(task: Task) -> Ended:
+def _run_task(task: Task) -> tuple[dict[str, object], str]:
+    """Summary, and why the run stopped or nothing."""
     result = run_scene(task.scene, task.folder, in_process=task.in_process, pictures=False)
     if not task.keep:
         (task.folder / "result.h5").unlink(missing_ok=True)
     return result.summary, result.stopped_because
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Processes started meanwhile ignore Ctrl-C, but for their runs, which note it and end in order."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def _end(processes: Sequence[BaseProcess]) -> None:
-    """End processes in order if they let: a Ctrl-C at a terminal has reached them too, others have not.
-
-    A run that got it twice would break off, so those still there after GRACE are sent theirs.
-    """
-    try:
-        _join(processes)
-        for process in processes:
-            if process.is_alive() and process.pid is not None:
-                os.kill(process.pid, signal.SIGINT)
-        _join(processes)
-    finally:
-        for process in processes:
-            process.terminate()
-
-
-def _join(processes: Sequence[BaseProcess]) -> None:
-    deadline = time.monotonic() + GRACE
-    for process in processes:
-        process.join(max(0.0, deadline - time.monotonic()))
 
 
 def size(variations: Mapping[str, Sequence[object]]) -> int:

@@ -16,6 +16,7 @@ from master.verbs import (
     run,
     scenes,
     ssp,
+    stability,
     sweep,
 )
 
@@ -29,6 +30,7 @@ ALL = (
     compare_bearings,
     compare_rotors,
     compare_modes,
+    stability,
     build,
     ssp,
     container,

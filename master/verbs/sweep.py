@@ -42,8 +42,9 @@ def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from tqdm import tqdm
 
+    from master.processes import INTERRUPTED
     from master.scene import load
-    from master.sweep import INTERRUPTED, size, sweep
+    from master.sweep import size, sweep
     from master.sweep_report import picked, table, verdict_lines
     from master.variation import parse_all
 
