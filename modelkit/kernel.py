@@ -12,9 +12,20 @@ import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numba
+
+
+@cache
+def _by_content(record: Any) -> tuple[str, tuple[str]]:
+    return type(record).__name__, (hashlib.sha256(record.name.encode()).hexdigest()[:24],)
+
+
+# numba names machine code after the types it is for, and a record type after its turn in the process. Code
+# kept by two processes may then bear one name for different records, and a third one that loads both, as
+# for two bearings, runs the wrong one. Named after what it holds, a record has one name everywhere.
+numba.types.Record.mangling_args = property(_by_content)  # type: ignore[misc, assignment]
 
 PHYSICS_PACKAGES = ("modelkit", "rotor", "bearings")
 
