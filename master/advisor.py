@@ -31,12 +31,14 @@ class Advice:
 
 
 def fastest_contact(system: System) -> tuple[str, float]:
-    """The bearing with the fastest contact of an initialised system, and its rate (rad/s).
+    """The bearing whose contact asks for the shortest macro step, and its rate (rad/s).
+
+    A bearing that takes several macro steps in one counts as that much faster.
 
     Raises TouchdownError where no bearing states one.
     """
     rates = {
-        name: system.value(f"{name}.{RATE}")
+        name: system.every[name] * system.value(f"{name}.{RATE}")
         for name in dict.fromkeys(a.bearing for a in system.attachments)
         if RATE in system.components[name].variables
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from tqdm import tqdm
@@ -36,7 +36,9 @@ def run_scene(
     pictures: bool = True,
     progress: bool = False,
 ) -> Result:
-    """Run `scene` and write summary.json, result.h5 and what else is asked for into `folder`.
+    """Run `scene` and write its results into `folder`.
+
+    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
@@ -70,6 +72,8 @@ def _write_results(
     recording = Recording(folder / "result.h5")
     try:
         summary = summarise(scene, system, outcome, recording)
+        resolved = json.dumps(asdict(scene), indent=2, default=str)
+        (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
         (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
         if csv:
             write_csv(recording, folder / "result.csv")

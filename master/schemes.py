@@ -45,7 +45,7 @@ SCHEMES = _table(
     Scheme("velocity", "velocity extrapolated, mean load", VELOCITY, False, False, 2, 0.08),
     Scheme("acceleration", "acceleration extrapolated, mean and slope", ACCELERATION, True, False, 3, 0.2),
     Scheme("point-mass", "bodies carried as point masses, mean and slope", MODEL, True, False, 3, 0.3),
-    Scheme("interface", "bodies carried with their modes, mean and slope", MODEL, True, True, 3, 3.0),
+    Scheme("interface", "bodies carried with their modes, mean and slope", MODEL, True, True, 3, 1.0),
     Scheme("iterated", "repeated until both sides agree", ACCELERATION, True, False, 3, 0.35, "iterated"),
     Scheme("halving", "interface, steps halved to a tolerance", MODEL, True, True, 0, 3.0, "halving"),
     Scheme("jacobi-hold", "all at once, motion and load held", HOLD, False, False, 1, 0.004, "jacobi"),

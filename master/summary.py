@@ -97,6 +97,7 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
         port = next(a.body_port for a in seats if a.body == name)
         found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(f"{name}.{port}.omega")
     found |= stress_figures(system, outcome)
+    found |= outcome.coupling
     found |= _run_figures(scene, system, outcome, recording)
     return found
 

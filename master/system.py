@@ -112,6 +112,8 @@ class System:
 
     def retire(self, names: Iterable[str]) -> None:
         """Stop exchanging with components that have nothing left to do; what they gave last stays."""
+        for name in self.order:  # the last of what the retired gave, where it has not been taken yet
+            self.feed(name)
         self.retired |= set(names)
         self.order = [name for name in self.order if name not in self.retired]
         self._lay_out()
@@ -188,7 +190,10 @@ def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]
                     f"{c.target}.{c.input} cannot be set: it is connected to {c.source}.{c.output}"
                 )
         every = {name: spec.every for name, spec in scene.components.items()}
-        return System(components, recognised(connections), connections, settings, every)
+        found = recognised(connections)
+        if scheme.lead:
+            _require_lead(found, components)
+        return System(components, found, connections, settings, every)
     except BaseException:
         for component in components.values():
             component.close()
@@ -205,11 +210,23 @@ def _apply_settings(
         given = {key: value for key, value in optional.items() if key in component.variables}
         values = {key: _checked(component, key, value) for key, value in {**given, **spec.set}.items()}
         for key, value in (("interface.order", scheme.order), ("interface.lead", int(scheme.lead))):
+            if key in spec.set:
+                raise TouchdownError(f"{name}.{key} follows from the scheme; set run.scheme instead")
             if key in component.variables:
-                values.setdefault(key, value)
+                values[key] = value
         component.set(values)
         applied |= {(name, key): value for key, value in values.items()}
     return applied
+
+
+def _require_lead(attachments: Iterable[Attachment], components: dict[str, Component]) -> None:
+    for a in attachments:
+        bearing = components[a.bearing]
+        if "interface.lead" not in bearing.variables:
+            raise TouchdownError(
+                f"{a.bearing} ({bearing.origin}) cannot lead: it has no parameter interface.lead; choose a "
+                "scheme that steps bearings first"
+            )
 
 
 def _checked(component: Component, name: str, given: object) -> float:

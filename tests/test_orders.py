@@ -10,10 +10,12 @@ parabola through both ends misses s^2 (s - H) x'''/6.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
+from systems import rotor_on
 
 from master.monolithic import Monolith
 from master.scene import ComponentSpec, RunSpec, Scene
@@ -99,3 +101,41 @@ def test_order_through_an_impact(scheme: str) -> None:
         for step in steps
     ]
     assert order(errors, steps) == pytest.approx(SCHEMES[scheme].error_order, abs=0.15)
+
+
+def test_spin_is_repeated_as_displacement_is() -> None:
+    """A light rotor braked by friction that depends on its spin: the moment within the step matters."""
+    braked = {"mass": 1.65, "inertia": 1e-6, "speed": 2.0, "y": -0.302e-3}
+    friction = {"friction.kind": 0, "friction.static": 0.2, "friction.dynamic": 0.2, "friction.slope": 10.0}
+
+    def spin(scheme: str, step: float) -> float:
+        found = rotor_on(
+            "bushing",
+            braked,
+            ELASTIC | friction,
+            duration=4e-4,
+            macro_step=step,
+            scheme=scheme,
+            tolerance=1e-16,
+        )
+        system = open_system(found, in_process=True)
+        assert not simulate(found, system).stopped_because
+        return system.value("rotor.A.omega")
+
+    exact = spin("interface", 1e-6)
+    steps = (1e-5, 2e-5, 4e-5)
+    assert order([abs(spin("iterated", step) - exact) for step in steps], steps) > 1.7
+
+
+def test_halving_errs_as_its_tolerance_says() -> None:
+    """The error falls with the tolerance, nearly in proportion, whatever the macro step."""
+    errors = []
+    for tolerance in (1e-9, 1e-12):
+        given = scene(None, "halving", 1e-4)
+        given = replace(given, run=replace(given.run, tolerance=tolerance))
+        system = open_system(given, in_process=True)
+        assert not simulate(given, system).stopped_because
+        found = np.array([system.value(name) for name in MOTION])
+        errors.append(float(np.linalg.norm((found - exact(None)) * WEIGHT)))
+    assert errors[0] < 1e-8
+    assert errors[1] < 0.05 * errors[0]

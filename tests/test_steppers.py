@@ -71,7 +71,7 @@ def test_a_leading_bearing_hands_over_the_next_load_without_moving_on() -> None:
     rotor = {"y": -0.305e-3, "vy": -0.05}
     scene = rotor_on("simplified_caged", rotor, duration=1.0, macro_step=2e-5)
     plain = open_system(scene, in_process=True)
-    leading = open_system(scene.with_setting("bearing.interface.lead", 1), in_process=True)
+    leading = open_system(scene.with_setting("run.scheme", "jacobi-lead"), in_process=True)
     bearings = [system.components["bearing"] for system in (plain, leading)]
     for system, bearing in zip((plain, leading), bearings, strict=True):
         system.initialise()
@@ -103,6 +103,29 @@ def test_a_shutdown_within_the_step_to_come_is_seen() -> None:
     assert given[0] == pytest.approx(weight, rel=1e-9)  # for the first step
     assert given[1] == pytest.approx(0.3 * weight, rel=1e-6)  # it acts for 3 of the second step's 10 us
     assert given[2] == 0.0
+
+
+def test_all_at_once_with_longer_steps_of_the_bearings(exact: np.ndarray) -> None:
+    """Bodies in small steps under bearings in long ones err as all of them do in long ones."""
+    scene = disk("jacobi-lead", 5e-6)
+    for name in ("bearing", "amb"):
+        scene = scene.with_setting(f"{name}.every", 4)
+    assert error(ended(scene)[0], exact) < 1e-4
+
+
+def test_a_bearing_that_retires_leaves_no_load_behind() -> None:
+    """The body takes a load one step late: also the last one, which is none."""
+    scene = disk("jacobi-interface", 1e-5).with_setting("amb.shutdown_time", 63e-5)
+    system = open_system(scene.with_setting("run.duration", 2e-3), in_process=True)
+    simulate(scene.with_setting("run.duration", 2e-3), system)
+    assert "amb" in system.retired
+    assert system.components["rotor"].read(["amb.fy"]) == [0.0]
+
+
+def test_a_bearing_that_cannot_lead_is_refused() -> None:
+    scene = disk("interface", 1e-5).with_setting("bearing.interface.lead", 1)
+    with pytest.raises(TouchdownError, match=r"bearing\.interface\.lead follows from the scheme"):
+        open_system(scene, in_process=True)
 
 
 # -- iterated ----------------------------------------------------------------------------------------

@@ -44,6 +44,9 @@ class Side:
         return self.variables[name]
 
 
+SCHEME_SETS = ("interface.order", "interface.lead")  # a package states them for tools without schemes
+
+
 def read(path: Path) -> Scene:
     """The scene in a package (.ssp). Raises TouchdownError where it is broken or cannot be run."""
     cache = user_cache()
@@ -67,9 +70,10 @@ def read(path: Path) -> Scene:
 
 def _component(found: Structure, name: str, settings: Mapping[str, float]) -> ComponentSpec:
     names = found.names.get(name, {})
+    given = {_here(found, name, variable): value for variable, value in settings.items()}
     return ComponentSpec(
         str(found.parts[name].path.absolute()),
-        {_here(found, name, variable): value for variable, value in settings.items()},
+        {variable: value for variable, value in given.items() if variable not in SCHEME_SETS},
         every=found.every(name),
         names=names,
     )

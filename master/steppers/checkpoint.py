@@ -20,8 +20,12 @@ class Checkpoint:
         self._system = system
         self._signals = system.signals.copy()
         self._states: dict[str, object] = {}
-        for name in system.order:
-            self._states[name] = system.components[name].save()
+        try:
+            for name in system.order:
+                self._states[name] = system.components[name].save()
+        except TouchdownError:
+            self._release()
+            raise
 
     def restore(self) -> None:
         """Take the system back; may be called again."""
@@ -40,6 +44,9 @@ class Checkpoint:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._release()
+
+    def _release(self) -> None:
         for name, state in self._states.items():
             self._system.components[name].release(state)
 

@@ -34,11 +34,19 @@ class _Channels:
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
+    spin: np.ndarray
+    spin_acceleration: np.ndarray
+    gains: np.ndarray  # what it would know of the bodies' masses
 
-    def parabola(self, start: np.ndarray, end: np.ndarray, step: float) -> np.ndarray:
-        """Accelerations (m/s2) that lead from the inputs `start` to the positions in `end`."""
+    @property
+    def given(self) -> np.ndarray:
+        """Inputs that carry the prescribed motion."""
+        return np.concatenate([self.acceleration, self.spin_acceleration])
+
+    def motion(self, start: np.ndarray, end: np.ndarray, step: float) -> np.ndarray:
+        """Accelerations (m/s2, rad/s2) that lead from the inputs `start` to those in `end`."""
         moved = end[self.position] - start[self.position] - step * start[self.velocity]
-        return 2.0 * moved / step**2
+        return np.concatenate([2.0 * moved / step**2, (end[self.spin] - start[self.spin]) / step])
 
 
 class Iterated(Stepper):
@@ -59,7 +67,11 @@ class Iterated(Stepper):
         bearings = dict.fromkeys(a.bearing for a in system.attachments if a.bearing in system.order)
         self._channels = {name: _channels(system, name) for name in bearings}
         self._bodies = [name for name in system.order if name not in bearings]
-        self._guess = np.zeros(sum(len(c.position) for c in self._channels.values()))
+        moving = [np.ones(len(c.position)) for c in self._channels.values()]
+        turning = [np.zeros(len(c.spin)) for c in self._channels.values()]
+        pairs = [part for pair in zip(moving, turning, strict=True) for part in pair]
+        self._moves = np.concatenate([np.zeros(0), *pairs])  # 1: a displacement, 0: a rotation
+        self._guess = np.zeros(len(self._moves))
 
     def step(self, number: int, time: float, step: float) -> None:
         self._advance(time, step, 0)
@@ -90,11 +102,11 @@ class Iterated(Stepper):
                 before.restore()
             off = self._take(before.signals, guess, time, step) - guess
             self._repeated += 1
-            change = 0.5 * step**2 * float(np.max(np.abs(off), initial=0.0))
+            change = 0.5 * step**2 * float(np.max(np.abs(off * self._moves), initial=0.0))
             if change <= self.run.tolerance or not np.isfinite(change):
                 break
             if repetition:
-                turn = off - last
+                turn = (off - last) * self._moves
                 relaxation *= -float(last @ turn) / max(float(turn @ turn), TINY)
             guess, last = guess + relaxation * off, off
         self._guess = guess if np.isfinite(change) else np.zeros(len(guess))
@@ -106,8 +118,9 @@ class Iterated(Stepper):
         for name, channels in self._channels.items():
             component = system.components[name]
             system.take_inputs(name)
-            count = len(channels.acceleration)
-            component.inputs[channels.acceleration] = guess[used : used + count]
+            count = len(channels.given)
+            component.inputs[channels.given] = guess[used : used + count]
+            component.inputs[channels.gains] = 0.0
             used += count
             component.push()
             component.step(time, step)
@@ -117,10 +130,17 @@ class Iterated(Stepper):
             system.components[name].step(time, step)
             system.components[name].pull()
         came = [
-            channels.parabola(start[system.take[name]], system.signals[system.take[name]], step)
+            channels.motion(self._seen(name, start), self._seen(name, system.signals), step)
             for name, channels in self._channels.items()
         ]
         return np.concatenate([np.zeros(0), *came])
+
+    def _seen(self, name: str, signals: np.ndarray) -> np.ndarray:
+        """The inputs of component `name` that follow from `signals`, in its own units."""
+        inputs = signals[self.system.take[name]]
+        for scaling in self.system.scales.get(name, ()):
+            scaling.cut(inputs)
+        return inputs
 
     @property
     def figures(self) -> dict[str, float]:
@@ -131,17 +151,28 @@ class Iterated(Stepper):
 
 
 def _channels(system: System, bearing: str) -> _Channels:
-    """All directions in which a bearing takes position, velocity and acceleration of a body."""
+    """All directions in which a bearing takes position, velocity and acceleration of a body.
+
+    Raises TouchdownError where it takes the position and nothing that could be prescribed with it.
+    """
     inputs = system.inputs_of(bearing)
-    found = [
-        places
-        for a in system.attachments
-        if a.bearing == bearing
-        for axis in "xy"
-        if None not in (places := [inputs.get(f"{a.bearing_port}.{name}") for name in _motion(axis)])
-    ]
-    return _Channels(*np.array(found, dtype=np.intp).reshape(-1, 3).T)
-
-
-def _motion(axis: str) -> tuple[str, str, str]:
-    return axis, f"v{axis}", f"a{axis}_free"
+    linear, angular, gains = [], [], []
+    for port in dict.fromkeys(a.bearing_port for a in system.attachments if a.bearing == bearing):
+        for names in ((f"{port}.{axis}", f"{port}.v{axis}", f"{port}.a{axis}_free") for axis in "xy"):
+            if names[0] not in inputs:
+                continue
+            lacking = [name for name in names if name not in inputs]
+            if lacking:
+                raise TouchdownError(
+                    f"scheme iterated prescribes motion to {bearing}, which does not take {lacking[0]}; "
+                    "choose another scheme, such as velocity"
+                )
+            linear.append([inputs[name] for name in names])
+        turn = [f"{port}.omega", f"{port}.alpha_free"]
+        if all(name in inputs for name in turn):
+            angular.append([inputs[name] for name in turn])
+        gains += [inputs[name] for gain in GAINS if (name := f"{port}.{gain}") in inputs]
+    position, velocity, acceleration = np.array(linear, dtype=np.intp).reshape(-1, 3).T
+    spin, spin_acceleration = np.array(angular, dtype=np.intp).reshape(-1, 2).T
+    known = np.array(gains, dtype=np.intp)
+    return _Channels(position, velocity, acceleration, spin, spin_acceleration, known)

@@ -22,5 +22,6 @@ class Jacobi(GaussSeidel):
             component.push()
         for component, _, every, _ in due:
             component.step(time, every * step)
-        for component, _, _, _ in due:
-            component.pull()
+        for component, _, every, _ in self._turns:
+            if (number + 1) % every == 0:  # until its own step ends, what it gave before holds
+                component.pull()

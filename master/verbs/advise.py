@@ -26,7 +26,9 @@ def execute(options: argparse.Namespace) -> int:
 
     chosen = load(options.scene).with_settings(dict(assignment(text, "--set") for text in options.set))
     found = advise(chosen, SCHEMES)
-    print(f"{chosen.name}: {found[chosen.run.scheme].reason}")
+    print(
+        f"{chosen.name}, which takes {1e6 * chosen.run.macro_step:g} us: {found[chosen.run.scheme].reason}"
+    )
     for name, advice in found.items():
         scheme = SCHEMES[name]
         print(f"  {name:<18}{1e6 * advice.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")

@@ -5,11 +5,17 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from master.errors import TouchdownError, one_of
+from master.scene import Scene
+
 
 def add_to(verbs: Any) -> None:
     """Add the verb to the command."""
     verb = verbs.add_parser("scenes", help="list the scenes, or show one")
     verb.add_argument("scene", nargs="?", help="show this scene's components and settings")
+    verb.add_argument(
+        "--variables", metavar="COMPONENT", help="show what can be set in this component of the scene"
+    )
     verb.set_defaults(run=execute)
 
 
@@ -30,6 +36,9 @@ def execute(options: argparse.Namespace) -> int:
         f"\nrun: {chosen.run.duration:g} s from {chosen.zero or 'the start'}, "
         f"macro step {chosen.run.macro_step:g} s, scheme {chosen.run.scheme}"
     )
+    if options.variables is not None:
+        _show_variables(chosen, options.variables)
+        return 0
     for name, spec in chosen.components.items():
         settings = "".join(f"\n      {key} = {value}" for key, value in spec.set.items())
         kind = f" ({spec.preset})" if spec.preset else ""
@@ -37,3 +46,21 @@ def execute(options: argparse.Namespace) -> int:
     for bearing, body in chosen.attach:
         print(f"  {bearing} on {body}")
     return 0
+
+
+def _show_variables(scene: Scene, name: str) -> None:
+    """All that `--set NAME.VARIABLE=VALUE` takes: value in this scene, unit, bounds, meaning."""
+    from master.simulation import opened
+
+    with opened(scene, in_process=True) as system:
+        component = system.components.get(name)
+        if component is None:
+            known = one_of(name, system.components)
+            raise TouchdownError(f"scene {scene.name} has no component {name}; {known}")
+        settable = [v for v in component.variables.values() if v.settable and v.causality == "parameter"]
+        values = component.read([v.name for v in settable])
+        print(f"\n{name} ({component.origin})")
+        for v, value in zip(settable, values, strict=True):
+            ends = (("from", v.minimum), ("to", v.maximum))
+            bounds = " ".join(f"{word} {bound:g}" for word, bound in ends if bound is not None)
+            print(f"  {v.name:<34}{value:>12.6g} {v.unit or '1':<10}{bounds:<14} {v.description}")
