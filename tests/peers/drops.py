@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from systems import AT, LEVITATED, dropped
@@ -73,16 +74,18 @@ class Fall:
         )
 
 
-def disk() -> Fall:
-    """The rigid disk on a simplified caged bearing: four FMUs."""
-    settings = {"amb.shutdown_time": LEVITATED, "run.duration": AT, "run.macro_step": STEP}
+def disk(levitated: float = LEVITATED) -> Fall:
+    """The rigid disk on a simplified caged bearing, held for `levitated` (s): four FMUs."""
+    settings = {"amb.shutdown_time": levitated, "run.duration": AT, "run.macro_step": STEP}
     return Fall(load("disk-caged-simplified").with_settings(settings), ("rotor.A",), ("bearing",))
 
 
-def rotor() -> Fall:
-    """Rotor I, flexible, on two simplified caged bearings: seven FMUs."""
+def rotor(levitated: float = LEVITATED) -> Fall:
+    """Rotor I, flexible, on two simplified caged bearings, held for `levitated` (s): seven FMUs."""
     scene = dropped().with_setting("run.macro_step", STEP)
+    scene = scene.with_settings({f"amb_{end}.shutdown_time": levitated for end in "AB"})
     return Fall(scene, ("rotor.A", "rotor.B"), ("bearing_A", "bearing_B"))
 
 
 FALLS = {"disk": disk, "rotor I": rotor}
+FREE = {"disk, free": partial(disk, 0.0), "rotor I, free": partial(rotor, 0.0)}  # never held
