@@ -43,10 +43,10 @@ def ours(falls: dict[str, Fall]) -> dict[str, dict[str, float]]:
 @pytest.fixture(scope="session")
 def runs(falls: dict[str, Fall], tmp_path_factory: pytest.TempPathFactory) -> dict[Key, Future[Found]]:
     """All runs, two at a time."""
-    folder = tmp_path_factory.mktemp("peers")
+    folders = {fall: tmp_path_factory.mktemp("peers") for fall in falls}  # packages bear their scene's name
     keys = [*LEAD, *PLAIN, *ORDERED]
     packages = {
-        (fall, scheme): falls[fall].package(scheme, folder)
+        (fall, scheme): falls[fall].package(scheme, folders[fall])
         for fall, scheme in dict.fromkeys((fall, scheme) for _, fall, scheme in keys)
     }
     with ThreadPoolExecutor(2) as pool:
