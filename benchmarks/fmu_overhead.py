@@ -15,7 +15,7 @@ import statistics
 import time as clock
 
 from master.scene import Scene, load
-from master.simulation import open_system, simulate
+from master.simulation import open_system, opened, simulate
 from master.system import System
 from master.twin import TwinComponent
 
@@ -66,12 +66,9 @@ def _per_step(scene: Scene, system: System, spent: dict[str, float]) -> dict[str
 
 def whole_run(scene: Scene) -> float:
     """us per macro step of the whole run through FMUs, nothing recorded."""
-    system = open_system(scene)
-    try:
+    with opened(scene) as system:
         outcome = simulate(scene, system)
         return 1e6 * outcome.wall_time / outcome.steps
-    finally:
-        system.close()
 
 
 def main() -> None:

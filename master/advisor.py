@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from master.errors import TouchdownError
 from master.scene import Scene
 from master.schemes import Scheme, scheme
-from master.simulation import open_system
+from master.simulation import opened
 from master.step_sizes import tidy
 from master.system import System
 
@@ -55,12 +55,9 @@ def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice
 
     Raises TouchdownError where the scene cannot be assembled, or no bearing states its contact's rate.
     """
-    system = open_system(scene, in_process=True)
-    try:
+    with opened(scene, in_process=True) as system:
         system.initialise()
         bearing, rate = fastest_contact(system)
-    finally:
-        system.close()
     return {name: _for(scheme(name), bearing, rate) for name in names or [scene.run.scheme]}
 
 

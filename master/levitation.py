@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from master.scene import Scene
-from master.simulation import open_system
+from master.simulation import opened
 
 SHORT = 2e-3  # s
 
@@ -14,15 +14,12 @@ def shortened(scene: Scene) -> Scene:
     One that shuts down as early already stays as it is. An unbalanced rotor then falls from another
     angle: it is another drop of the same machine.
     """
-    system = open_system(scene, in_process=True)
-    try:
+    with opened(scene, in_process=True) as system:
         times = {
             name: system.value(f"{name}.shutdown_time")
             for name, component in system.components.items()
             if "shutdown_time" in component.variables
         }
-    finally:
-        system.close()
     early = min(times.values(), default=0.0) - SHORT
     if early <= 0.0:
         return scene

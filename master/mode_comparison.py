@@ -18,9 +18,10 @@ from master.component import Component
 from master.errors import TouchdownError
 from master.first_impact import Peaks, Stop, Trace, run_watched
 from master.scene import Scene
-from master.simulation import open_system
+from master.simulation import open_system, opened
 from master.summary import touchdown_seats
 from master.system import System
+from master.writing import writing_to
 
 MODES = (3, 5, 8, 12, 20)  # per plane, the two rigid ones included
 STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes
@@ -179,20 +180,15 @@ def write(found: Comparison, folder: Path) -> None:
     from master.figures_modes import errors_over_modes  # matplotlib is slow to import
     from master.mode_report import write_csv
 
-    try:
+    with writing_to(folder):
         write_csv(found, folder / "modes.csv")
         errors_over_modes(found).savefig(folder / "modes.png", dpi=150)
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from None
 
 
 def _rotor(scene: Scene) -> str:
     """The component that is a flexible rotor."""
-    system = open_system(scene, in_process=True)
-    found = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
-    system.close()
+    with opened(scene, in_process=True) as system:
+        found = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
     if not found:
         raise TouchdownError(
             f"scene {scene.name} has no flexible rotor: no component has the parameters modes and residual"
@@ -212,11 +208,8 @@ def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: in
 
 def _check_modes(scene: Scene) -> None:
     """Raise TouchdownError where the rotor has fewer modes, before anything runs for long."""
-    system = open_system(scene, in_process=True)
-    try:
+    with opened(scene, in_process=True) as system:
         system.initialise()
-    finally:
-        system.close()
 
 
 def _run(scene: Scene, rotor: str, stop: Stop | None = None) -> Run:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from pathlib import Path
 
 from master.first_impact import AVERAGE
 from master.mode_comparison import Comparison, Row, percent
+from master.writing import write_records
 
 WIDTH = 10
 STRESSES = ("bending", "shear")
@@ -87,10 +87,7 @@ def write_csv(found: Comparison, path: Path) -> None:
     """All figures and errors of all rows, in full precision."""
     rows = [_record(found, "reference", found.reference), _record(found, "coupling", found.coupling)]
     rows += [_record(found, "modes", row) for row in found.rows]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
+    write_records(rows, path)
 
 
 def _record(found: Comparison, role: str, row: Row) -> Mapping[str, object]:

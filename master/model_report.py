@@ -5,9 +5,9 @@ from __future__ import annotations
 import csv
 from pathlib import Path
 
-from master.errors import TouchdownError
 from master.first_impact import AVERAGE
 from master.model_comparison import CLEAR, Comparison, Row
+from master.writing import writing_to
 
 WIDTH = 12
 HEADS = (
@@ -92,13 +92,9 @@ def write(found: Comparison, folder: Path) -> None:
     """models.csv and models.png into `folder`."""
     from master.figures_models import error_against_time  # matplotlib is slow to import
 
-    try:
+    with writing_to(folder):
         _write_csv(found, folder / "models.csv")
         error_against_time(found).savefig(folder / "models.png", dpi=110)
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from None
 
 
 def _write_csv(found: Comparison, path: Path) -> None:

@@ -15,6 +15,7 @@ from master.scene import Scene
 from master.simulation import Outcome, interrupts_noted, open_system, simulate
 from master.summary import summarise
 from master.system import System
+from master.writing import writing_to
 
 
 @dataclass(frozen=True)
@@ -88,15 +89,11 @@ def _write_results(
 
 def make_writable(folder: Path) -> None:
     """Make `folder` and see that files can be written into it. Raises TouchdownError where not."""
-    try:
+    with writing_to(folder):
         folder.mkdir(parents=True, exist_ok=True)
         probe = folder / ".touchdown"
         probe.touch()
         probe.unlink()
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from None
 
 
 class _Bar:

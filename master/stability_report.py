@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from master.errors import TouchdownError
 from master.schemes import SCHEMES
 from master.stability import FIRST, GROWTH, VISIBLE, Attempt, Case, Finding, Right
+from master.writing import write_records, writing_to
 
 SILENT = "!"  # beside a macro step that is right where the ledger was silent on the next
 NOT_RUN = "?"
@@ -142,26 +141,12 @@ def _value(found: Finding | None, place: int) -> float | None:
 
 def write_csv(study: Study, folder: Path) -> None:
     """stability.csv: a row per case and scheme; runs.csv: one per run. Full precision."""
-    try:
-        _write(folder / "stability.csv", (_summary(found) for found in study.findings.values()))
+    with writing_to(folder):
+        write_records((_summary(found) for found in study.findings.values()), folder / "stability.csv")
         runs = (
             _run(study, found, attempt) for found in study.findings.values() for attempt in found.attempts
         )
-        _write(folder / "runs.csv", runs)
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from None
-
-
-def _write(path: Path, records: Iterable[Mapping[str, object]]) -> None:
-    rows = list(records)
-    if not rows:
-        return
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
-        writer.writeheader()
-        writer.writerows(rows)
+        write_records(runs, folder / "runs.csv")
 
 
 def _summary(found: Finding) -> Mapping[str, object]:

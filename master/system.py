@@ -101,10 +101,14 @@ class System:
 
     def take_inputs(self, name: str) -> None:
         """Fill a component's inputs from the signals, not yet handing them over."""
-        inputs = self.components[name].inputs
-        inputs[:] = self.signals[self.take[name]]
+        self.components[name].inputs[:] = self.inputs_from(name, self.signals)
+
+    def inputs_from(self, name: str, signals: np.ndarray) -> np.ndarray:
+        """A component's exchanged inputs, in its own units, where `signals` are what all have given."""
+        inputs = signals[self.take[name]]
         for scaling in self.scales.get(name, ()):
             scaling.cut(inputs)
+        return inputs
 
     def inputs_of(self, name: str) -> dict[str, int]:
         """Where each exchanged input of a component stands in its `inputs`."""

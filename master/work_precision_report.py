@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from master.errors import TouchdownError
 from master.reference import POSITION
 from master.work_precision import QUANTITIES, Comparison, Row
+from master.writing import write_records, writing_to
 
 
 @dataclass(frozen=True)
@@ -125,14 +124,10 @@ def write(found: Comparison, folder: Path) -> None:
     """work_precision.csv, orders.csv and work_precision.png into `folder`."""
     from master.figures_work_precision import work_precision  # matplotlib is slow to import
 
-    try:
+    with writing_to(folder):
         write_csv(found, folder / "work_precision.csv")
         write_orders(found, folder / "orders.csv")
         work_precision(found).savefig(folder / "work_precision.png", dpi=110)
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write to {folder}: {error.strerror}; choose another folder with -o"
-        ) from None
 
 
 def write_csv(found: Comparison, path: Path) -> None:
@@ -149,7 +144,7 @@ def write_csv(found: Comparison, path: Path) -> None:
         }
         for row in (*found.rows, *found.monolithic)
     ]
-    _write(records, path)
+    write_records(records, path)
 
 
 def write_orders(found: Comparison, path: Path) -> None:
@@ -166,12 +161,4 @@ def write_orders(found: Comparison, path: Path) -> None:
                     "macro_steps_s": "" if order is None else " ".join(f"{s:g}" for s in order.steps),
                 }
             )
-    _write(records, path)
-
-
-def _write(records: Iterable[Mapping[str, object]], path: Path) -> None:
-    records = list(records)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(records[0]))
-        writer.writeheader()
-        writer.writerows(records)
+    write_records(records, path)

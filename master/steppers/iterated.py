@@ -130,17 +130,10 @@ class Iterated(Stepper):
             system.components[name].step(time, step)
             system.components[name].pull()
         came = [
-            channels.motion(self._seen(name, start), self._seen(name, system.signals), step)
+            channels.motion(system.inputs_from(name, start), system.inputs_from(name, system.signals), step)
             for name, channels in self._channels.items()
         ]
         return np.concatenate([np.zeros(0), *came])
-
-    def _seen(self, name: str, signals: np.ndarray) -> np.ndarray:
-        """The inputs of component `name` that follow from `signals`, in its own units."""
-        inputs = signals[self.system.take[name]]
-        for scaling in self.system.scales.get(name, ()):
-            scaling.cut(inputs)
-        return inputs
 
     @property
     def figures(self) -> dict[str, float]:

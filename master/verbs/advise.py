@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from master.verbs.arguments import assignment
+from master.verbs.arguments import settings
 
 
 def add_to(verbs: Any) -> None:
@@ -24,7 +24,7 @@ def execute(options: argparse.Namespace) -> int:
     from master.scene import load
     from master.schemes import SCHEMES
 
-    chosen = load(options.scene).with_settings(dict(assignment(text, "--set") for text in options.set))
+    chosen = load(options.scene).with_settings(settings(options))
     found = advise(chosen, SCHEMES)
     print(
         f"{chosen.name}, which takes {1e6 * chosen.run.macro_step:g} us: {found[chosen.run.scheme].reason}"

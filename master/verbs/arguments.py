@@ -44,8 +44,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     for text in options.names:
         name, file = assignment(text, "--names")
         chosen = chosen.with_names(name, Path(file))
-    for text in options.set:
-        chosen = chosen.with_setting(*assignment(text, "--set"))
+    chosen = chosen.with_settings(settings(options))
     if options.scheme is not None:
         chosen = chosen.with_setting("run.scheme", options.scheme)
     if options.macro_step == "auto":
@@ -57,6 +56,11 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     elif options.macro_step is not None:
         chosen = chosen.with_setting("run.macro_step", options.macro_step)
     return chosen
+
+
+def settings(options: argparse.Namespace) -> dict[str, str]:
+    """What the option --set gives, in its order. Raises TouchdownError."""
+    return dict(assignment(text, "--set") for text in options.set)
 
 
 def assignment(text: str, option: str) -> tuple[str, str]:

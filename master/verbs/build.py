@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from master.errors import TouchdownError
+from master.writing import writing_to
 
 
 def add_to(verbs: Any) -> None:
@@ -42,11 +43,8 @@ def execute(options: argparse.Namespace) -> int:
     for one in found:
         assert isinstance(one, Recipe)
         try:
-            print(build(one, options.output, linked))
+            with writing_to(options.output):
+                print(build(one, options.output, linked))
         except LinkError as error:
             raise TouchdownError(str(error)) from None
-        except OSError as error:
-            raise TouchdownError(
-                f"cannot write to {options.output}: {error.strerror}; choose another folder with -o"
-            ) from None
     return 0

@@ -11,7 +11,7 @@ from master.errors import TouchdownError
 from master.schemes import SCHEMES, scheme
 from master.units import to_si
 from master.variation import listed
-from master.verbs.arguments import assignment, count
+from master.verbs.arguments import count, settings
 
 
 def add_to(verbs: Any) -> None:
@@ -45,9 +45,9 @@ def execute(options: argparse.Namespace) -> int:
     from master.levitation import shortened
     from master.scene import load
 
-    settings = dict(assignment(text, "--set") for text in options.set)
-    _refuse_varied(settings, options)
-    chosen = shortened(load(options.scene)).with_settings(settings)
+    given = settings(options)
+    _refuse_varied(given, options)
+    chosen = shortened(load(options.scene)).with_settings(given)
     print("\n".join((_models if options.models else _schemes)(chosen, options)))
     return 0
 

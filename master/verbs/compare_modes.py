@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from master.errors import TouchdownError
-from master.verbs.arguments import assignment
+from master.verbs.arguments import settings
 
 
 def add_to(verbs: Any) -> None:
@@ -45,9 +45,9 @@ def execute(options: argparse.Namespace) -> int:
     from master.units import to_si
 
     chosen = load(options.scene)
-    settings = [assignment(text, "--set") for text in options.set]
-    refuse_varied(name for name, _ in settings)
-    chosen = chosen.with_settings(dict(settings))
+    given = settings(options)
+    refuse_varied(given)
+    chosen = chosen.with_settings(given)
     modes = parse_modes(options.modes)
     step = to_si(options.macro_step, "s", "--macro-step")
     duration = None if options.duration is None else to_si(options.duration, "s", "--duration")

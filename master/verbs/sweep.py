@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from master.errors import STOPPED
-from master.verbs.arguments import assignment, count
+from master.verbs.arguments import count, settings
 
 
 def add_to(verbs: Any) -> None:
@@ -48,9 +48,7 @@ def execute(options: argparse.Namespace) -> int:
     from master.sweep_report import picked, table, verdict_lines
     from master.variation import parse_all
 
-    chosen = load(options.scene)
-    for text in options.set:
-        chosen = chosen.with_setting(*assignment(text, "--set"))
+    chosen = load(options.scene).with_settings(settings(options))
     if options.duration is not None:
         chosen = chosen.with_setting("run.duration", options.duration)
     variations = parse_all(options.vary)
