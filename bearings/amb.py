@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import seat
-from modelkit import dopri
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import (
+from touchdown.bearings import seat
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import (
     FlexibleSeatMotion,
     Interface,
     Load,
@@ -29,8 +29,8 @@ from modelkit.ports import (
     PointMotion,
     SeatReaction,
 )
-from modelkit.status import BAD_INPUT, OK
-from modelkit.variables import group, integer, real
+from touchdown.modelkit.status import BAD_INPUT, OK
+from touchdown.modelkit.variables import group, integer, real
 
 SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N

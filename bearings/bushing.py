@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import seat
-from bearings.contact import ContactLaw, damped, elastic_energy
-from bearings.friction import FrictionLaw, prepared, problem
-from bearings.journal_contact import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared, problem
+from touchdown.bearings.contact.journal import (
     RATE_FROM,
     ContactMemory,
     ContactReport,
@@ -21,11 +20,12 @@ from bearings.journal_contact import (
     touch,
     watch_contact,
 )
-from modelkit import dopri
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
-from modelkit.variables import group, real
+from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_energy
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from touchdown.modelkit.variables import group, real
 
 LOSS = seat.INSIDE
 

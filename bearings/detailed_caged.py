@@ -3,7 +3,7 @@
 Inner ring, balls and cage have three coordinates each, the outer ring has the housing's two, its rotation
 is fixed: with nine balls 36 coordinates and one constraint. Contacts: journal and ring, ball and inner
 race, ball and outer race, ball and cage. The rotation of the outer ring is eliminated; see
-`bearings.augmented` for the form with a Lagrange multiplier.
+`bearings.rolling.augmented` for the form with a Lagrange multiplier.
 """
 
 from __future__ import annotations
@@ -13,8 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ball_bodies, cage, ring, seat
-from bearings.ball_bodies import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.rolling import ball_bodies, cage, ring
+from touchdown.bearings.rolling.ball_bodies import (
     MOST_STATES,
     BallBodiesDerived,
     BallBodiesMemory,
@@ -25,16 +29,13 @@ from bearings.ball_bodies import (
     forecast,
     race_contacts,
 )
-from bearings.balls import MOST_BALLS, BallContacts, Coordinates
-from bearings.contact import ContactLaw, abreast, damped
-from bearings.friction import FrictionLaw, prepared
-from bearings.friction import problem as friction_problem
-from bearings.rolling import starts_from, state_constants
-from modelkit import dopri, verlet
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Load
-from modelkit.variables import array, group, real
+from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, Coordinates
+from touchdown.bearings.rolling.resistance import starts_from, state_constants
+from touchdown.modelkit.integrators import dopri, verlet
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Load
+from touchdown.modelkit.variables import array, group, real
 
 
 @dataclass(frozen=True)

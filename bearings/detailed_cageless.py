@@ -4,7 +4,7 @@ Inner ring and balls have three coordinates each, the outer ring has the housing
 fixed: with 17 balls 57 coordinates and one constraint. Contacts: journal and ring, ball and inner race,
 ball and outer race, each ball and the next.
 
-The rotation of the outer ring is eliminated; `bearings.augmented` holds it by a Lagrange multiplier
+The rotation of the outer ring is eliminated; `bearings.rolling.augmented` holds it by a Lagrange multiplier
 instead (2.18-2.28), as a check. Balls are counted around the bearing and do not pass each other.
 """
 
@@ -15,8 +15,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ball_bodies, ring, seat
-from bearings.ball_bodies import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.pair import OUTSIDE, Place, press
+from touchdown.bearings.rolling import ball_bodies, ring
+from touchdown.bearings.rolling.ball_bodies import (
     MOST_STATES,
     BallBodiesDerived,
     BallBodiesMemory,
@@ -34,17 +39,13 @@ from bearings.ball_bodies import (
     push,
     race_contacts,
 )
-from bearings.balls import BallContacts, Coordinates, FreeBallSet
-from bearings.contact import ContactLaw, abreast, damped
-from bearings.friction import FrictionLaw, prepared
-from bearings.friction import problem as friction_problem
-from bearings.pair import OUTSIDE, Place, press
-from bearings.rolling import starts_from, state_constants
-from modelkit import dopri, verlet
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Load
-from modelkit.variables import group, real
+from touchdown.bearings.rolling.balls import BallContacts, Coordinates, FreeBallSet
+from touchdown.bearings.rolling.resistance import starts_from, state_constants
+from touchdown.modelkit.integrators import dopri, verlet
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Load
+from touchdown.modelkit.variables import group, real
 
 
 @dataclass(frozen=True)

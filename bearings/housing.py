@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import body
-from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import Energy, MountLoad, MountState
-from modelkit.variables import group, real
+from touchdown.modelkit import body
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.ports import Energy, MountLoad, MountState
+from touchdown.modelkit.variables import group, real
 
 X, Y, VX, VY, WORK, LOSS = range(6)
 

@@ -26,10 +26,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import oscillator
-from modelkit.kernel import inlined, kernel
-from modelkit.model import memory_layout
-from modelkit.ports import (
+from touchdown.modelkit import oscillator
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.model import memory_layout
+from touchdown.modelkit.ports import (
     ACCELERATION,
     MODEL,
     MODES,
@@ -39,8 +39,8 @@ from modelkit.ports import (
     Motion,
     MountMotion,
 )
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from modelkit.variables import Nothing, group, integer, real
+from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from touchdown.modelkit.variables import Nothing, group, integer, real
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
 JX, JY, JVX, JVY, JW = range(5)  # journal copy
@@ -249,7 +249,7 @@ def _mode_rates(y, dy, m, load):
 
 @kernel
 def drift(x, y, v, h, m):
-    """The copies' positions in x: those in y and h (s) times the velocities in v (`modelkit.verlet`)."""
+    """The copies' positions in x: those in y and h (s) times the velocities in v (`verlet`)."""
     moves = 1.0 if m.p.interface.order >= VELOCITY else 0.0  # a held copy stays
     x[JX] = y[JX] + moves * h * v[JVX]
     x[JY] = y[JY] + moves * h * v[JVY]

@@ -22,13 +22,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ring, seat
-from bearings.balls import MOST_BALLS, Coordinates, watch_balls
-from bearings.cage import Cage
-from bearings.contact import ContactLaw, damped, elastic_force
-from bearings.friction import FrictionLaw, prepared
-from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_force
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.balls import MOST_BALLS, Coordinates, watch_balls
+from touchdown.bearings.rolling.cage import Cage
+from touchdown.bearings.rolling.pitch_circle import (
     LoadedBalls,
     Pressed,
     RollingResistance,
@@ -37,7 +38,7 @@ from bearings.pitch_circle import (
     note,
     rolling_drag,
 )
-from bearings.rolling import (
+from touchdown.bearings.rolling.resistance import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
@@ -46,11 +47,11 @@ from bearings.rolling import (
     starts_from,
     state_constants,
 )
-from modelkit import dopri
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Load
-from modelkit.variables import array, group, integer, real
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Load
+from touchdown.modelkit.variables import array, group, integer, real
 
 CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
 ORBIT_SCALE = 100.0  # rad/s; of the cage

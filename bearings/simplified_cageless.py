@@ -11,7 +11,7 @@ inner and outer race:
     r_m m gamma'' = mu(s_i) F + mu(s_o) F_o + H_b - H_(b+1) - g m cos(gamma) - F (e . t)/r_m     (2.10)
     I theta''     = r_b (mu(s_o) F_o - mu(s_i) F) - r_b mu_bb (H_b + H_(b+1))                      (2.11)
 
-with F and F_o as in `bearings.pitch_circle`.
+with F and F_o as in `bearings.rolling.pitch_circle`.
 
 Deviations from the source, each named where it acts:
 - (2.10) as printed has a further term mu r_b/r_m (F + F_o), which counts the contact moment twice;
@@ -37,11 +37,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ring, seat
-from bearings.ball_bodies import resolved_step
-from bearings.balls import MOST_BALLS, BallContacts, Coordinates, FreeBallSet, watch_balls, watch_contacts
-from bearings.contact import ContactLaw, abreast, damped, elastic_energy, normal_and_elastic
-from bearings.friction import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import (
     FrictionLaw,
     coefficient,
     curve,
@@ -49,11 +46,22 @@ from bearings.friction import (
     prepared,
     slope,
 )
-from bearings.friction import problem as friction_problem
-from bearings.pair import friction_force
-from bearings.pitch_circle import Raceway, RollingResistance, meet, press_ball
-from bearings.race_contacts import LANES, rounded
-from bearings.rolling import (
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, abreast, damped, elastic_energy, normal_and_elastic
+from touchdown.bearings.contact.pair import friction_force
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_bodies import resolved_step
+from touchdown.bearings.rolling.balls import (
+    MOST_BALLS,
+    BallContacts,
+    Coordinates,
+    FreeBallSet,
+    watch_balls,
+    watch_contacts,
+)
+from touchdown.bearings.rolling.pitch_circle import Raceway, RollingResistance, meet, press_ball
+from touchdown.bearings.rolling.race_contacts import LANES, rounded
+from touchdown.bearings.rolling.resistance import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
@@ -62,12 +70,12 @@ from bearings.rolling import (
     starts_from,
     state_constants,
 )
-from modelkit import dopri, rosenbrock, verlet
-from modelkit.angles import cosine_and_sine
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Interface, Load
-from modelkit.variables import array, group, integer, real
+from touchdown.modelkit.angles import cosine_and_sine
+from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Interface, Load
+from touchdown.modelkit.variables import array, group, integer, real
 
 BALLS = ring.NEXT  # from here each component of all balls in turn,
 ANGLE, ORBIT, SPIN = range(3)  # in this order: attitude angle, its rate, spin

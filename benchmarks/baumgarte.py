@@ -15,9 +15,9 @@ import time as clock
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from bearings import detailed_caged, detailed_cageless, seat
-from bearings.augmented import AugmentedBearing
-from modelkit.model import Instance
+from touchdown.bearings import detailed_caged, detailed_cageless, seat
+from touchdown.bearings.rolling.augmented import AugmentedBearing
+from touchdown.modelkit.model import Instance
 
 PAIRS = ((0.0, 0.0), (1e2, 1e2), (1e3, 1e3), (1e4, 1e4), (1e5, 1e5), (1e4, 0.0), (0.0, 1e4), (1e6, 1e6))
 VIOLATED = (1e-6, 1e-3)  # rad, rad/s

@@ -23,12 +23,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from tried_integrators import make
 
-from bearings import ball_bodies, detailed_caged, detailed_cageless, seat
-from bearings.pair import INSIDE, Place, press
-from bearings.race_contacts import Race, press_race
-from master.scene import load
-from master.simulation import open_system, simulate
-from modelkit.model import Instance
+from touchdown.bearings import detailed_caged, detailed_cageless, seat
+from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.bearings.rolling import ball_bodies
+from touchdown.bearings.rolling.race_contacts import Race, press_race
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.scene.file import load
+from touchdown.modelkit.model import Instance
 
 MODULES = {"cageless": detailed_cageless, "caged": detailed_caged}
 IMPACT = 1.5e-3  # s

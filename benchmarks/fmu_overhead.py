@@ -14,10 +14,11 @@ import argparse
 import statistics
 import time as clock
 
-from master.scene import Scene, load
-from master.simulation import open_system, opened, simulate
-from master.system import System
-from master.twin import TwinComponent
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.simulation import open_system, opened, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load
+from touchdown.master.scene.scene import Scene
 
 
 def kernel_times(scene: Scene) -> dict[str, float]:

@@ -16,10 +16,11 @@ import math
 
 import numpy as np
 
-from master.monolithic import Monolith
-from master.scene import Scene, load
-from master.simulation import open_system, simulate
-from master.system import System
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.drop.monolithic import Monolith
 
 NAMES = ("housing.seat.vx", "housing.seat.vy", "bearing.ring.x")
 

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 from rotor_speed import JOURNALS, opened, reference
 
-from master.scene import Scene
-from master.simulation import simulate
+from touchdown.master.coupling.simulation import simulate
+from touchdown.master.scene.scene import Scene
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 from systems import dropped  # the drop that the tests make
 
 MODES = (5, 20)

@@ -21,15 +21,18 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.extend(str(Path(__file__).resolve().parents[1] / part) for part in ("tests", "tests/peers"))
+sys.path.extend(
+    str(Path(__file__).resolve().parents[1] / part)
+    for part in ("tests/support", "tests/master/interop/peers")
+)
 
 from drops import FALLS, Fall
 from environments import REQUIREMENTS, Found, UnavailableError, run, title
 
-from master.scene import Scene
-from master.simulation import open_system, simulate
-from master.system import System
-from master.twin import TwinComponent
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts
 LEAD = "jacobi-lead"

@@ -18,10 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
-from master.monolithic import Monolith
-from master.scene import Scene, load
-from master.simulation import open_system, simulate
-from master.system import System
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.drop.monolithic import Monolith
 
 AT = 9e-3  # s after the shutdown
 LEVITATED = 2e-3  # s, of the runs whose error is measured

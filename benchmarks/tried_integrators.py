@@ -11,9 +11,9 @@ from types import ModuleType
 
 import numba
 
-from bearings import ball_bodies
-from bearings.friction import slope
-from modelkit import dopri, rosenbrock, verlet
+from touchdown.bearings.contact.friction import slope
+from touchdown.bearings.rolling import ball_bodies
+from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
 
 
 def make(module: ModuleType) -> dict[str, Callable]:

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from modelkit.kernel import source_hash
-from modelkit.model import Model, Slot, slots
+from touchdown.modelkit.kernel import source_hash
+from touchdown.modelkit.model import Model, Slot, slots
 
 VERSION = "0.1.0"
 RELEASED = "2026-11-21T00:00:00Z"  # not the time of the build: equal sources give equal FMUs

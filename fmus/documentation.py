@@ -9,14 +9,15 @@ from html import escape
 from inspect import cleandoc
 from pathlib import Path
 
-from fmus.description import VERSION, causality
-from fmus.host import NEEDED
-from fmus.link import Interpreter
-from fmus.recipes import Recipe
-from fmus.sources import ROOT
-from modelkit.model import Slot, slots
+from touchdown.fmus.description import VERSION, causality
+from touchdown.fmus.host import NEEDED
+from touchdown.fmus.link import Interpreter
+from touchdown.fmus.recipes import Recipe
+from touchdown.fmus.sources import ROOT
+from touchdown.modelkit.model import Slot, slots
 
 SOURCE = "O. Halminen, Multibody models for examination of touchdown bearing systems (LUT, 2016)"
+PHYSICS = ("touchdown.bearings.", "touchdown.rotor.")
 HEADINGS = {
     "parameter": "Parameters",
     "input": "Inputs",
@@ -65,9 +66,9 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
 
 def _documented(script: str) -> list[str]:
     """Docstrings of the module that declares the script's model, and of the parts that one imports."""
-    own = next(name for name in _imports(script) if name.startswith(("bearings.", "rotor.")))
+    own = next(name for name in _imports(script) if name.startswith(PHYSICS))
     text = _source(own)
-    parts = (name for name in _imports(text) if name.startswith(("bearings.", "rotor.")))
+    parts = (name for name in _imports(text) if name.startswith(PHYSICS))
     return [_docstring(text), *(_docstring(_source(name)) for name in parts)]
 
 
@@ -79,13 +80,14 @@ def _imports(text: str) -> Iterator[str]:
             continue
         whole = (f"{node.module}.{name.name}" for name in node.names)
         for name in [node.module, *whole]:
-            if name not in seen and _path(name).is_file():
+            if name.startswith("touchdown.") and name not in seen and _path(name).is_file():
                 seen.add(name)
                 yield name
 
 
 def _path(module: str) -> Path:
-    return ROOT.joinpath(*module.split(".")).with_suffix(".py")
+    _, *inside = module.split(".")  # ROOT is the folder of the whole package
+    return ROOT.joinpath(*inside).with_suffix(".py")
 
 
 def _source(module: str) -> str:

@@ -7,7 +7,7 @@ import zlib
 
 import numpy as np
 
-from modelkit.model import Model, slots
+from touchdown.modelkit.model import Model, slots
 
 SIZE = 64  # pixels
 FINER = 4  # sub-pixels along each side, for smooth edges

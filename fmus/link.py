@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from fmus.host import NEEDED
+from touchdown.fmus.host import NEEDED
 
 
 class LinkError(Exception):

@@ -1,7 +1,8 @@
-"""What FMUs are made of: a script of the project's own, or a rotor file.
+"""The FMUs that can be made, and the named sets of parameters they take.
 
-A script in `fmus/scripts` declares one slave class and with it the model. A rotor file becomes a script
-that carries the file's text, so that the FMU needs nothing beside it.
+An FMU is made of a script of the project's own or of a rotor file. A script in `fmus/scripts` declares
+one slave class and with it the model. A rotor file becomes a script that carries the file's text, so
+that the FMU needs nothing beside it.
 """
 
 from __future__ import annotations
@@ -12,17 +13,19 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from fmus.slave import ModelSlave
-from fmus.sources import ROOT, content_hash
-from modelkit.model import Model
-from rotor.flexible import flexible_rotor
-from rotor.rotor_file import parse, read, shipped
+from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.fmus.slave import ModelSlave
+from touchdown.fmus.sources import ROOT, content_hash
+from touchdown.modelkit.model import Model
+from touchdown.rotor.flexible import flexible_rotor
+from touchdown.rotor.rotor_file import parse, read, shipped
 
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
-from fmus.slave import ModelSlave
-from rotor.flexible import flexible_rotor
-from rotor.rotor_file import parse
+from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.fmus.slave import ModelSlave
+from touchdown.rotor.flexible import flexible_rotor
+from touchdown.rotor.rotor_file import parse
 
 TEXT = {text!r}
 
@@ -71,7 +74,7 @@ def recipe(name: str) -> Recipe:
 
 
 def _declared(name: str) -> Model:
-    module = import_module(f"fmus.scripts.{name}")
+    module = import_module(f"touchdown.fmus.scripts.{name}")
     for value in vars(module).values():
         if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
             return value.model
@@ -91,3 +94,13 @@ def _from_rotor(path: Path) -> Recipe:
         content=own,
     )
     return Recipe(name, script, f"{content_hash()}_{own}", model)
+
+
+def presets() -> list[str]:
+    """Names of the sets of parameters that a component may ask for."""
+    return sorted(CATALOGUE)
+
+
+def preset(name: str) -> dict[str, float]:
+    """Values in SI by parameter name; a component takes those it has. KeyError for an unknown name."""
+    return CATALOGUE[name].settings()

@@ -22,8 +22,8 @@ import numpy as np
 from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
-from fmus.description import describe, guid
-from modelkit.model import Instance, Model, ModelError
+from touchdown.fmus.description import describe, guid
+from touchdown.modelkit.model import Instance, Model, ModelError
 
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step

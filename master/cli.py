@@ -6,8 +6,8 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from master import verbs
-from master.errors import FAILED, TouchdownError
+from touchdown.master import verbs
+from touchdown.master.common.errors import FAILED, TouchdownError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from modelkit.kernel import woven
+from touchdown.modelkit.kernel import woven
 
 PER_QUARTER = 2.0 / math.pi
 QUARTER, QUARTER_REST = 1.57079632673412561417, 6.07710050650619224932e-11  # add up to pi/2

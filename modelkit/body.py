@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from modelkit import dopri
-from modelkit.kernel import inlined, kernel
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
 
 TOLERANCE = 1e-9  # of the body's scales; its motion within a macro step is nearly polynomial
 

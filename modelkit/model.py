@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from modelkit import dopri
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
-from modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record, layout
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
+from touchdown.modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record, layout
 
 
 class ModelError(Exception):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel
 
 SERIES = 0.5  # below this k h^2 or c h the closed form cancels and a power series takes its place
 TERMS = 16  # of the series, which leaves SERIES^16/16!

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from modelkit.variables import groups, integer, real
+from touchdown.modelkit.variables import groups, integer, real
 
 MODES = 20  # of a flexible body that a seat can carry, per plane
 

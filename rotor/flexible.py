@@ -1,7 +1,7 @@
 """A flexible rotor in modal coordinates, made from a shaft: any number of seats, stresses along it.
 
 Sign and frame: x horizontal, y up, z along the shaft, angles counter-clockwise, SI. The equations of
-motion are those of `rotor.modal_motion`; what the kernels read is prepared in `rotor.modal_data`.
+motion are those of `rotor.modal.motion`; what the kernels read is prepared in `rotor.modal.data`.
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ from functools import partial
 
 import numpy as np
 
-from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState, PointMotion
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from modelkit.variables import array, group, groups, integer, real
-from rotor import modal_motion, stress_report
-from rotor.modal_data import MOST_MODES, Derived, chosen_basis, prepare
-from rotor.shaft import MOST_NODES, MOST_STATIONS, Shaft
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState, PointMotion
+from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from touchdown.modelkit.variables import array, group, groups, integer, real
+from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
+from touchdown.rotor.modal import motion as modal_motion
+from touchdown.rotor.modal import stress_report
+from touchdown.rotor.modal.data import MOST_MODES, Derived, chosen_basis, prepare
 
 
 @dataclass(frozen=True)

@@ -18,12 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import body
-from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import Energy, SeatLoad, SeatState
-from modelkit.variables import group, real
-from rotor.drag import drag
+from touchdown.modelkit import body
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.ports import Energy, SeatLoad, SeatState
+from touchdown.modelkit.variables import group, real
+from touchdown.rotor.drag import drag
 
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
 SIZE = 9

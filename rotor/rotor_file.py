@@ -51,9 +51,18 @@ from pathlib import Path
 from textwrap import shorten
 from typing import Any
 
-from modelkit.model import ModelError
-from modelkit.units import UnitError, to_si, units_of
-from rotor.shaft import MOST_NODES, MOST_STATIONS, Element, PointMass, Shaft, Station, Unbalance, disc
+from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.units import UnitError, to_si, units_of
+from touchdown.rotor.beams.shaft import (
+    MOST_NODES,
+    MOST_STATIONS,
+    Element,
+    PointMass,
+    Shaft,
+    Station,
+    Unbalance,
+    disc,
+)
 
 DATA = Path(__file__).parent / "data"
 CLOSE = 1e-7  # m; positions and sums of lengths this close agree
@@ -80,6 +89,18 @@ def shipped() -> dict[str, Path]:
 def load(path: str | Path) -> Shaft:
     """The rotor written in the file at `path`. Raises RotorFileError."""
     return parse(read(Path(path)), str(path))
+
+
+def find(name: str) -> Shaft:
+    """A rotor of the package's by name, or the one in a file (.toml).
+
+    Raises RotorFileError where the file has a mistake, LookupError for an unknown name.
+    """
+    if name.endswith(".toml"):
+        return load(Path(name))
+    if name not in shipped():
+        raise LookupError(f"there is no rotor called {name}")
+    return load(shipped()[name])
 
 
 def read(path: Path) -> str:

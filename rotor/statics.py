@@ -8,16 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit.model import ModelError
-from rotor import beam
-from rotor.assembly import assemble, check_nodes, solve, translation
-from rotor.shaft import Shaft
-from rotor.stresses import bending_per_moment, end_nodes, shear_per_force
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams import beam
+from touchdown.rotor.beams.assembly import assemble, check_nodes, solve, translation
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.modal.stresses import bending_per_moment, end_nodes, shear_per_force
 
 
 @dataclass(frozen=True)
 class Rest:
-    """Deflection and stresses; signs as in `rotor.stresses`, so sagging is positive bending."""
+    """Deflection and stresses; signs as in `rotor.modal.stresses`, so sagging is positive bending."""
 
     deflection: np.ndarray  # (N,), m, upwards
     slope: np.ndarray  # (N,)

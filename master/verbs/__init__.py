@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from master.verbs import (
-    advise,
+from touchdown.master.verbs import (
+    run,
+    scenes,
+)
+from touchdown.master.verbs.fmus import (
     build,
     check,
+    container,
+    doctor,
+    ssp,
+)
+from touchdown.master.verbs.studies import (
+    advise,
     compare,
     compare_bearings,
     compare_modes,
     compare_rotors,
-    container,
-    doctor,
     rotor,
-    run,
-    scenes,
-    ssp,
     stability,
     sweep,
 )

@@ -6,12 +6,12 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from master.errors import TouchdownError
-from master.schemes import DEFAULT, SCHEMES
-from master.units import to_si
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import to_si
+from touchdown.master.scene.schemes import DEFAULT, SCHEMES
 
 if TYPE_CHECKING:
-    from master.scene import Scene
+    from touchdown.master.scene.scene import Scene
 
 
 def add_scene(verb: argparse.ArgumentParser) -> None:
@@ -36,21 +36,22 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
-    from master.scene import load
+    from touchdown.master.interop.scenes import load
+    from touchdown.master.scene.file import read_names
 
     chosen = load(options.scene)
     for text in options.swap:
         chosen = chosen.with_swap(*assignment(text, "--swap"))
     for text in options.names:
         name, file = assignment(text, "--names")
-        chosen = chosen.with_names(name, Path(file))
+        chosen = chosen.with_names(name, read_names(Path(file)))
     chosen = chosen.with_settings(settings(options))
     if options.scheme is not None:
         chosen = chosen.with_setting("run.scheme", options.scheme)
     if options.macro_step == "auto":
-        from master.advisor import advise
+        from touchdown.master.coupling.advisor import advise
 
-        advice = advise(chosen)[chosen.run.scheme]
+        advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
         chosen = chosen.with_setting("run.macro_step", advice.macro_step)
     elif options.macro_step is not None:

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from master.errors import STOPPED
-from master.verbs.arguments import add_scene, chosen_scene
+from touchdown.master.common.errors import STOPPED
+from touchdown.master.verbs.arguments import add_scene, chosen_scene
 
 
 def add_to(verbs: Any) -> None:
@@ -25,8 +25,8 @@ def add_to(verbs: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from master.run import run_scene
-    from master.summary import table
+    from touchdown.master.results.run import run_scene
+    from touchdown.master.results.summary import table
 
     chosen = chosen_scene(options)
     result = run_scene(

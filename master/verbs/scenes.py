@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from master.errors import TouchdownError, one_of
-from master.scene import Scene
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.scene.scene import Scene
 
 
 def add_to(verbs: Any) -> None:
@@ -21,20 +21,21 @@ def add_to(verbs: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from master import scene as scenes
+    from touchdown.master.interop.scenes import load
+    from touchdown.master.scene.file import shipped
 
     if options.scene is None:
-        names = scenes.names()
+        names = shipped()
         width = max(len(name) for name in names)
         for name in names:
-            print(f"  {name:<{width}}  {scenes.load(name).title}")
+            print(f"  {name:<{width}}  {load(name).title}")
         return 0
-    chosen = scenes.load(options.scene)
+    chosen = load(options.scene)
     print(chosen.title)
     print(chosen.about.strip())
     print(
         f"\nrun: {chosen.run.duration:g} s from {chosen.zero or 'the start'}, "
-        f"macro step {chosen.run.macro_step:g} s, scheme {chosen.run.scheme}"
+        f"macro step {chosen.run.macro_step:g} s, scheme {chosen.run.scheme.name}"
     )
     if options.variables is not None:
         _show_variables(chosen, options.variables)
@@ -50,7 +51,7 @@ def execute(options: argparse.Namespace) -> int:
 
 def _show_variables(scene: Scene, name: str) -> None:
     """All that `--set NAME.VARIABLE=VALUE` takes: value in this scene, unit, bounds, meaning."""
-    from master.simulation import opened
+    from touchdown.master.coupling.simulation import opened
 
     with opened(scene, in_process=True) as system:
         component = system.components.get(name)

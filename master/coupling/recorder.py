@@ -1,0 +1,143 @@
+"""Recording to HDF5, streamed: memory stays flat, and what was recorded survives a run that stops.
+
+One group per component, one dataset per variable (attributes unit and description), and `time` in
+seconds from the scene's zero. Of elements of arrays (``ball[3].x``) only the last values are kept, in the
+attributes of the group `@end`, unless a run asks for all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.components.component import Component
+
+BLOCK = 4096  # rows held before they are written
+END = "@end"  # group of the values that are kept of the end only; no component is called so
+
+
+class Recorder:
+    """Rows of all recorded variables of a system."""
+
+    def __init__(
+        self,
+        path: Path,
+        components: dict[str, Component],
+        arrays: bool = False,
+        beginnings: Sequence[str] = (),
+    ) -> None:
+        self.path = path
+        self._components = components
+        self.names: dict[str, list[str]] = {}
+        self.kept_at_end: dict[str, list[str]] = {}
+        for name, component in components.items():
+            given = [
+                v.name
+                for v in component.variables.values()
+                if v.causality in ("output", "local") and v.kind in ("Real", "Integer")
+            ]
+            chosen = [v for v in given if _begins(f"{name}.{v}", beginnings)]
+            self.names[name] = [v for v in chosen if arrays or "[" not in v]
+            self.kept_at_end[name] = [v for v in given if v not in self.names[name]]
+        _refuse_unused(beginnings, components)
+        try:
+            self._file = h5py.File(path, "w", libver="latest")
+        except OSError as error:
+            raise TouchdownError(f"cannot write {path}: {error}; choose another folder with -o") from None
+        self._time = self._dataset("time", "s", "time from the scene's zero")
+        self._datasets = {
+            (name, variable): self._dataset(
+                f"{name}/{variable}",
+                components[name].variable(variable).unit or "1",
+                components[name].variable(variable).description,
+            )
+            for name, variables in self.names.items()
+            for variable in variables
+        }
+        self._readers = {name: components[name].reader(variables) for name, variables in self.names.items()}
+        self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
+        self._block = np.zeros((BLOCK, 1 + len(self._datasets)))
+        self._filled = 0
+        self.rows = 0
+
+    def _dataset(self, name: str, unit: str, description: str) -> h5py.Dataset:
+        dataset = self._file.create_dataset(
+            name,
+            (0,),
+            maxshape=(None,),
+            chunks=(BLOCK,),
+            dtype="f8",
+            compression="gzip",
+            compression_opts=1,
+        )
+        dataset.attrs["unit"] = unit
+        dataset.attrs["description"] = description
+        return dataset
+
+    def append(self, time: float) -> None:
+        """Record all variables at `time` (s). Raises TouchdownError where the file cannot grow."""
+        row = self._block[self._filled]
+        row[0] = time
+        column = 1
+        for name, fetch in self._readers.items():
+            values = self._resting[name] if name in self._resting else fetch()
+            row[column : column + len(values)] = values
+            column += len(values)
+        self._filled += 1
+        if self._filled == BLOCK:
+            try:
+                self._write()
+            except OSError as error:
+                self._filled = 0
+                raise TouchdownError(f"cannot write {self.path}: {error}; make room for it") from None
+
+    def rest(self, names: Iterable[str]) -> None:
+        """The values of these components change no more."""
+        for name in names:
+            self._resting[name] = np.array(self._readers[name]())
+
+    def _write(self) -> None:
+        n = self._filled
+        if n:
+            for column, dataset in enumerate((self._time, *self._datasets.values())):
+                dataset.resize((self.rows + n,))
+                dataset[self.rows :] = self._block[:n, column]
+            self.rows += n
+            self._filled = 0
+            self._file.flush()
+
+    def _write_end(self) -> None:
+        for name, variables in self.kept_at_end.items():
+            if variables:
+                group = self._file.require_group(f"{END}/{name}")
+                for variable, value in zip(variables, self._components[name].read(variables), strict=True):
+                    group.attrs[variable] = float(value)
+
+    def close(self) -> str:
+        """Write what is left; returns what went wrong, or ""."""
+        problem = ""
+        try:
+            self._write()
+            self._write_end()
+        except OSError as error:
+            problem = f"cannot write {self.path}: {error}; make room for it"
+        finally:
+            self._filled = 0
+            self._file.close()
+        return problem
+
+
+def _begins(name: str, beginnings: Sequence[str]) -> bool:
+    """Whether COMPONENT.VARIABLE is one of those, or in the component or group of one."""
+    return not beginnings or any(f"{name}.".startswith(f"{b}.") for b in beginnings)
+
+
+def _refuse_unused(beginnings: Sequence[str], components: dict[str, Component]) -> None:
+    every = [f"{name}.{v}" for name, component in components.items() for v in component.variables]
+    for b in beginnings:
+        if not any(_begins(name, [b]) for name in every):
+            raise TouchdownError(f"run.record: there is nothing called {b}; {one_of(b, every)}")

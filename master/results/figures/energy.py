@@ -1,0 +1,41 @@
+"""Where the energy of a run is."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from touchdown.master.coupling.system import System
+from touchdown.master.results.figures.style import BLUE, COLOURS, TIME, line, sheet
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.summary import energy_total
+from touchdown.master.scene.scene import Scene
+
+STYLES = ("-", "--", ":", "-.")  # one per component
+
+
+def energy(scene: Scene, system: System, recording: Recording) -> Figure:
+    """Where the energy is: what fell, what went into rings and balls, what became heat; and the balance."""
+    figure = sheet(13, 5)
+    flows, check = figure.subplots(1, 2)
+    time = recording.time
+    for name, style in zip(system.components, STYLES * 4, strict=False):
+        variables = ("energy.kinetic", "energy.potential", "energy.dissipated")
+        for variable, colour in zip(variables, COLOURS, strict=False):
+            if f"{name}.{variable}" in recording:
+                values = recording[f"{name}.{variable}"]
+                change = values - values[0]
+                if np.any(change):
+                    label = f"{name} {variable.partition('.')[2]}"
+                    line(flows, time, change, colour, label, style)
+    flows.set_ylabel("change since the start [J]")
+    flows.legend(fontsize="small")
+    total = energy_total(system, recording)
+    assert total is not None
+    line(check, time, total - total[0], BLUE, "sum of all")
+    check.set_ylabel("energy balance [J]")
+    check.set_title("sum of all energies: zero where nothing is lost or made")
+    for axes in (flows, check):
+        axes.set_xlabel(TIME)
+    figure.suptitle(scene.title)
+    return figure

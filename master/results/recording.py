@@ -1,0 +1,70 @@
+"""A run's recording, read back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.recorder import END
+
+
+class NotRecordedError(TouchdownError):
+    """A column that a run did not record."""
+
+
+class Recording:
+    """A recorded run, read back."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = h5py.File(path, "r")
+        sizes: list[int] = []
+        self._file.visititems(
+            lambda _, item: sizes.append(len(item)) if isinstance(item, h5py.Dataset) else None
+        )
+        self._rows = min(sizes)  # a disk that ran full leaves columns of unequal length
+        self.time = np.asarray(self._file["time"])[: self._rows]
+
+    def __contains__(self, name: str) -> bool:
+        return self._key(name) in self._file
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Values of COMPONENT.VARIABLE. Raises NotRecordedError where there are none."""
+        if name not in self:
+            raise NotRecordedError(f"{name} was not recorded; see run.record")
+        return np.asarray(self._file[self._key(name)])[: self._rows]
+
+    def at_end(self, name: str) -> float:
+        """Last value of COMPONENT.VARIABLE, also of an array's element. Raises NotRecordedError."""
+        component, _, variable = name.partition(".")
+        group = self._file.get(f"{END}/{component}")
+        if isinstance(group, h5py.Group) and variable in group.attrs:
+            return float(np.asarray(group.attrs[variable]))
+        return float(self[name][-1])
+
+    def columns(self) -> list[tuple[str, str]]:
+        """(COMPONENT.VARIABLE, unit) of everything recorded."""
+        found: list[tuple[str, str]] = []
+        for component, group in self._file.items():
+            if isinstance(group, h5py.Group) and component != END:
+                found += [(f"{component}.{name}", str(d.attrs["unit"])) for name, d in group.items()]
+        return found
+
+    @staticmethod
+    def _key(name: str) -> str:
+        component, _, variable = name.partition(".")
+        return f"{component}/{variable}"
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def write_csv(recording: Recording, path: Path) -> None:
+    """All columns with their units, full precision, true times."""
+    columns = recording.columns()
+    data = np.column_stack([recording.time, *(recording[name] for name, _ in columns)])
+    header = ",".join(["time [s]", *(f"{name} [{unit}]" for name, unit in columns)])
+    np.savetxt(path, data, delimiter=",", header=header, comments="", fmt="%.17g")

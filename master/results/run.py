@@ -1,0 +1,123 @@
+"""Run a scene from start to finish: simulate, record, sum up, draw."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tqdm import tqdm
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import writing_to
+from touchdown.master.coupling.simulation import Outcome, interrupts_noted, open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.results.recording import Recording, write_csv
+from touchdown.master.results.summary import summarise
+from touchdown.master.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run left behind."""
+
+    folder: Path
+    summary: dict[str, object]
+    stopped_because: str = ""
+    warnings: list[str] = field(default_factory=list)
+    pictures: list[Path] = field(default_factory=list)
+
+
+def run_scene(
+    scene: Scene,
+    folder: Path,
+    in_process: bool = False,
+    csv: bool = False,
+    pictures: bool = True,
+    progress: bool = False,
+) -> Result:
+    """Run `scene` and write its results into `folder`.
+
+    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for.
+
+    Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
+    it recorded, and says why in the result.
+    """
+    make_writable(folder)
+    with interrupts_noted():
+        system = open_system(scene, in_process)
+        try:
+            with _Bar(scene, progress) as show:
+                outcome = simulate(scene, system, folder / "result.h5", show)
+            summary, drawn = _write_results(scene, system, outcome, folder, csv, pictures)
+        except OSError as error:
+            raise TouchdownError(
+                f"cannot write to {folder}: {error}; choose another folder with -o"
+            ) from None
+        finally:
+            system.close()
+    warnings = []
+    if outcome.warned_at is not None and not outcome.stopped_because:
+        warnings.append(
+            f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
+            f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
+        )
+    return Result(folder, summary, outcome.stopped_because, warnings, drawn)
+
+
+def _write_results(
+    scene: Scene, system: System, outcome: Outcome, folder: Path, csv: bool, pictures: bool
+) -> tuple[dict[str, object], list[Path]]:
+    """summary.json, and on request result.csv and pictures; returns the figures and the pictures."""
+    recording = Recording(folder / "result.h5")
+    try:
+        summary = summarise(scene, system, outcome, recording)
+        resolved = json.dumps(scene.resolved(), indent=2, default=str)
+        (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
+        (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        if csv:
+            write_csv(recording, folder / "result.csv")
+        if not pictures:
+            return summary, []
+        from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
+
+        return summary, draw_all(scene, system, recording, folder)
+    finally:
+        recording.close()
+
+
+def make_writable(folder: Path) -> None:
+    """Make `folder` and see that files can be written into it. Raises TouchdownError where not."""
+    with writing_to(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".touchdown"
+        probe.touch()
+        probe.unlink()
+
+
+class _Bar:
+    """Progress over simulated time, with the run's speed and the ledger's residual."""
+
+    def __init__(self, scene: Scene, shown: bool) -> None:
+        self._bar = tqdm(
+            total=scene.run.duration,
+            disable=not shown,
+            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s"
+            "{postfix}, left {remaining}",
+            desc=scene.name,
+            mininterval=0.2,
+        )
+
+    def __enter__(self) -> Callable[[float, float], None]:
+        def show(time: float, residual: float) -> None:
+            if time > self._bar.n:
+                speed = self._bar.format_dict["elapsed"] / time
+                text = f"{speed:.2f} s per simulated s, ledger {residual:.1e}"
+                self._bar.set_postfix_str(text, refresh=False)
+                self._bar.update(min(time, self._bar.total) - self._bar.n)
+
+        return show
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()

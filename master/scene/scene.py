@@ -1,0 +1,119 @@
+"""A scene: components, how they are attached, and how to run them. Frozen: changes make copies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from touchdown.fmus.recipes import presets
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import Scale
+from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.scene.tables import whole
+
+
+@dataclass(frozen=True)
+class ComponentSpec:
+    """A component: where it comes from and what is set in it."""
+
+    fmu: str
+    set: Mapping[str, object] = field(default_factory=dict)
+    preset: str | None = None  # a named set of parameters, applied first
+    every: int = 1  # macro steps of the run that it takes in one
+    names: Mapping[str, str] = field(default_factory=dict)
+    """Variables of the contract, and what this FMU calls them."""
+    inherited: Mapping[str, object] = field(default_factory=dict)
+    """Settings of the component it was swapped for; those it has are applied before `set`."""
+
+
+class Wire(NamedTuple):
+    """A single variable feeding another, COMPONENT.VARIABLE both."""
+
+    source: str
+    target: str
+    scale: Scale | None = None  # factor and offset; None: as it is, in equal units
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything a run needs."""
+
+    name: str
+    title: str
+    components: Mapping[str, ComponentSpec]
+    about: str = ""
+    attach: tuple[tuple[str, str], ...] = ()
+    sense: tuple[tuple[str, str], ...] = ()
+    connect: tuple[Wire, ...] = ()
+    zero: str | None = None
+    energy_scale: tuple[str, ...] = ()
+    run: RunSpec = field(default_factory=RunSpec)
+    folder: Path = Path()  # relative paths of FMUs start here
+
+    def with_setting(self, name: str, value: object) -> Scene:
+        """A copy with run.KEY or COMPONENT.VARIABLE set to `value`."""
+        head, _, tail = name.partition(".")
+        if not tail:
+            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
+        if head == "run":
+            return replace(self, run=with_changes(self.run, {tail: value}))
+        spec = self._component(head)
+        if tail == "preset":
+            changed = replace(spec, preset=checked_preset(value, head))
+        elif tail == "every":
+            changed = replace(spec, every=whole(value, name))
+        else:
+            changed = replace(spec, set={**spec.set, tail: value})
+        return replace(self, components={**self.components, head: changed})
+
+    def with_settings(self, settings: Mapping[str, object]) -> Scene:
+        """A copy with all of them set, as by `with_setting`, in their order."""
+        scene = self
+        for name, value in settings.items():
+            scene = scene.with_setting(name, value)
+        return scene
+
+    def with_swap(self, name: str, fmu: str) -> Scene:
+        """A copy with component `name` made of another FMU.
+
+        It starts from its own defaults and takes over what the scene sets, as far as it has it. Names
+        that the scene gives belong to the FMU that goes; `with_names` gives the new one's.
+        """
+        before = self._component(name)
+        if fmu.endswith(".fmu"):
+            fmu = str(Path(fmu).absolute())
+        return replace(
+            self,
+            components={
+                **self.components,
+                name: ComponentSpec(fmu, every=before.every, inherited={**before.inherited, **before.set}),
+            },
+        )
+
+    def with_names(self, name: str, names: Mapping[str, str]) -> Scene:
+        """A copy in which the FMU of component `name` calls the contract's variables as `names` says."""
+        spec = replace(self._component(name), names=names)
+        return replace(self, components={**self.components, name: spec})
+
+    def _component(self, name: str) -> ComponentSpec:
+        try:
+            return self.components[name]
+        except KeyError:
+            raise TouchdownError(
+                f"scene {self.name} has no component {name}; {one_of(name, [*self.components, 'run'])}"
+            ) from None
+
+    def resolved(self) -> dict[str, object]:
+        """All of it as plain values, for JSON."""
+        found = asdict(self)
+        found["run"]["scheme"] = self.run.scheme.name
+        return found
+
+
+def checked_preset(name: object, where: str) -> str | None:
+    """A named set of parameters, or None. Raises TouchdownError where there is none of that name."""
+    if name is not None and name not in presets():
+        raise TouchdownError(f"{where}: there is no preset {name}; {one_of(str(name), presets())}")
+    return None if name is None else str(name)

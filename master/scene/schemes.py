@@ -1,0 +1,65 @@
+"""Coupling schemes: how components exchange motion and load over a macro step.
+
+A scheme says how a bearing carries the bodies through the step (`order`, the contract's
+interface.order), whether the load's slope crosses beside its mean, whether the elastic modes of a
+flexible rotor are carried, and in which sequence the components are stepped (`coupling.steppers`):
+
+- gauss-seidel: a bearing is stepped first, from the bodies' state at t_n; the bodies then take the same
+  step under the load it handed over.
+- jacobi: all components are stepped at once, the bodies under the load of the step before; with `lead`
+  the bearing hands over the load of the step to come.
+- iterated: the step is repeated, the bodies' motion prescribed as a parabola through both of its ends,
+  until the ends stay.
+- halving: the step is taken whole and in two halves, and divided where they differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """One way of coupling."""
+
+    name: str
+    title: str
+    order: int  # how motion is carried: HOLD, VELOCITY, ACCELERATION or MODEL of modelkit.ports
+    slopes: bool  # whether dfx, dfy, dmz are exchanged
+    modes: bool  # whether the bearings carry the rotor's elastic modes
+    error_order: int  # of motion and of the ledger in the macro step; 0: a tolerance sets the error
+    bears: float  # rad, of the journal's swing on its contact in a macro step (`coupling.advisor`)
+    sequence: str = "gauss-seidel"
+    lead: bool = False  # whether bearings hand over the load of the step to come
+
+
+def _table(*rows: Scheme) -> dict[str, Scheme]:
+    return {row.name: row for row in rows}
+
+
+SCHEMES = _table(
+    Scheme("hold", "motion held, mean load", HOLD, False, False, 1, 0.01),
+    Scheme("velocity", "velocity extrapolated, mean load", VELOCITY, False, False, 2, 0.08),
+    Scheme("acceleration", "acceleration extrapolated, mean and slope", ACCELERATION, True, False, 3, 0.2),
+    Scheme("point-mass", "bodies carried as point masses, mean and slope", MODEL, True, False, 3, 0.3),
+    Scheme("interface", "bodies carried with their modes, mean and slope", MODEL, True, True, 3, 1.0),
+    Scheme("iterated", "repeated until both sides agree", ACCELERATION, True, False, 3, 0.35, "iterated"),
+    Scheme("halving", "interface, steps halved to a tolerance", MODEL, True, True, 0, 3.0, "halving"),
+    Scheme("jacobi-hold", "all at once, motion and load held", HOLD, False, False, 1, 0.004, "jacobi"),
+    Scheme("jacobi-velocity", "all at once, velocity", VELOCITY, False, False, 1, 0.005, "jacobi"),
+    Scheme("jacobi-interface", "all at once, interface", MODEL, True, True, 1, 0.005, "jacobi"),
+    Scheme("jacobi-lead", "all at once, bearings lead", MODEL, True, True, 3, 1.0, "jacobi", lead=True),
+)
+
+DEFAULT = "interface"
+
+
+def scheme(name: str) -> Scheme:
+    """The scheme called `name`."""
+    try:
+        return SCHEMES[name]
+    except KeyError:
+        raise TouchdownError(f"unknown scheme {name}; {one_of(name, SCHEMES)}") from None

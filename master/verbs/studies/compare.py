@@ -1,0 +1,149 @@
+"""Speed against error of coupling schemes, and what a scene does not need."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import to_si
+from touchdown.master.scene.schemes import SCHEMES, scheme
+from touchdown.master.studies.sweep.variation import listed
+from touchdown.master.verbs.arguments import count, settings
+
+
+def add_to(verbs: Any) -> None:
+    """Add the verb to the command."""
+    verb = verbs.add_parser("compare", help="speed against error of coupling schemes, or of --models")
+    verb.add_argument("scene", help="name of a scene, or path of a .toml")
+    verb.add_argument(
+        "--models",
+        action="store_true",
+        help="instead: what could be left out of the scene, and its price",
+    )
+    verb.add_argument("--schemes", help=f"some of {', '.join(SCHEMES)} (default: all)")
+    verb.add_argument("--macro-steps", help='such as "5,20,100 us" (default: "5,10,20,50,100 us")')
+    verb.add_argument("--wanted", help='error of the journal to find a scheme for (default: "0.1 um")')
+    verb.add_argument(
+        "--duration",
+        help='from the first contact, such as "2 ms" (default: until the first impact is over, at most '
+        "5 ms; with --models 20 ms)",
+    )
+    verb.add_argument("--timed", help='of the runs that are timed, such as "1 s" (default: as compared)')
+    verb.add_argument("--repeat", default="3", metavar="N", help="runs that are timed (default: 3)")
+    verb.add_argument("--in-process", action="store_true", help="time the models without FMUs")
+    verb.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set in all runs")
+    verb.add_argument("-o", "--output", type=Path, help="folder (default: runs/compare-SCENE)")
+    verb.add_argument("--quiet", action="store_true", help="no progress bar")
+    verb.set_defaults(run=execute)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from touchdown.master.interop.scenes import load
+    from touchdown.master.studies.drop.levitation import shortened
+
+    given = settings(options)
+    _refuse_varied(given, options)
+    chosen = shortened(load(options.scene)).with_settings(given)
+    print("\n".join((_models if options.models else _schemes)(chosen, options)))
+    return 0
+
+
+def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
+    from touchdown.master.studies.schemes.compare import STEPS, WANTED, Asked, compare, pieces
+    from touchdown.master.studies.schemes.report import lines, write
+
+    asked = Asked(
+        schemes=tuple(SCHEMES) if options.schemes is None else _names(options.schemes),
+        steps=STEPS if options.macro_steps is None else _steps(options.macro_steps),
+        duration=_above(options.duration, "s", "--duration"),
+        wanted=_above(options.wanted, "m", "--wanted") or WANTED,
+        repeat=count(options.repeat, "--repeat"),
+        timed=_above(options.timed, "s", "--timed"),
+        in_process=options.in_process,
+    )
+    folder = _folder(options, f"compare-{scene.name}")
+    with _Progress(pieces(scene, asked), options.quiet) as begin:
+        found = compare(scene, asked, begin)
+    write(found, folder)
+    return [*lines(found), f"results in {folder}"]
+
+
+def _models(scene: Any, options: argparse.Namespace) -> list[str]:
+    from touchdown.master.studies.models.compare import compare
+    from touchdown.master.studies.models.report import lines, write
+    from touchdown.master.studies.models.variants import variants
+
+    duration = _above(options.duration, "s", "--duration")
+    repeat = count(options.repeat, "--repeat")
+    folder = _folder(options, f"compare-models-{scene.name}")
+    chosen = variants(scene)
+    with _Progress(1 + len(chosen), options.quiet) as begin:
+        found = compare(scene, chosen, duration, repeat, options.in_process, begin)
+    write(found, folder)
+    return [*lines(found), f"results in {folder}"]
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(scheme(name).name for name in listed(text, f"--schemes {text}")))
+
+
+def _steps(text: str) -> tuple[float, ...]:
+    found = [_above(item, "s", "--macro-steps") for item in listed(text, f"--macro-steps {text}")]
+    return tuple(sorted({step for step in found if step is not None}))
+
+
+def _above(text: str | None, unit: str, option: str) -> float | None:
+    """A number above 0 in the SI unit; None where the option is not given."""
+    if text is None:
+        return None
+    value = to_si(text, unit, option)
+    if not 0.0 < value < float("inf"):
+        raise TouchdownError(f"{option} {text} must be above 0")
+    return value
+
+
+def _folder(options: argparse.Namespace, name: str) -> Path:
+    from touchdown.master.results.run import make_writable
+
+    folder = options.output or Path("runs") / name
+    make_writable(folder)
+    return folder
+
+
+def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> None:
+    """Raise TouchdownError for settings that the comparison makes itself, and options it does not have."""
+    instead = {"run.duration": "--duration"}
+    if options.models:
+        for option in ("schemes", "macro_steps", "wanted", "timed"):
+            if getattr(options, option) is not None:
+                raise TouchdownError(f"--{option.replace('_', '-')} does not go with --models")
+    else:
+        instead |= {"run.macro_step": "--macro-steps", "run.scheme": "--schemes"}
+    for name in settings:
+        if name in instead:
+            raise TouchdownError(f"--set {name}: compare sets it itself; use {instead[name]}")
+
+
+class _Progress:
+    """A bar over pieces of work, named as they begin."""
+
+    def __init__(self, total: int, quiet: bool) -> None:
+        from tqdm import tqdm
+
+        self._begun = 0
+        self._bar = tqdm(total=total, disable=quiet, leave=False)
+
+    def __enter__(self) -> Callable[[str], None]:
+        def begin(what: str) -> None:
+            self._bar.update(1 if self._begun else 0)
+            self._begun += 1
+            self._bar.set_description(what)
+
+        return begin
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()

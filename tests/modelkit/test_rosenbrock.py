@@ -1,0 +1,109 @@
+"""The linearly implicit integrator: its table, its order with a wrong matrix, and the arrow solver."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+import pytest
+from test_invariants import state_in_contact
+
+from touchdown.bearings import simplified_cageless
+from touchdown.bearings.rolling import ring
+from touchdown.modelkit.integrators import rosenbrock as row
+
+
+def test_the_table_is_of_order_three_with_any_matrix() -> None:
+    """Conditions of a W-method of order 3 (Hairer and Wanner II, table IV.7.1 and section IV.7)."""
+    b, alpha, gamma = row.WEIGHTS, row.ALPHA.sum(1), row.GAMMA.sum(1)
+    third = (b @ alpha**2 - 1 / 3, b @ row.ALPHA @ alpha - 1 / 6)
+    mixed = (b @ row.ALPHA @ gamma, b @ row.GAMMA @ alpha, b @ row.GAMMA @ gamma)
+    for value in (b.sum() - 1.0, b @ alpha - 0.5, b @ gamma, *third, *mixed):
+        assert value == pytest.approx(0.0, abs=1e-14)
+    e = row.EMBEDDED
+    for value in (e.sum() - 1.0, e @ alpha - 0.5, e @ gamma):
+        assert value == pytest.approx(0.0, abs=1e-14)
+
+
+@numba.njit
+def _rhs(t, y, dy, m):
+    dy[0] = y[1]
+    dy[1] = -y[0] - m[0] * math.tanh(y[1])
+    dy[2] = math.cos(t)
+
+
+@numba.njit
+def _linearise(y, j, m):
+    j[1] = -m[1]
+
+
+@numba.njit
+def _solve(j, s, r, m):
+    r[0] /= s
+    r[1] /= s - j[1]
+    r[2] /= s
+
+
+@numba.njit
+def _ignore(t, y, m):
+    pass
+
+
+@numba.njit
+def _run(y, m, weight, work, span, h, tolerance):
+    return row.integrate(_rhs, _linearise, _solve, _ignore, m, y, 3, weight, work, span, h, tolerance)
+
+
+def end(steps: int, assumed: float) -> np.ndarray:
+    """State after one second in equal steps, the matrix holding `assumed` for the friction's slope."""
+    y, work = np.array([1.0, 0.0, 0.0]), np.zeros((8, 3))
+    for _ in range(steps):
+        _run(y, np.array([0.8, assumed]), np.zeros(3), work, 1.0 / steps, 1.0, 1.0)
+    return y[:2].copy()
+
+
+@pytest.mark.parametrize("assumed", [0.0, 0.8, 5.0])
+def test_the_order_is_three_whatever_the_matrix(assumed: float) -> None:
+    exact = end(4096, 0.8)
+    errors = [np.max(np.abs(end(n, assumed) - exact)) for n in (16, 32, 64, 128)]
+    order = np.polyfit(np.log([16, 32, 64, 128]), -np.log(errors), 1)[0]
+    assert order == pytest.approx(3.0, abs=0.15)
+
+
+def test_a_stiff_rate_does_not_bound_the_step() -> None:
+    """1e7 per second in steps of 1e-5 s: an explicit method would need 3e-7 s."""
+    y, work = np.array([0.0, 1.0, 0.0]), np.zeros((8, 3))
+    rate = 1e7
+    _, status, evaluations = _run(y, np.array([rate, rate]), np.ones(3), work, 1e-2, 1e-9, 1e-4)
+    assert status == row.OK
+    assert abs(y[1]) < 1e-4
+    assert evaluations < 4000
+
+
+def test_the_arrow_solver_solves_what_finite_differences_give() -> None:
+    instance = state_in_contact("simplified_cageless", 1)
+    m, n = instance.record, int(instance.record["n"])
+    balls = [simplified_cageless.BALLS + b + 17 * k for b in range(17) for k in (1, 2)]
+    index = [ring.RW, *balls]
+    y = m["y"][:n].copy()
+
+    def rates(state: np.ndarray) -> np.ndarray:
+        dy = np.zeros(n)
+        instance.model.instant(0.0, state.copy(), dy, m)
+        return dy[index]
+
+    jacobian = np.zeros((35, 35))
+    for column, i in enumerate(index):
+        shift = np.zeros(n)
+        shift[i] = 1e-4 * max(1.0, abs(y[i]))
+        jacobian[:, column] = (rates(y + shift) - rates(y - shift)) / (2.0 * shift[i])
+    rates(y)
+    j, right = np.zeros(n), np.random.default_rng(0).normal(size=n)
+    simplified_cageless.linearise(y, j, m)
+    found = right.copy()
+    simplified_cageless.solve(j, 2e5, found, m)
+    exact = np.linalg.solve(2e5 * np.eye(35) - jacobian, right[index])
+    np.testing.assert_allclose(found[index], exact, atol=5e-3 * np.max(np.abs(exact)))
+    others = [i for i in range(n) if i not in index]
+    np.testing.assert_allclose(found[others], right[others] / 2e5)
