@@ -158,13 +158,13 @@ def report(y, m):
 def start(words):
     """Find the static load that the seat reports, and hand it over until the first step is taken."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
+    seat.take_inputs(m.q, m)
     j = m.u.journal
     m.o.load_x, m.o.load_y = j.static_fx, j.static_fy
     if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
         m.o.load_x = -j.ax_free / j.inv_m
         m.o.load_y = -j.ay_free / j.inv_m
-    m.y[FX], m.y[FY] = m.o.load_x, m.o.load_y
+    m.q[FX], m.q[FY] = m.o.load_x, m.o.load_y
     seat.begin(react, report, m)
     if m.p.shutdown_time > m.time:
         m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
@@ -174,7 +174,7 @@ def start(words):
 @kernel
 def _integrate_for(m, work, span):
     tolerance = m.p.interface.tolerance
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+    return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance)
 
 
 @kernel

@@ -112,7 +112,7 @@ def report(y, m):
 def start(words):
     """Nothing inside."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
+    seat.take_inputs(m.q, m)
     m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
     seat.begin(react, report, m)
 
@@ -121,7 +121,7 @@ def start(words):
 def integrate(m, work, span):
     """Advance the state by `span` (s)."""
     tolerance = m.p.interface.tolerance
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+    return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance)
 
 
 @kernel

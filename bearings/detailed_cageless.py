@@ -152,9 +152,9 @@ def report(y, m):
 def start(words):
     """Ring and balls at rest, the first ball at its angle."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
-    ring.place(m.y, m.d.rest_x, m.d.rest_y)
-    ball_bodies.place(m.y, m)
+    seat.take_inputs(m.q, m)
+    ring.place(m.q, m.d.rest_x, m.d.rest_y)
+    ball_bodies.place(m.q, m)
     m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
@@ -166,10 +166,10 @@ def integrate(m, work, span):
     p, longest = m.p, m.d.micro_step
     if longest > 0.0:
         status, evaluations = verlet.integrate(
-            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
+            rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, longest
         )
         return m.h, status, evaluations
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
+    return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, work, span, m.h, p.interface.tolerance)
 
 
 @kernel

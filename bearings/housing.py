@@ -89,8 +89,8 @@ def start(words):
     m = words.view(MEMORY)[0]
     p = m.p
     sag = (p.mass + p.outer_ring) * p.gravity / p.stiffness if p.stiffness > 0.0 else 0.0
-    m.y[X], m.y[Y] = p.x0, p.y0 - sag
-    publish(m.y, m)
+    m.q[X], m.q[Y] = p.x0, p.y0 - sag
+    publish(m.q, m)
 
 
 @kernel

@@ -152,7 +152,7 @@ def take_modes(m):
     while s.modes < MODES and m.u.journal.mode[s.modes].inv_m > 0.0:
         z = m.u.journal.mode[s.modes]
         i = m.n
-        m.y[i + ZX], m.y[i + ZY], m.y[i + ZVX], m.y[i + ZVY] = z.x, z.y, z.vx, z.vy
+        m.q[i + ZX], m.q[i + ZY], m.q[i + ZVX], m.q[i + ZVY] = z.x, z.y, z.vx, z.vy
         for w in range(PER_MODE):
             m.weight[i + w] = 0.0
         m.weight[i + ZX] = m.weight[i + ZY] = 1.0 / POSITION_SCALE
@@ -367,9 +367,9 @@ def begin(react, report, m):
     """First outputs, from state and inputs; the first restart compares with the load now."""
     take_modes(m)
     _weigh_impulse(m)
-    load = react(0.0, m.y, np.zeros(m.n), m)
+    load = react(0.0, m.q, np.zeros(m.n), m)
     remember(m, load)
-    report(m.y, m)
+    report(m.q, m)
 
 
 @inlined
@@ -409,7 +409,7 @@ def advance_timed(ready, react, integrate, report, words, m, work, time, step):
     """
     status = BAD_INPUT
     if finite_inputs(m):
-        y = m.y
+        y = m.q
         m.time = time
         m.half = 0.5 * step
         jx, jy, hx, hy = y[JX], y[JY], y[HX], y[HY]

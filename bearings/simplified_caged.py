@@ -259,7 +259,7 @@ def report(y, m):
 def start(words):
     """The ring at rest on the balls, the first of them at its angle."""
     m = words.view(MEMORY)[0]
-    y, d = m.y, m.d
+    y, d = m.q, m.d
     seat.take_inputs(y, m)
     ring.place(y, d.rest_x, d.rest_y)
     state_constants(m)
@@ -270,7 +270,7 @@ def start(words):
 def integrate(m, work, span):
     """Advance the state by `span` (s)."""
     tolerance = m.p.interface.tolerance
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+    return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance)
 
 
 @kernel

@@ -418,7 +418,7 @@ def report(y, m):
 def start(words):
     """Ring and balls at rest, the first ball at its angle."""
     m = words.view(MEMORY)[0]
-    y, d, count = m.y, m.d, m.p.balls.count
+    y, d, count = m.q, m.d, m.p.balls.count
     seat.take_inputs(y, m)
     ring.place(y, d.rest_x, d.rest_y)
     for b in range(count):
@@ -504,11 +504,11 @@ def integrate(m, work, span):
     tolerance, longest = m.p.interface.tolerance, m.d.micro_step
     if longest > 0.0:
         status, evaluations = verlet.integrate(
-            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
+            rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, longest
         )
         return m.h, status, evaluations
     return rosenbrock.integrate(
-        rhs, linearise, solve, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance
+        rhs, linearise, solve, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance
     )
 
 

@@ -117,7 +117,7 @@ def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
         m = words.view(memory)[0]
         dy = work.ravel().view(scratch)[0].rows[0]
         for _ in range(count):
-            rhs(0.0, m.y, dy, m)
+            rhs(0.0, m.q, dy, m)
 
     work = np.zeros((8, module.MEMORY["y"].shape[0]))
     loop(instance.words, work, 10)
@@ -143,7 +143,7 @@ def one_race_times(module: ModuleType) -> tuple[float, float]:
         race = Race(INSIDE, m.d.outer_radius, m.d.outer.stiffness, 0.0, 1e-3)
         total = 0.0
         for _ in range(count):
-            total += press_race(balls_of(m.y, m), motion(m.y), race, m.d.race_friction, m.s.outer).fx
+            total += press_race(balls_of(m.q, m), motion(m.q), race, m.d.race_friction, m.s.outer).fx
         return total
 
     @numba.njit(error_model="numpy")
@@ -151,11 +151,11 @@ def one_race_times(module: ModuleType) -> tuple[float, float]:
         m = words.view(layout)[0]
         total, s, rb = 0.0, m.s.outer, m.d.ball_radius
         for _ in range(count):
-            housing = motion(m.y)
+            housing = motion(m.q)
             for b in range(m.p.balls.count):
                 if s.indentation[b] > 0.0:
                     at = Place(s.nx[b], s.ny[b], s.indentation[b], rb, s.second[b], s.across[b])
-                    ball = ball_motion(m.y, b, m)
+                    ball = ball_motion(m.q, b, m)
                     total += press(ball, housing, at, INSIDE, m.d.outer, m.d.race_friction, 1e-3).fx
         return total
 

@@ -39,7 +39,7 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        return verlet.integrate(rhs, drift, unlimited, fastest, observe, m, m.y, m.n, rows, span, step)[1]
+        return verlet.integrate(rhs, drift, unlimited, fastest, observe, m, m.q, m.n, rows, span, step)[1]
 
     return tried
 
@@ -50,7 +50,7 @@ def _dormand_prince(module: ModuleType) -> Callable:
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
         m.s.step = 0.0
-        return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
+        return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
 
     return tried
 
@@ -61,7 +61,7 @@ def _bogacki_shampine(module: ModuleType) -> Callable:
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
         m.s.step = 0.0
-        y, n, weight = m.y, m.n, m.weight
+        y, n, weight = m.q, m.n, m.weight
         a, b, c, d, w = rows[0], rows[1], rows[2], rows[3], rows[4]
         t, h, evaluations = 0.0, 1e-7, 1
         rhs(t, y, a, m)
@@ -123,7 +123,7 @@ def _implicit_spin(module: ModuleType) -> Callable:
     def tried(m, rows, span, step, tolerance):
         m.s.step = 0.0
         return rosenbrock.integrate(
-            rhs, linearise, solve, observe, m, m.y, m.n, m.weight, rows, span, 1e-7, tolerance
+            rhs, linearise, solve, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance
         )[2]
 
     return tried

@@ -26,10 +26,10 @@ def advance(rhs, publish, m, work, time, step, load):
         m.time = time
         m.half = 0.5 * step
         m.h, status, evaluations = dopri.integrate(
-            rhs, nothing_to_watch, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
+            rhs, nothing_to_watch, m, m.q, m.n, m.weight, work, step, m.h, TOLERANCE
         )
         m.evaluations += evaluations
-        publish(m.y, m)
-        if status == OK and not math.isfinite(np.sum(m.y[: m.n])):
+        publish(m.q, m)
+        if status == OK and not math.isfinite(np.sum(m.q[: m.n])):
             status = BAD_LOAD
     return status

@@ -52,7 +52,7 @@ def memory_layout(
             ("u", layout(inputs)),
             ("o", layout(outputs)),
             ("s", layout(hidden)),
-            ("y", "f8", (state_size,)),
+            ("q", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
             ("d", layout(derived)),
         ]
@@ -64,7 +64,7 @@ class Model:
     """A component: its declarations and its kernels. A model is equal to itself only.
 
     Kernels see one record `m`: parameters m.p, inputs m.u, outputs m.o, derived constants m.d, hidden
-    memory m.s, the state m.y with m.n components in use, m.weight (error weights), m.time (s) at the
+    memory m.s, the state m.q with m.n components in use, m.weight (error weights), m.time (s) at the
     beginning of the macro step, m.half (s) half its length, m.h (s) the micro-step to try next.
 
     What Python calls at every step takes the memory as plain words and views them as that record
@@ -148,7 +148,7 @@ class Instance:
         raw = self.memory.view("u1").data
         self.reals = raw.cast("d")
         self.integers = raw.cast("q")
-        self.work = dopri.scratch(len(self.memory["y"][0]))
+        self.work = dopri.scratch(len(self.memory["q"][0]))
         self.slots = slots(model)
         fields: Any = model.memory.fields
         self.state = raw[: fields["d"][1]]
@@ -170,7 +170,7 @@ class Instance:
         model, parameters = self.model, self._derive()
         self.memory["o"] = np.array([as_tuple(model.outputs())], layout(model.outputs))
         self.memory["s"] = np.array([as_tuple(model.hidden())], layout(model.hidden))
-        self.memory["y"] = 0.0
+        self.memory["q"] = 0.0
         weights = model.weights(parameters)
         self.memory["n"] = len(weights)
         self.memory["weight"] = 0.0

@@ -167,7 +167,7 @@ def _publish_station(y, m, j, ax, ay, alpha):
 def start(words):
     """At rest in its magnetic bearings, if it has any, and turning."""
     m = words.view(MEMORY)[0]
-    p, d, y = m.p, m.d, m.y
+    p, d, y = m.p, m.d, m.q
     px, py, vx, vy = modal_motion.modal(y, m)
     for k in range(d.modes):  # w gives every node the same displacement
         px[k], py[k] = d.weight[k] * p.x, d.sag[k] + d.weight[k] * p.y
@@ -221,13 +221,13 @@ def advance(words, work, time, step):
         return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
-    modal_motion.advance(m.y, m, step, m.p.micro_step, work)
-    modal_motion.take_mode_loads(m.y, m)
-    publish(m.y, m)
+    modal_motion.advance(m.q, m, step, m.p.micro_step, work)
+    modal_motion.take_mode_loads(m.q, m)
+    publish(m.q, m)
     if m.p.stress.active:
-        stress_report.report(m.y, m, time + step)
+        stress_report.report(m.q, m, time + step)
     told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
-    return OK if modal_motion.finite(m.y, m) and math.isfinite(told) else BAD_LOAD
+    return OK if modal_motion.finite(m.q, m) and math.isfinite(told) else BAD_LOAD
 
 
 def derive(shaft: Shaft, p: Parameters) -> Derived:

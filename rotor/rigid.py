@@ -141,7 +141,7 @@ def _publish_seat(y, p, seat, other, half):
 def start(words):
     """State and outputs from the parameters."""
     m = words.view(MEMORY)[0]
-    p, y = m.p, m.y
+    p, y = m.p, m.q
     y[X], y[Y], y[VX], y[VY] = p.x, p.y, p.vx, p.vy
     y[SPIN] = p.speed
     m.half = 0.0

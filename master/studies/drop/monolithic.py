@@ -63,7 +63,7 @@ class Monolith:
             self._twins[name].instance.memory["half"] = 0.0
         self._room: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         for name in self._bearings:
-            longest = len(self._twins[name].instance.record["y"])
+            longest = len(self._twins[name].instance.record["q"])
             self._room[name] = np.zeros(longest), np.zeros(longest)
         self.evaluations = 0
 
@@ -94,7 +94,7 @@ class Monolith:
 
     def initial(self) -> np.ndarray:
         """State at the start."""
-        parts = [self._twins[n].instance.record["y"][: p.stop - p.start] for n, p in self._parts.items()]
+        parts = [self._twins[n].instance.record["q"][: p.stop - p.start] for n, p in self._parts.items()]
         return np.concatenate(parts)
 
     def state_of(self, system: System) -> np.ndarray:
@@ -103,7 +103,7 @@ class Monolith:
         for name, part in self._parts.items():
             component = system.components[name]
             assert isinstance(component, TwinComponent)
-            parts.append(component.instance.record["y"][: part.stop - part.start])
+            parts.append(component.instance.record["q"][: part.stop - part.start])
         return np.concatenate(parts)
 
     def jacobian(self, t: float, state: np.ndarray) -> np.ndarray:
