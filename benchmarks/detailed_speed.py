@@ -25,8 +25,8 @@ from tried_integrators import make
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.contact.pair import INSIDE, Place, press
-from touchdown.bearings.rolling import ball_bodies
-from touchdown.bearings.rolling.race_contacts import Race, press_race
+from touchdown.bearings.rolling.bodies.race import Race, press_race
+from touchdown.bearings.rolling.bodies.state import ball_motion, balls_of
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load
 from touchdown.modelkit.model import Instance
@@ -69,7 +69,7 @@ class Runner:
     def run(self, module: ModuleType, span: float, falling: bool = False) -> tuple[Instance, float, int]:
         """(The bearing after `span` s, wall time in s, evaluations)."""
         instance = released(module, falling)
-        work = np.zeros((8, module.MEMORY["y"].shape[0]))
+        work = np.zeros((8, module.MEMORY["q"].shape[0]))
         began = clock.perf_counter()
         evaluations = self.carry(instance.words, work, span, self.step, self.tolerance)
         return instance, clock.perf_counter() - began, evaluations
@@ -115,11 +115,11 @@ def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
     @numba.njit(error_model="numpy")
     def loop(words, work, count):
         m = words.view(memory)[0]
-        dy = work.ravel().view(scratch)[0].rows[0]
+        dq = work.ravel().view(scratch)[0].rows[0]
         for _ in range(count):
-            rhs(0.0, m.q, dy, m)
+            rhs(0.0, m.q, dq, m)
 
-    work = np.zeros((8, module.MEMORY["y"].shape[0]))
+    work = np.zeros((8, module.MEMORY["q"].shape[0]))
     loop(instance.words, work, 10)
     found = []
     for _ in range(repeat):
@@ -135,7 +135,7 @@ def one_race_times(module: ModuleType) -> tuple[float, float]:
     """us per race: all balls at once, and one by one with those out of reach skipped."""
     instance = Runner("", kept(module), 2e-6).run(module, 4e-4)[0]
     layout = module.MEMORY
-    balls_of, motion, ball_motion = ball_bodies.balls_of, seat.housing_motion, ball_bodies.ball_motion
+    motion = seat.housing_motion
 
     @numba.njit(error_model="numpy")
     def at_once(words, count):
@@ -224,9 +224,9 @@ class Equations:
 
         self._rate = rate
         self._instance = released(module)
-        self._work = np.zeros((8, module.MEMORY["y"].shape[0]))
+        self._work = np.zeros((8, module.MEMORY["q"].shape[0]))
         n = int(self._instance.record["n"])
-        self.start = self._instance.record["y"][:n].copy()
+        self.start = self._instance.record["q"][:n].copy()
         weight = self._instance.record["weight"][:n]
         self._scale = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), 1e9)
         self.highest = np.zeros(2)

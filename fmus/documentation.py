@@ -76,18 +76,20 @@ def _imports(text: str) -> Iterator[str]:
     """Modules of the project that `text` imports, in order, each once."""
     seen: set[str] = set()
     for node in ast.walk(ast.parse(text)):
-        if not isinstance(node, ast.ImportFrom) or node.module is None:
+        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("touchdown."):
             continue
-        whole = (f"{node.module}.{name.name}" for name in node.names)
-        for name in [node.module, *whole]:
-            if name.startswith("touchdown.") and name not in seen and _path(name).is_file():
-                seen.add(name)
-                yield name
+        for name in node.names:
+            whole = f"{node.module}.{name.name}"
+            module = whole if _path(whole).is_file() else str(node.module)
+            if module not in seen:
+                seen.add(module)
+                yield module
 
 
 def _path(module: str) -> Path:
     _, *inside = module.split(".")  # ROOT is the folder of the whole package
-    return ROOT.joinpath(*inside).with_suffix(".py")
+    place = ROOT.joinpath(*inside)
+    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
 
 
 def _source(module: str) -> str:

@@ -63,7 +63,7 @@ class Curve(NamedTuple):
 
 @kernel
 def curve(law):
-    """The `Curve` of a `FrictionLaw` record."""
+    """The `Curve` (1, s/m) of a `FrictionLaw` record."""
     g1 = law.g1 if law.kind == MAKKAR else 0.0
     g6 = law.g6 if law.kind == MAKKAR else 0.0
     extra = law.static - law.dynamic if law.kind == STRIBECK else 0.0
@@ -73,7 +73,7 @@ def curve(law):
 
 @woven
 def saturation(x):
-    """1 - exp(-x) for x >= 0 to rounding, from sums and products alone.
+    """1 - exp(-x) for a number x >= 0 to rounding, from sums and products alone.
 
     A series at x/1024, then 1 - e^(-2a) = (1 - e^(-a)) (1 + e^(-a)) ten times, written out: unlike a call
     of the mathematical library, or a loop, it becomes vector code. It is 1 to rounding beyond x = 40.
@@ -94,7 +94,7 @@ def saturation(x):
 
 @woven
 def follow(speed, law):
-    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve`.
+    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
 
     tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|). What a law does not have is not computed.
     """

@@ -19,22 +19,22 @@ from touchdown.modelkit.variables import real
 class Touch(NamedTuple):
     """Contact of journal and ring: force on the journal, moments on both, and what to report."""
 
-    fx: float
+    fx: float  # N
     fy: float
-    journal_moment: float
+    journal_moment: float  # N m
     ring_moment: float
-    normal: float
-    indentation: float  # negative: the gap
+    normal: float  # N
+    indentation: float  # m; negative: the gap
     rate: float  # of the indentation, m/s
     loss: float  # W, heat
 
 
 @kernel
 def touch(journal, ring, journal_radius, clearance, law, friction, grip=0.0):
-    """Contact of a journal of radius `journal_radius` (m) with the bore of `ring`.
+    """Contact of a journal of `journal_radius` (m) with the bore of `ring`, wider by `clearance` (m).
 
-    journal, ring: Motion; grip as in `pair.press`. Returns a `Touch`; the force on the ring is the opposite
-    one.
+    journal, ring: Motion (m, m/s, rad/s); law, friction: records; grip (s/kg) as in `pair.press`. Returns a
+    `Touch` (N, N m, m, W); the force on the ring is the opposite one.
     """
     ex = journal.x - ring.x
     ey = journal.y - ring.y
@@ -74,6 +74,21 @@ class ContactReport:
 
 
 @dataclass(frozen=True)
+class Touched:
+    """Contact of journal and bore at the last evaluation."""
+
+    normal: float = real(0.0, "N", "normal force")
+    indentation: float = real(0.0, "m", "indentation; negative: the gap")
+    rate: float = real(0.0, "m/s", "of the indentation")
+
+
+@kernel
+def note(touched, contact):
+    """Keep a `Touch` (N, m, m/s) in the record `touched` of `Touched`."""
+    touched.normal, touched.indentation, touched.rate = contact.normal, contact.indentation, contact.rate
+
+
+@dataclass(frozen=True)
 class ContactMemory:
     """Last accepted micro-step before the first contact, to locate it in time."""
 
@@ -99,14 +114,17 @@ def swing_rate(law, inv_m):
 
 @kernel
 def hermite(f0, d0, f1, d1, h, s):
-    """Cubic through values f and slopes d at the ends of an interval of length h, at s in [0, 1]."""
+    """Cubic through values f and slopes d at the ends of an interval of length h, at s in [0, 1].
+
+    Any unit for f, and that over h's for d.
+    """
     r = 1.0 - s
     return r * r * ((1.0 + 2.0 * s) * f0 + s * h * d0) + s * s * ((3.0 - 2.0 * s) * f1 - r * h * d1)
 
 
 @kernel
 def _crossing(f0, d0, f1, d1, h):
-    """Where in [0, 1] that cubic, positive at 0 and not at 1, crosses zero (bisection)."""
+    """Where in [0, 1] that cubic, positive at 0 and not at 1, crosses zero (bisection). Units as there."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = 0.5 * (low + high)
@@ -121,10 +139,10 @@ def _crossing(f0, d0, f1, d1, h):
 def watch_contact(time, journal, touched, report, memory):
     """Keep the peaks and the first contact; called after each accepted micro-step.
 
-    time: s; journal: Motion; touched: (normal force, indentation, rate) at that time;
-    report, memory: records of `ContactReport` and `ContactMemory`.
+    time: s; journal: Motion (m, m/s) at that time; touched, report, memory: records of `Touched`,
+    `ContactReport` and `ContactMemory`.
     """
-    normal, indentation, rate = touched
+    normal, indentation, rate = touched.normal, touched.indentation, touched.rate
     if normal > report.peak_force:
         report.peak_force = normal
     if indentation > report.peak_indentation:

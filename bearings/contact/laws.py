@@ -63,7 +63,7 @@ def abreast(law: ContactLaw, rows: int) -> ContactLaw:
 
 @kernel
 def power(x, exponent):
-    """x^exponent for x > 0; the Hertz exponent takes the short way."""
+    """x^exponent for a number x > 0; the Hertz exponent takes the short way."""
     if exponent == 1.5:
         return x * math.sqrt(x)
     return x**exponent
@@ -71,7 +71,10 @@ def power(x, exponent):
 
 @woven
 def hertz(indentation, rate, stiffness, damping):
-    """(Normal force, its elastic part, stiffness at this load in N/m) of (2.1) and (2.38), zero apart."""
+    """(Normal force (N), its elastic part, stiffness at this load (N/m)) of (2.1) and (2.38), zero apart.
+
+    indentation: m; rate: m/s; stiffness: N/m^1.5; damping: N s/m2.
+    """
     depth = max(indentation, 0.0)
     root = math.sqrt(depth)
     elastic = stiffness * depth * root
@@ -80,7 +83,7 @@ def hertz(indentation, rate, stiffness, damping):
 
 @kernel
 def elastic_force(indentation, law):
-    """k d^n (N), zero where bodies are apart (2.1)."""
+    """k d^n (N) at an indentation d (m), zero where bodies are apart (2.1); law: a record."""
     if indentation <= 0.0:
         return 0.0
     return law.stiffness * power(indentation, law.exponent)
@@ -88,13 +91,13 @@ def elastic_force(indentation, law):
 
 @kernel
 def elastic_energy(indentation, law):
-    """Energy stored in the contact (J): k d^(n+1) / (n+1)."""
+    """Energy stored in the contact (J) at an indentation d (m): k d^(n+1) / (n+1); law: a record."""
     return elastic_force(indentation, law) * max(indentation, 0.0) / (law.exponent + 1.0)
 
 
 @kernel
 def normal_and_elastic(indentation, rate, law):
-    """(Force pressing the bodies apart, its elastic part) in N; `rate` is the indentation's (m/s)."""
+    """(Force pressing the bodies apart, its elastic part) in N at an `indentation` (m) of `rate` (m/s)."""
     if indentation <= 0.0:
         return 0.0, 0.0
     elastic = law.stiffness * power(indentation, law.exponent)
@@ -104,5 +107,5 @@ def normal_and_elastic(indentation, rate, law):
 
 @kernel
 def normal_force(indentation, rate, law):
-    """Force pressing the bodies apart (N); `rate` is the indentation's time derivative (m/s)."""
+    """Force pressing the bodies apart (N) at an `indentation` (m) of `rate` (m/s); law: a record."""
     return normal_and_elastic(indentation, rate, law)[0]

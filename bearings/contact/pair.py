@@ -48,7 +48,10 @@ class Press(NamedTuple):
 
 @woven
 def slip(first, second, place, side):
-    """(Sliding speed along t, rate of the indentation) in m/s of two bodies (Motion) at `place`."""
+    """(Sliding speed along t, rate of the indentation) in m/s of two bodies (Motion) at `place` (m).
+
+    side: INSIDE or OUTSIDE.
+    """
     ux, uy = first.vx - second.vx, first.vy - second.vy
     sliding = uy * place.nx - ux * place.ny + first.spin * place.first - second.spin * place.second
     return sliding, side * (ux * place.nx + uy * place.ny + second.spin * place.across)
@@ -70,7 +73,8 @@ def friction_force(sliding, mu, normal, grip):
 def press(first, second, place, side, law, friction, grip):
     """Contact of two bodies (Motion) at `place`, for an indentation above zero.
 
-    side: INSIDE or OUTSIDE; law, friction: records; grip: as for `friction_force`. Returns a `Press`.
+    side: INSIDE or OUTSIDE; law, friction: records; grip (s/kg): as for `friction_force`. Returns a `Press`
+    (N, N m, m/s, W).
     """
     sliding, rate = slip(first, second, place, side)
     normal, elastic = normal_and_elastic(place.indentation, rate, law)

@@ -44,7 +44,10 @@ class RaceProfile:
 
 @kernel
 def radius_and_slopes(s, radius, profile, dent):
-    """(r, dr/ds, d2r/ds2) of a race in m; `dent` is +1 where wear widens it, -1 where it narrows it."""
+    """(r, dr/ds, d2r/ds2) of a race in m at the angle s (rad), on a circle of `radius` (m).
+
+    `dent` is +1 where wear widens it, -1 where it narrows it.
+    """
     turned = profile.lobes * (s - profile.phase)
     c, sn = profile.amplitude * math.cos(turned), profile.amplitude * math.sin(turned)
     r, d1, d2 = radius + c, -profile.lobes * sn, -float(profile.lobes * profile.lobes) * c
@@ -61,11 +64,12 @@ def radius_and_slopes(s, radius, profile, dent):
 
 @kernel
 def _curvature(angles, radius, profile, dent):
-    found = np.empty(len(angles))
+    """(n,) curvature (1/m) at (n,) angles (rad); the others as for `radius_and_slopes`."""
+    bent = np.empty(len(angles))
     for i in range(len(angles)):
         r, d1, d2 = radius_and_slopes(angles[i], radius, profile, dent)
-        found[i] = (r * r + 2.0 * d1 * d1 - r * d2) / (r * r + d1 * d1) ** 1.5
-    return found
+        bent[i] = (r * r + 2.0 * d1 * d1 - r * d2) / (r * r + d1 * d1) ** 1.5
+    return bent
 
 
 def curvature(radius: float, profile: RaceProfile, dent: float) -> np.ndarray:

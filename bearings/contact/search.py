@@ -38,6 +38,23 @@ class Point(NamedTuple):
     cy: float
 
 
+class Disc(NamedTuple):
+    """Outline of a ball: its centre and radius (m)."""
+
+    x: float
+    y: float
+    radius: float
+
+
+class Outline(NamedTuple):
+    """Outline of a race: its centre (m), the angle by which it is turned (rad), its circle's radius (m)."""
+
+    x: float
+    y: float
+    angle: float
+    radius: float
+
+
 @dataclass(frozen=True)
 class SearchReport:
     """What the search had to do."""
@@ -48,14 +65,17 @@ class SearchReport:
 
 @kernel
 def on_circle(s, x, y, radius):
-    """Point of a circle around (x, y)."""
+    """`Point` (m) of a circle of `radius` around (x, y) (m) at the angle s (rad)."""
     c, sn = math.cos(s), math.sin(s)
     return Point(x + radius * c, y + radius * sn, -radius * sn, radius * c, -radius * c, -radius * sn)
 
 
 @kernel
 def on_race(s, x, y, angle, radius, profile, dent):
-    """Point of a race around (x, y), turned by `angle`; s counts from the frame's x axis."""
+    """`Point` (m) of a race around (x, y) (m), turned by `angle` (rad); s (rad) from the frame's x axis.
+
+    radius, profile, dent: as for `profile.radius_and_slopes`.
+    """
     r, d1, d2 = radius_and_slopes(s - angle, radius, profile, dent)
     c, sn = math.cos(s), math.sin(s)
     return Point(
@@ -70,9 +90,9 @@ def on_race(s, x, y, angle, radius, profile, dent):
 
 @kernel
 def newton(sp, sq, ball, race, profile, dent):
-    """(s_P on the ball, s_Q on the race, whether (2.36) holds) from a start near the solution.
+    """(s_P on the ball, s_Q on the race (rad), whether (2.36) holds) from a start near the solution.
 
-    ball: (x, y, radius); race: (x, y, angle, radius).
+    ball: `Disc`; race: `Outline`.
     """
     bx, by, rb = ball
     rx, ry, angle, radius = race
@@ -102,7 +122,7 @@ def newton(sp, sq, ball, race, profile, dent):
 
 @kernel
 def is_contact(sp, sq, side, ball, race, profile, dent):
-    """Whether the solution is where ball and race meet, and not one of (2.36)'s others.
+    """Whether the solution (sp, sq) (rad) is where ball and race meet, and not one of (2.36)'s others.
 
     Seen from the ball's centre the race's point must be the nearest one around, on the side of the
     ball's point; and not behind the race's centre, where a hollow of the far side is nearest, too.
@@ -120,45 +140,45 @@ def is_contact(sp, sq, side, ball, race, profile, dent):
 
 @kernel
 def cold_start(ball, race, profile, dent):
-    """(s_P, s_Q) at the race's nearest of many points."""
+    """(s_P, s_Q) (rad) at the nearest to the ball (`Disc`) of many points of the race (`Outline`)."""
     bx, by, _ = ball
     rx, ry, angle, radius = race
-    best, found, width = math.inf, 0.0, 2.0 * math.pi
+    best, nearest, width = math.inf, 0.0, 2.0 * math.pi
     for _ in range(2):  # all around, then between the neighbours of the nearest: lobes may be many
-        middle = found
+        middle = nearest
         for i in range(AROUND):
             s = middle + width * (i / AROUND - 0.5)
             q = on_race(s, rx, ry, angle, radius, profile, dent)
             distance = (q.x - bx) ** 2 + (q.y - by) ** 2
             if distance < best:
-                best, found = distance, s
+                best, nearest = distance, s
         width *= 2.0 / AROUND
-    q = on_race(found, rx, ry, angle, radius, profile, dent)
-    return math.atan2(q.y - by, q.x - bx), found
+    q = on_race(nearest, rx, ry, angle, radius, profile, dent)
+    return math.atan2(q.y - by, q.x - bx), nearest
 
 
 @kernel
 def race_place(b, side, ball, race, profile, starts, report):
-    """`Place` of ball number `b` on a race.
+    """`Place` (m) of ball number `b` on a race.
 
-    side: INSIDE (outer race) or OUTSIDE; ball: (x, y, radius); race: (x, y, angle, radius); `starts`
-    holds s_P and s_Q of each ball, NaN before the first search, and is brought up to date.
+    side: INSIDE (outer race) or OUTSIDE; ball: `Disc`; race: `Outline`; `starts`, (2 balls,), holds s_P
+    and s_Q (rad) of each ball, NaN before the first search, and is brought up to date.
     """
-    rb = ball[2]
+    rb = ball.radius
     dent = side
-    race = (race[0], race[1], race[2] % (2.0 * math.pi), race[3])  # s - angle keeps its digits
-    sp, sq, found = newton(starts[2 * b], starts[2 * b + 1], ball, race, profile, dent)
-    if not (found and is_contact(sp, sq, side, ball, race, profile, dent)):
+    race = Outline(race.x, race.y, race.angle % (2.0 * math.pi), race.radius)  # s - angle keeps its digits
+    sp, sq, solved = newton(starts[2 * b], starts[2 * b + 1], ball, race, profile, dent)
+    if not (solved and is_contact(sp, sq, side, ball, race, profile, dent)):
         report.cold += 1.0
         sp, sq = cold_start(ball, race, profile, dent)
-        sp, sq, found = newton(sp, sq, ball, race, profile, dent)
-        if not (found and is_contact(sp, sq, side, ball, race, profile, dent)):
+        sp, sq, solved = newton(sp, sq, ball, race, profile, dent)
+        if not (solved and is_contact(sp, sq, side, ball, race, profile, dent)):
             report.failed += 1.0
             return Place(math.nan, math.nan, math.nan, side * rb, 0.0, 0.0)
     starts[2 * b], starts[2 * b + 1] = sp, sq
-    q = on_race(sq, race[0], race[1], race[2], race[3], profile, dent)
+    q = on_race(sq, race.x, race.y, race.angle, race.radius, profile, dent)
     length = math.sqrt(q.tx * q.tx + q.ty * q.ty)
     nx, ny = q.ty / length, -q.tx / length  # outwards from the race's centre
-    gap = side * ((q.x - ball[0]) * nx + (q.y - ball[1]) * ny) - rb
-    px, py = ball[0] + side * rb * nx - race[0], ball[1] + side * rb * ny - race[1]
+    gap = side * ((q.x - ball.x) * nx + (q.y - ball.y) * ny) - rb
+    px, py = ball.x + side * rb * nx - race.x, ball.y + side * rb * ny - race.y
     return Place(nx, ny, -gap, side * rb, px * nx + py * ny, py * nx - px * ny)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -222,6 +223,15 @@ class FreeBallSet(BallSet):
         return 1.0 + self.bunching * (touching - 1.0)
 
 
+class Total(NamedTuple):
+    """What all balls do to a race."""
+
+    fx: float  # N
+    fy: float
+    moment: float  # N m, about its centre
+    loss: float  # W, heat
+
+
 @dataclass(frozen=True)
 class BallReport:
     """The balls as a whole."""
@@ -279,7 +289,7 @@ def watch_balls(force, indentation, m):
 
 @kernel
 def watch_contacts(force, indentation, report):
-    """Keep the peaks of `BallContacts`, after a micro-step."""
+    """Keep the peaks of force (N) and indentation (m) in `report` (`BallContacts`), after a micro-step."""
     if force > report.peak_force:
         report.peak_force = force
     if indentation > report.peak_indentation:

@@ -101,7 +101,7 @@ class Meeting(NamedTuple):
 
 @woven
 def meet(gap, c, s, orbit, spin, way):
-    """A ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
+    """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
     indentation = gap.ex * c + gap.ey * s - way.play
     radius = way.radius + way.share * max(indentation, 0.0)
     lever = way.inner_radius - gap.ex * c - gap.ey * s  # the ring's centre stands off by e
@@ -118,7 +118,10 @@ def rolling_drag(speed):
 
 @woven
 def press_ball(at, gap, c, s, orbit, friction, way):
-    """What happens at a ball (`Meeting`); friction: coefficients at the inner and the outer race."""
+    """`Pressed` (N, m, W) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
+
+    friction: coefficients at the inner and the outer race.
+    """
     depth = max(at.indentation, 0.0)
     elastic = way.stiffness * (depth * math.sqrt(depth))
     force = max(elastic + way.damping * depth * at.rate, 0.0)
@@ -134,7 +137,7 @@ def press_ball(at, gap, c, s, orbit, friction, way):
 
 @kernel
 def between_races(gap, c, s, orbit, spin, rm, m):
-    """A ball at the angle of cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
+    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     resistance = m.p.rolling.resistance
@@ -146,7 +149,7 @@ def between_races(gap, c, s, orbit, spin, rm, m):
 
 @kernel
 def note(s, ball):
-    """Count a loaded ball in `s` (LoadedBalls); ball: Pressed."""
+    """Count a loaded ball in `s` (LoadedBalls); ball: Pressed (N, m)."""
     s.loaded += 1.0
     s.total += ball.force
     s.energy += 0.4 * ball.elastic * ball.indentation
@@ -158,5 +161,5 @@ def note(s, ball):
 
 @kernel
 def clear(s):
-    """Forget the loaded balls."""
+    """Forget the loaded balls in `s` (LoadedBalls)."""
     s.loaded, s.force, s.total, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0, 0.0

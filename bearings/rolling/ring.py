@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.journal import touch, watch_contact
+from touchdown.bearings.contact.journal import note, touch, watch_contact
 from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.rolling.pitch_circle import Gap
 from touchdown.modelkit.kernel import kernel
@@ -54,105 +54,100 @@ class RaceSpeeds:
     ring: float = real(0.0, "m/s", "half the circumferential speed of the inner race", local=True)
 
 
-@dataclass(frozen=True)
-class RingMemory:
-    """Contact with the journal at the last evaluation."""
-
-    normal: float = real(0.0, "N", "normal force")
-    indentation: float = real(0.0, "m", "indentation")
-    rate: float = real(0.0, "m/s", "its rate")
+@kernel
+def ring_motion(q):
+    """`Motion` of the inner ring (m, m/s, rad/s) in the state q."""
+    return Motion(q[RX], q[RY], q[RVX], q[RVY], q[RW])
 
 
 @kernel
-def ring_motion(y):
-    """Motion of the inner ring."""
-    return Motion(y[RX], y[RY], y[RVX], y[RVY], y[RW])
-
-
-@kernel
-def journal_on_ring(y, m, grip=0.0):
-    """The journal's `Touch` with the ring, remembered for `observe`."""
-    p, journal = m.p, seat.journal_motion(y)
-    t = touch(journal, ring_motion(y), p.journal_radius, p.clearance, m.d.contact, m.d.friction, grip)
-    r = m.s.ring
-    r.normal, r.indentation, r.rate = t.normal, t.indentation, t.rate
+def journal_on_ring(q, m, grip=0.0):
+    """The journal's `Touch` with the ring (N, N m, m), remembered for `watch`; grip: s/kg."""
+    p, journal = m.p, seat.journal_motion(q)
+    t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction, grip)
+    note(m.s.ring, t)
     return t
 
 
 @kernel
-def gap(y):
-    """The ring as balls on the pitch circle meet it, from the housing's middle (`Gap`)."""
+def gap(q):
+    """The ring as balls on the pitch circle meet it, from the housing's middle (`Gap`: m, m/s, rad/s)."""
     return Gap(
-        y[RX] - y[seat.HX],
-        y[RY] - y[seat.HY],
-        y[RVX] - y[seat.HVX],
-        y[RVY] - y[seat.HVY],
-        y[RW],
+        q[RX] - q[seat.HX],
+        q[RY] - q[seat.HY],
+        q[RVX] - q[seat.HVX],
+        q[RVY] - q[seat.HVY],
+        q[RW],
     )
 
 
 @kernel
-def accelerate(y, dy, m, journal, balls):
-    """Derivatives of the ring under the journal's `Touch` and what the balls do to it (`Total`)."""
+def translate(q, dq, m, journal, fx, fy):
+    """Derivatives dq of the ring but for its spin, under the journal's `Touch` and the balls' force (N)."""
     p = m.p
-    dy[RX] = y[RVX]
-    dy[RY] = y[RVY]
-    dy[RVX] = (balls.fx - journal.fx) / p.ring.mass
-    dy[RVY] = (balls.fy - journal.fy) / p.ring.mass - p.gravity
-    dy[RANGLE] = y[RW]
-    dy[RW] = (journal.ring_moment + balls.moment) / p.ring.inertia
+    dq[RX] = q[RVX]
+    dq[RY] = q[RVY]
+    dq[RVX] = (fx - journal.fx) / p.ring.mass
+    dq[RVY] = (fy - journal.fy) / p.ring.mass - p.gravity
+    dq[RANGLE] = q[RW]
 
 
 @kernel
-def drift(x, y, v, h):
-    """The ring's position in x: that in y and h (s) times the velocity in v (`verlet`)."""
-    x[RX] = y[RX] + h * v[RVX]
-    x[RY] = y[RY] + h * v[RVY]
-    x[RANGLE] = y[RANGLE] + h * v[RW]
+def accelerate(q, dq, m, journal, balls):
+    """Derivatives dq of the ring under the journal's `Touch` and the balls' `Total` (N, N m)."""
+    translate(q, dq, m, journal, balls.fx, balls.fy)
+    dq[RW] = (journal.ring_moment + balls.moment) / m.p.ring.inertia
 
 
 @kernel
-def report_energy(y, m, kinetic, potential, inertia):
-    """Energy of the bearing; `kinetic` and `potential` (J) are those of balls and cage, `inertia` (kg m2)
-    is what turns with the ring.
+def drift(trial, q, mid, h):
+    """The ring's position in the state `trial`: that in q and h (s) times its velocity in `mid`."""
+    trial[RX] = q[RX] + h * mid[RVX]
+    trial[RY] = q[RY] + h * mid[RVY]
+    trial[RANGLE] = q[RANGLE] + h * mid[RW]
+
+
+@kernel
+def report_energy(q, m, kinetic, potential, inertia):
+    """Energy of the bearing (J), in m.o; `kinetic` and `potential` (J) are those of balls and cage,
+    `inertia` (kg m2) is what turns with the ring.
     """
     p, o = m.p, m.o.energy
-    speed2 = y[RVX] ** 2 + y[RVY] ** 2
-    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * y[RW] ** 2
+    speed2 = q[RVX] ** 2 + q[RVY] ** 2
+    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * q[RW] ** 2
     o.potential = potential + elastic_energy(m.s.ring.indentation, p.contact)
-    o.potential += p.ring.mass * p.gravity * y[RY]
-    o.dissipated = y[LOSS]
+    o.potential += p.ring.mass * p.gravity * q[RY]
+    o.dissipated = q[LOSS]
 
 
 @kernel
-def place(y, dx, dy):
+def place(q, dx, dy):
     """Put the ring at rest in its housing, (dx, dy) from the middle (m)."""
-    y[RX], y[RY] = y[seat.HX] + dx, y[seat.HY] + dy
-    y[RVX], y[RVY] = y[seat.HVX], y[seat.HVY]
+    q[RX], q[RY] = q[seat.HX] + dx, q[seat.HY] + dy
+    q[RVX], q[RVY] = q[seat.HVX], q[seat.HVY]
 
 
 @kernel
-def watch(t, y, m):
-    """First contact, peaks and the time of synchronism, after an accepted micro-step."""
-    r = m.s.ring
+def watch(t, q, m):
+    """First contact, peaks and the time of synchronism, after a micro-step, t (s) into the macro step."""
     time = m.time + t
-    watch_contact(time, seat.journal_motion(y), (r.normal, r.indentation, r.rate), m.o.contact, m.s.contact)
+    watch_contact(time, seat.journal_motion(q), m.s.ring, m.o.contact, m.s.contact)
     o = m.o.ring
     if o.sync_time < 0.0 and m.o.contact.first_time >= 0.0:
         bore = m.p.journal_radius + m.p.clearance
-        journal = y[seat.JW] * m.p.journal_radius
-        if abs(y[RW] * bore) >= SYNCHRONOUS * abs(journal) and y[RW] * journal > 0.0:
+        journal = q[seat.JW] * m.p.journal_radius
+        if abs(q[RW] * bore) >= SYNCHRONOUS * abs(journal) and q[RW] * journal > 0.0:
             o.sync_time = time
 
 
 @kernel
-def report(y, m, race_radius):
-    """Outputs of ring and contact at the end of the macro step."""
+def report(q, m, race_radius):
+    """Outputs of ring and contact at the end of the macro step; race_radius: of the inner race (m)."""
     o, p = m.o.ring, m.p
-    o.x, o.y, o.vx, o.vy, o.omega = y[RX], y[RY], y[RVX], y[RVY], y[RW]
-    o.surface_speed = y[RW] * (p.journal_radius + p.clearance)
-    o.journal_speed = y[seat.JW] * p.journal_radius
-    m.o.speed.ring = 0.5 * y[RW] * race_radius
+    o.x, o.y, o.vx, o.vy, o.omega = q[RX], q[RY], q[RVX], q[RVY], q[RW]
+    o.surface_speed = q[RW] * (p.journal_radius + p.clearance)
+    o.journal_speed = q[seat.JW] * p.journal_radius
+    m.o.speed.ring = 0.5 * q[RW] * race_radius
     m.o.speed.rotor = 0.5 * o.journal_speed * race_radius / (p.journal_radius + p.clearance)
     c = m.o.contact
     c.force, c.indentation = m.s.ring.normal, m.s.ring.indentation

@@ -6,11 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from bearing_states import pressed
 from systems import history, rotor_on
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
-from touchdown.bearings.rolling import ball_bodies, cage, ring
-from touchdown.bearings.rolling.ball_bodies import ANGLE, BALLS, SPIN, VX, VY, X, Y
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_state import BALLS
+from touchdown.bearings.rolling.bodies import cage
+from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
@@ -23,76 +26,38 @@ SCENES = {name: f"disk-{name.removeprefix('detailed_')}-detailed" for name in MO
 every_model = pytest.mark.parametrize("name", list(MODELS))
 
 
-def pressed(name: str, seed: int, **parameters: float) -> Instance:
-    """A bearing 0.4 ms after first touch, journal and housing free, its speeds then shaken at random."""
-    instance = Instance(MODELS[name])
-    m = instance.memory
-    m["p"]["gravity"] = 0.0
-    m["p"]["micro_step"] = 0.0
-    for key, value in parameters.items():
-        head, _, tail = key.partition("__")
-        if tail:
-            m["p"][head][tail] = value
-        else:
-            m["p"][head] = value
-    journal, housing = m["u"]["journal"], m["u"]["housing"]
-    journal["x"], journal["y"], journal["vx"], journal["vy"] = 0.5e-4, -2.958e-4, 0.01, -0.07
-    journal["inv_m"], journal["omega"], journal["inv_I"] = 1.0 / 1.65, 942.0, 2000.0
-    housing["inv_m"], housing["k_over_m"], housing["c_over_m"] = 1.0 / 5.02, 4.98e7, 498.0
-    instance.start(0.0)
-    instance.step(0.0, 4e-4)
-    y = m["y"][0]
-    for part, first in (("journal", seat.JX), ("housing", seat.HX)):
-        for i, key in enumerate(("x", "y", "vx", "vy")):
-            m["u"][part][key] = y[first + i]
-    rng = np.random.default_rng(seed)
-    count = int(m["p"]["balls"]["count"][0])
-    for component, scale in ((VX, 0.05), (VY, 0.05), (SPIN, 50.0)):
-        y[part_of(component, count)] += scale * rng.normal(size=count)
-    if name == "detailed_caged":  # past the middle of its clearance, so that some pockets press
-        first = BALLS + 6 * count
-        y[first : first + 2] += 4e-6 * rng.normal(size=2)
-        y[first + SPIN] += 20.0
-    return instance
-
-
-def part_of(component: int, count: int) -> slice:
-    """Where a component of all balls lies in the state."""
-    return slice(BALLS + component * count, BALLS + (component + 1) * count)
-
-
 def derivative(instance: Instance) -> tuple[np.ndarray, np.ndarray]:
     """(State, its derivative), the loads then standing in the outputs."""
     m, n = instance.record, int(instance.record["n"])
-    y = m["y"].copy()  # with the room that loops over balls may run into
-    dy = np.zeros_like(y)
+    q = m["q"].copy()  # with the room that loops over balls may run into
+    dq = np.zeros_like(q)
     assert instance.model.instant is not None
-    instance.model.instant(0.0, y, dy, m)
-    return y[:n], dy[:n]
+    instance.model.instant(0.0, q, dq, m)
+    return q[:n], dq[:n]
 
 
 def bodies(instance: Instance) -> list[tuple[float, float, np.ndarray, np.ndarray, float]]:
     """(Mass, inertia, position, acceleration, spin acceleration) of ring, balls and cage."""
-    y, dy = derivative(instance)
+    q, dq = derivative(instance)
     m = instance.record
     found = [
         (
             float(m["p"]["ring"]["mass"]),
             float(m["p"]["ring"]["inertia"]),
-            y[[ring.RX, ring.RY]],
-            dy[[ring.RVX, ring.RVY]],
-            float(dy[ring.RW]),
+            q[[ring.RX, ring.RY]],
+            dq[[ring.RVX, ring.RVY]],
+            float(dq[ring.RW]),
         )
     ]
     count = int(m["p"]["balls"]["count"])
     mass, inertia = float(m["d"]["mass"]), float(m["d"]["inertia"])
     for b in range(count):
         i = [BALLS + b + k * count for k in range(6)]
-        found.append((mass, inertia, y[[i[X], i[Y]]], dy[[i[VX], i[VY]]], float(dy[i[SPIN]])))
+        found.append((mass, inertia, q[[i[X], i[Y]]], dq[[i[VX], i[VY]]], float(dq[i[SPIN]])))
     if instance.model.name == "detailed_caged":
         i = [BALLS + 6 * count + k for k in range(6)]
         of_cage = float(m["p"]["cage"]["mass"]), float(m["d"]["cage_inertia"])
-        found.append((*of_cage, y[[i[X], i[Y]]], dy[[i[VX], i[VY]]], float(dy[i[SPIN]])))
+        found.append((*of_cage, q[[i[X], i[Y]]], dq[[i[VX], i[VY]]], float(dq[i[SPIN]])))
     return found
 
 
@@ -132,7 +97,7 @@ def turning(arm: np.ndarray, force: np.ndarray) -> float:
 @pytest.mark.parametrize("angle", [0.3, 2.0, -1.1])
 def test_a_turned_frame_turns_the_accelerations(name: str, angle: float) -> None:
     instance = pressed(name, 1)
-    y, before = derivative(instance)
+    q, before = derivative(instance)
     m = instance.record
     count = int(m["p"]["balls"]["count"])
     pairs = [(seat.JX, seat.JY), (seat.JVX, seat.JVY), (seat.HX, seat.HY), (seat.HVX, seat.HVY)]
@@ -141,16 +106,16 @@ def test_a_turned_frame_turns_the_accelerations(name: str, angle: float) -> None
     if name == "detailed_caged":
         first = BALLS + 6 * count
         pairs += [(first + X, first + Y), (first + VX, first + VY)]
-        m["y"][first + ANGLE] += angle
-    m["y"][ring.RANGLE] += angle
+        m["q"][first + ANGLE] += angle
+    m["q"][ring.RANGLE] += angle
     c, s = math.cos(angle), math.sin(angle)
     expected = before.copy()
     for i, j in pairs:
-        m["y"][i], m["y"][j] = c * y[i] - s * y[j], s * y[i] + c * y[j]
+        m["q"][i], m["q"][j] = c * q[i] - s * q[j], s * q[i] + c * q[j]
         expected[i], expected[j] = c * before[i] - s * before[j], s * before[i] + c * before[j]
     for part, first in (("journal", seat.JX), ("housing", seat.HX)):
         for i, key in enumerate(("x", "y", "vx", "vy")):
-            m["u"][part][key] = m["y"][first + i]
+            m["u"][part][key] = m["q"][first + i]
     _, after = derivative(instance)
     inside = slice(seat.INSIDE, len(after))
     scale = np.max(np.abs(before[inside]))
@@ -198,9 +163,9 @@ def inside_at_end(scene: Scene) -> np.ndarray:
     simulate(scene, system)
     record = system.components["bearing"].instance.record  # type: ignore[attr-defined]
     assert record["o"]["contact"]["peak_force"] > 100.0
-    y = record["y"][: int(record["n"])].copy()
-    y[[ring.RANGLE, ring.LOSS]] = 0.0
-    return y[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, len(y))]]
+    q = record["q"][: int(record["n"])].copy()
+    q[[ring.RANGLE, ring.LOSS]] = 0.0
+    return q[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, len(q))]]
 
 
 @every_model
@@ -359,7 +324,7 @@ def test_weights_and_states_match() -> None:
     for model in MODELS.values():
         p = model.parameters()
         extra = len(cage.cage_weights(p.balls)) if model.name == "detailed_caged" else 0
-        assert len(model.weights(p)) == ball_bodies.BALLS + ball_bodies.SIZE * p.balls.count + extra
+        assert len(model.weights(p)) == BALLS + SIZE * p.balls.count + extra
 
 
 @pytest.mark.long
@@ -378,7 +343,7 @@ def test_adaptive_steps_follow_two_references(name: str) -> None:
     rows: list[np.ndarray] = []
     system = open_system(scene, in_process=True)
     instance = system.components["bearing"].instance  # type: ignore[attr-defined]
-    simulate(scene, system, watch=lambda time, running: rows.append(instance.record["y"].copy()))
+    simulate(scene, system, watch=lambda time, running: rows.append(instance.record["q"].copy()))
     weight = instance.record["weight"][: first.shape[1]]
     inside = slice(seat.INSIDE, first.shape[1])
     apart = np.max(np.abs((first - second) * weight)[:, inside], axis=1)

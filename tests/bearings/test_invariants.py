@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from importlib import import_module
 
 import numpy as np
 import pytest
+from bearing_states import state_in_contact
 from systems import CLEARANCE, LANDING, history, rotor_on
 
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.modelkit.model import Instance
 
 ROLLING = ["simplified_caged", "simplified_cageless"]
 BEARINGS = ["bushing", *ROLLING]
@@ -104,41 +103,18 @@ def test_turning_the_frame_changes_nothing(bearing: str) -> None:
     assert ends[1][2] == pytest.approx(ends[0][2], rel=1e-9)
 
 
-def state_in_contact(bearing: str, seed: int) -> Instance:
-    """A bearing with journal, ring and balls in a random state of contact."""
-    generator = np.random.default_rng(seed)
-    instance = Instance(import_module(f"bearings.{bearing}").MODEL)
-    if bearing in ROLLING:
-        instance.record["p"]["gravity"] = 0.0
-    j = instance.record["u"]["journal"]
-    angle = generator.uniform(0.0, 2.0 * math.pi)
-    j["x"], j["y"] = 0.32e-3 * math.cos(angle), 0.32e-3 * math.sin(angle)
-    j["vx"], j["vy"], j["omega"] = generator.uniform(-0.1, 0.1), generator.uniform(-0.1, 0.1), 900.0
-    instance.start(0.0)
-    y = instance.record["y"]
-    if bearing in ROLLING:
-        y[[ring.RX, ring.RY]] += 8e-6 * np.array([math.cos(angle + 0.4), math.sin(angle + 0.4)])
-        y[[ring.RVX, ring.RVY]] = generator.uniform(-0.05, 0.05, 2)
-        y[ring.RW] = generator.uniform(0.0, 900.0)
-    if bearing == "simplified_cageless":
-        for b in range(17):
-            y[ring.NEXT + 17 + b] = generator.uniform(0.0, 300.0)
-            y[ring.NEXT + 34 + b] = generator.uniform(-2000.0, 0.0)
-    return instance
-
-
 @pytest.mark.parametrize("bearing", BEARINGS)
 @pytest.mark.parametrize("seed", range(5))
 def test_linear_momentum_closes(bearing: str, seed: int) -> None:
     """Forces on journal and housing, and what accelerates the ring, add up to nothing."""
     instance = state_in_contact(bearing, seed)
-    dy = np.zeros(int(instance.record["n"]))
-    instance.model.instant(0.0, instance.record["y"][: len(dy)].copy(), dy, instance.record)
+    dq = np.zeros(int(instance.record["n"]))
+    instance.model.instant(0.0, instance.record["q"][: len(dq)].copy(), dq, instance.record)
     out = instance.record["o"]
     total = np.array([out["journal"][k] + out["housing"][k] for k in ("fx", "fy")])
     if bearing in ROLLING:
         mass = float(instance.record["p"]["ring"]["mass"])
-        total += mass * dy[[ring.RVX, ring.RVY]]
+        total += mass * dq[[ring.RVX, ring.RVY]]
     assert abs(out["journal"]["fx"]) + abs(out["journal"]["fy"]) > 1.0
     assert total == pytest.approx([0.0, 0.0], abs=1e-9)
 
@@ -148,24 +124,24 @@ def test_angular_momentum_closes_in_the_cageless_bearing(seed: int) -> None:
     """About the housing: journal, ring and balls give and take what the outer race brings in."""
     instance = state_in_contact("simplified_cageless", seed)
     m, n = instance.record, int(instance.record["n"])
-    y, dy = m["y"][:n].copy(), np.zeros(n)
-    instance.model.instant(0.0, y, dy, m)
+    q, dq = m["q"][:n].copy(), np.zeros(n)
+    instance.model.instant(0.0, q, dq, m)
     out, p, d = m["o"]["journal"], m["p"], m["d"]
     balls = ring.NEXT + np.arange(17)
-    orbit, spin = dy[balls + 17], dy[balls + 34]
+    orbit, spin = dq[balls + 17], dq[balls + 34]
     mass, radius, rb, inertia = (float(d[k]) for k in ("mass", "pitch_radius", "ball_radius", "inertia"))
-    ring_part = float(p["ring"]["inertia"]) * dy[ring.RW] + float(p["ring"]["mass"]) * (
-        y[ring.RX] * dy[ring.RVY] - y[ring.RY] * dy[ring.RVX]
+    ring_part = float(p["ring"]["inertia"]) * dq[ring.RW] + float(p["ring"]["mass"]) * (
+        q[ring.RX] * dq[ring.RVY] - q[ring.RY] * dq[ring.RVX]
     )
-    journal_part = out["mz"] + y[seat.JX] * out["fy"] - y[seat.JY] * out["fx"]
+    journal_part = out["mz"] + q[seat.JX] * out["fy"] - q[seat.JY] * out["fx"]
     ball_part = np.sum(mass * radius**2 * orbit + inertia * spin)
-    outer = outer_race_moment(m, y, rb, radius)
-    pushes = np.sum(rubbing(m, y))  # neighbours rub each other's spin; the races would carry the reaction
+    outer = outer_race_moment(m, q, rb, radius)
+    pushes = np.sum(rubbing(m, q))  # neighbours rub each other's spin; the races would carry the reaction
     assert abs(journal_part) > 1e-3
     assert journal_part + ring_part + ball_part - outer - pushes == pytest.approx(0.0, abs=1e-8)
 
 
-def outer_race_moment(m: np.void, y: np.ndarray, rb: float, rm: float) -> float:
+def outer_race_moment(m: np.void, q: np.ndarray, rb: float, rm: float) -> float:
     """Moment of the outer race's friction on the balls about the bearing (N m)."""
     from touchdown.bearings.contact.friction import coefficient
     from touchdown.bearings.contact.laws import power
@@ -173,18 +149,18 @@ def outer_race_moment(m: np.void, y: np.ndarray, rb: float, rm: float) -> float:
     play, stiffness = float(m["p"]["balls"]["play"]), float(m["d"]["race"]["stiffness"])
     mass, moment = float(m["d"]["mass"]), 0.0
     for b in range(17):
-        angle, orbit, spin = y[ring.NEXT + b : ring.NEXT + 51 : 17]
+        angle, orbit, spin = q[ring.NEXT + b : ring.NEXT + 51 : 17]
         depth = (
-            (y[ring.RX] - y[seat.HX]) * math.cos(angle) + (y[ring.RY] - y[seat.HY]) * math.sin(angle) - play
+            (q[ring.RX] - q[seat.HX]) * math.cos(angle) + (q[ring.RY] - q[seat.HY]) * math.sin(angle) - play
         )
         pressed = (stiffness * power(depth, 1.5) if depth > 0.0 else 0.0) + rm * mass * orbit**2
         moment += coefficient(-(rm * orbit + rb * spin), m["d"]["race_friction"]) * pressed * (rm + rb)
     return moment
 
 
-def rubbing(m: np.void, y: np.ndarray) -> list[float]:
+def rubbing(m: np.void, q: np.ndarray) -> list[float]:
     """Moments by which neighbours brake each other's spin (N m); none touch in these states."""
-    angles = y[ring.NEXT : ring.NEXT + 17]
+    angles = q[ring.NEXT : ring.NEXT + 17]
     gaps = np.diff(np.append(angles, angles[0] + 2.0 * math.pi))
     assert np.all(gaps > float(m["d"]["touch_angle"]))
     return [0.0]

@@ -67,7 +67,7 @@ def inside_at_end(scene: Scene) -> np.ndarray:
     record = finished(scene).components["bearing"].instance.record  # type: ignore[attr-defined]
     assert record["o"]["contact"]["peak_force"] > 100.0
     n = int(record["n"])
-    state = record["y"][:n] * record["weight"][:n]
+    state = record["q"][:n] * record["weight"][:n]
     state[[ring.RANGLE, ring.LOSS]] = 0.0
     return state[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, n)]]
 
@@ -101,7 +101,7 @@ def test_steep_friction_sticks_instead_of_chattering() -> None:
     ):
         assert found.value(f"bearing.{name}") == pytest.approx(exact.value(f"bearing.{name}"), rel=within)
     record = found.components["bearing"].instance.record  # type: ignore[attr-defined]
-    orbit, spin = (record["y"][ring.NEXT + k * 17 : ring.NEXT + (k + 1) * 17] for k in (1, 2))
+    orbit, spin = (record["q"][ring.NEXT + k * 17 : ring.NEXT + (k + 1) * 17] for k in (1, 2))
     sliding = np.abs(record["d"]["pitch_radius"] * orbit + record["d"]["ball_radius"] * spin)
     assert np.median(sliding[record["s"]["balls"]["force"][:17] > 10.0]) < 2e-3
 

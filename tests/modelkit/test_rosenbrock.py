@@ -1,4 +1,4 @@
-"""The linearly implicit integrator: its table, its order with a wrong matrix, and the arrow solver."""
+"""The linearly implicit integrator: its table, and its order with a wrong matrix."""
 
 from __future__ import annotations
 
@@ -7,10 +7,7 @@ import math
 import numba
 import numpy as np
 import pytest
-from test_invariants import state_in_contact
 
-from touchdown.bearings import simplified_cageless
-from touchdown.bearings.rolling import ring
 from touchdown.modelkit.integrators import rosenbrock as row
 
 
@@ -79,31 +76,3 @@ def test_a_stiff_rate_does_not_bound_the_step() -> None:
     assert status == row.OK
     assert abs(y[1]) < 1e-4
     assert evaluations < 4000
-
-
-def test_the_arrow_solver_solves_what_finite_differences_give() -> None:
-    instance = state_in_contact("simplified_cageless", 1)
-    m, n = instance.record, int(instance.record["n"])
-    balls = [simplified_cageless.BALLS + b + 17 * k for b in range(17) for k in (1, 2)]
-    index = [ring.RW, *balls]
-    y = m["y"][:n].copy()
-
-    def rates(state: np.ndarray) -> np.ndarray:
-        dy = np.zeros(n)
-        instance.model.instant(0.0, state.copy(), dy, m)
-        return dy[index]
-
-    jacobian = np.zeros((35, 35))
-    for column, i in enumerate(index):
-        shift = np.zeros(n)
-        shift[i] = 1e-4 * max(1.0, abs(y[i]))
-        jacobian[:, column] = (rates(y + shift) - rates(y - shift)) / (2.0 * shift[i])
-    rates(y)
-    j, right = np.zeros(n), np.random.default_rng(0).normal(size=n)
-    simplified_cageless.linearise(y, j, m)
-    found = right.copy()
-    simplified_cageless.solve(j, 2e5, found, m)
-    exact = np.linalg.solve(2e5 * np.eye(35) - jacobian, right[index])
-    np.testing.assert_allclose(found[index], exact, atol=5e-3 * np.max(np.abs(exact)))
-    others = [i for i in range(n) if i not in index]
-    np.testing.assert_allclose(found[others], right[others] / 2e5)

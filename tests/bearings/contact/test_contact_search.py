@@ -12,7 +12,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, slip
 from touchdown.bearings.contact.profile import SAMPLES, RaceProfile, curvature, problem
-from touchdown.bearings.contact.search import SearchReport, on_race, race_place
+from touchdown.bearings.contact.search import Disc, Outline, SearchReport, on_race, race_place
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, as_tuple, layout
 
@@ -54,8 +54,8 @@ class Ring:
 
     def find(self, x: float, y: float) -> Place:
         """Contact with a ball at (x, y)."""
-        race = (self.x, self.y, self.angle, self.radius)
-        return Place(*race_place(0, self.side, (x, y, BALL), race, self.record, self.starts, self.report))
+        ball, race = Disc(x, y, BALL), Outline(self.x, self.y, self.angle, self.radius)
+        return Place(*race_place(0, self.side, ball, race, self.record, self.starts, self.report))
 
     def fresh(self, **changes: Any) -> Ring:
         """The same ring with nothing remembered."""

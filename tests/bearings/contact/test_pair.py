@@ -18,12 +18,12 @@ from touchdown.bearings.contact.friction import (
 )
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, normal_force
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, Press, friction_force, press, slip
-from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.bearings.rolling.race_contacts import (
+from touchdown.bearings.rolling.balls import MOST_BALLS, Total
+from touchdown.bearings.rolling.bodies.race import (
     Balls,
     Contacts,
+    Places,
     Race,
-    Total,
     find_on_circle,
     press_race,
 )
@@ -319,8 +319,8 @@ def place_of(bunch: Bunch, b: int) -> Place:
 def press_all(bunch: Bunch, friction: Any, across: np.ndarray | None = None) -> Total:
     """All balls on a circle, whose surface is askew where `across` says so."""
     count, c = len(bunch.balls.x), bunch.contacts
-    names = ("nx", "ny", "indentation", "second", "across")
-    find_on_circle(bunch.balls, bunch.ring, bunch.race, *(c[name][:count] for name in names))
+    places = Places(*(c[name][:count] for name in Places._fields))
+    find_on_circle(bunch.balls, bunch.ring, bunch.race, places)
     if across is not None:
         c["across"][:count] = across
     return Total(*press_race(bunch.balls, bunch.ring, bunch.race, friction, c))

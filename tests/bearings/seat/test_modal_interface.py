@@ -190,7 +190,7 @@ def all_as_one() -> np.ndarray:
     """Point mass and modes after the step, rows of (x, y, vx, vy), by scipy under the bushing's force."""
     force = Instance(bushing.MODEL)
     force.start(0.0)
-    inside, rates = np.zeros_like(force.record["y"]), np.zeros_like(force.record["y"])
+    inside, rates = np.zeros_like(force.record["q"]), np.zeros_like(force.record["q"])
 
     def rate(_: float, state: np.ndarray) -> np.ndarray:
         bodies, out = state[:-1].reshape(3, 4), np.zeros(13)
@@ -218,7 +218,7 @@ def test_modes_end_the_macro_step_where_the_force_as_it_was_takes_them() -> None
     instance = in_contact()
     instance.step(0.0, STEP)
     exact = all_as_one()
-    load, copy = instance.record["o"]["journal"], instance.record["y"]
+    load, copy = instance.record["o"]["journal"], instance.record["q"]
     assert load["fy"] > 100.0
     end = copy[[seat.JX, seat.JY, seat.JVX, seat.JVY]]
     np.testing.assert_allclose(end[:2], exact.sum(axis=0)[:2], rtol=0.0, atol=1e-14)

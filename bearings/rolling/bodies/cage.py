@@ -11,31 +11,13 @@ from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.pair import INSIDE, Place, press
-from touchdown.bearings.rolling.ball_bodies import (
-    ANGLE,
-    BALLS,
-    SIZE,
-    SPIN,
-    VX,
-    VY,
-    X,
-    Y,
-    ball_motion,
-    note,
-    note_apart,
-    push,
-)
+from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.bodies.side import note, note_apart
+from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
-
-
-@dataclass(frozen=True)
-class Cage:
-    """Cage that turns with the balls."""
-
-    mass: float = real(2.15e-3, "kg", "mass of the cage; as heavy as two balls", minimum=0.0)
 
 
 @dataclass(frozen=True)
@@ -62,22 +44,22 @@ class CageReport:
 
 @kernel
 def first_component(m):
-    """Where the cage's state starts."""
+    """Index at which the cage's state starts."""
     return BALLS + SIZE * m.p.balls.count
 
 
 @kernel
-def place(y, m):
-    """Put the cage at rest in the middle."""
+def place(q, m):
+    """Put the cage in the state q at rest in the housing's middle."""
     i = first_component(m)
-    y[i + X], y[i + Y] = y[seat.HX], y[seat.HY]
-    y[i + VX], y[i + VY] = y[seat.HVX], y[seat.HVY]
-    y[i + ANGLE], y[i + SPIN] = 0.0, 0.0
+    q[i + X], q[i + Y] = q[seat.HX], q[seat.HY]
+    q[i + VX], q[i + VY] = q[seat.HVX], q[seat.HVY]
+    q[i + ANGLE], q[i + SPIN] = 0.0, 0.0
 
 
 @kernel
-def pocket_contacts(y, dy, m):
-    """All balls against their pockets; adds to the balls' accelerations and sets the cage's derivatives.
+def pocket_contacts(q, dq, m):
+    """All balls against their pockets; adds to the balls' accelerations in dq, sets the cage's derivatives.
 
     Returns the heat (W).
     """
@@ -85,40 +67,40 @@ def pocket_contacts(y, dy, m):
     rb, clearance = d.ball_radius, p.cage.clearance
     grip = m.s.step * d.side_grip
     i = first_component(m)
-    vx, vy, spin = y[i + VX], y[i + VY], y[i + SPIN]
-    c, s = math.cos(y[i + ANGLE]), math.sin(y[i + ANGLE])
+    vx, vy, spin = q[i + VX], q[i + VY], q[i + SPIN]
+    c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
     fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
     for b in range(p.balls.count):
         rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
-        ball = ball_motion(y, b, m)
-        ex, ey = ball.x - y[i + X] - rx, ball.y - y[i + Y] - ry
+        ball = ball_motion(q, b, m)
+        ex, ey = ball.x - q[i + X] - rx, ball.y - q[i + Y] - ry
         square = ex * ex + ey * ey
         if square <= clearance * clearance:
             note_apart(m.s.side, b)
             continue
         distance = math.sqrt(square)
         at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
-        pocket = Motion(y[i + X] + rx, y[i + Y] + ry, vx - spin * ry, vy + spin * rx, spin)
+        pocket = Motion(q[i + X] + rx, q[i + Y] + ry, vx - spin * ry, vy + spin * rx, spin)
         push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, grip)
         note(m.s.side, b, push_out, at.indentation, d.cage_contact)
-        push(dy, b, push_out.fx, push_out.fy, push_out.first_moment, m)
+        push(dq, b, push_out.fx, push_out.fy, push_out.first_moment, m)
         fx -= push_out.fx
         fy -= push_out.fy
         moment += push_out.second_moment - rx * push_out.fy + ry * push_out.fx
         loss += push_out.loss
-    dy[i + X], dy[i + Y], dy[i + ANGLE] = vx, vy, spin
-    dy[i + VX] = fx / p.cage.mass
-    dy[i + VY] = fy / p.cage.mass - p.gravity
-    dy[i + SPIN] = moment / d.cage_inertia
+    dq[i + X], dq[i + Y], dq[i + ANGLE] = vx, vy, spin
+    dq[i + VX] = fx / p.cage.mass
+    dq[i + VY] = fy / p.cage.mass - p.gravity
+    dq[i + SPIN] = moment / d.cage_inertia
     return loss
 
 
 @kernel
-def report(y, m):
-    """Outputs of the cage; returns its kinetic and its potential energy (J)."""
+def report(q, m):
+    """Outputs of the cage from the state q; returns its kinetic and its potential energy (J)."""
     i, o, p = first_component(m), m.o.cage, m.p
-    o.x, o.y, o.vx, o.vy, o.omega = y[i + X], y[i + Y], y[i + VX], y[i + VY], y[i + SPIN]
-    m.o.speed.cage = y[i + SPIN] * 0.5 * p.balls.pitch_diameter
+    o.x, o.y, o.vx, o.vy, o.omega = q[i + X], q[i + Y], q[i + VX], q[i + VY], q[i + SPIN]
+    m.o.speed.cage = q[i + SPIN] * 0.5 * p.balls.pitch_diameter
     kinetic = 0.5 * p.cage.mass * (o.vx**2 + o.vy**2) + 0.5 * m.d.cage_inertia * o.omega**2
     return kinetic, p.gravity * p.cage.mass * o.y
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, swing_rate
+from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness
@@ -58,7 +58,7 @@ class RollingDerived:
 
 @kernel
 def state_constants(m):
-    """Outputs that do not change."""
+    """Set the outputs that do not change: the contact's rate (rad/s), stiffness, counts."""
     m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
     given, o = m.d.stiffness, m.o.stiffness
     o.inner, o.outer, o.series = given.inner, given.outer, given.series
@@ -90,5 +90,5 @@ class RollingMemory:
     """Memory between evaluations and steps."""
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
-    ring: ring.RingMemory = group(ring.RingMemory)
+    ring: Touched = group(Touched)
     contact: ContactMemory = group(ContactMemory)

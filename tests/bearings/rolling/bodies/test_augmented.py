@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bearing_states import pressed
 from scipy.integrate import solve_ivp
-from test_detailed import pressed
 
-from touchdown.bearings.rolling.augmented import AugmentedBearing, accelerations
+from touchdown.bearings.rolling.bodies.augmented import AugmentedBearing, accelerations
 
 MODELS = ["detailed_cageless", "detailed_caged"]
 
