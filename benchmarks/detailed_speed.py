@@ -29,7 +29,7 @@ from touchdown.bearings.rolling import ball_bodies
 from touchdown.bearings.rolling.race_contacts import Race, press_race
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 MODULES = {"cageless": detailed_cageless, "caged": detailed_caged}
 IMPACT = 1.5e-3  # s

@@ -22,7 +22,7 @@ import numpy as np
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_bodies import ANGLE, BALLS, SIZE, SPIN, VX, VY, X, Y
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 
 def accelerations(

@@ -11,7 +11,7 @@ from systems import CLEARANCE, LANDING, history, rotor_on
 
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 ROLLING = ["simplified_caged", "simplified_cageless"]
 BEARINGS = ["bushing", *ROLLING]

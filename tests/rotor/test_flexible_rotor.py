@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.modelkit.model import Instance, Model, ModelError
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
 from touchdown.rotor.beams.assembly import assemble, solve, unit_forces
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
