@@ -22,7 +22,7 @@ from touchdown.fmus.description import base_unit, causality
 from touchdown.fmus.recipes import names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot, slots
-from touchdown.rotor.rotor_file import shipped
+from touchdown.rotor.file import shipped
 
 every_fmu = pytest.mark.parametrize("fmu", names())
 

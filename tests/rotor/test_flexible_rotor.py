@@ -12,11 +12,11 @@ from scipy.integrate import solve_ivp
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError
 from touchdown.rotor.beams.assembly import assemble, solve, unit_forces
+from touchdown.rotor.file import load, parse, shipped
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.motion import ANGLE, LOSS, SPIN, energies
 from touchdown.rotor.modal.stresses import end_nodes, recovery, stress_rows
-from touchdown.rotor.rotor_file import load, parse, shipped
 
 SHAFT = load(shipped()["rotor_I"])
 MODEL = flexible_rotor(SHAFT, "rotor_I")

@@ -12,9 +12,9 @@ from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import load as load_rotor
+from touchdown.rotor.file import shipped
 from touchdown.rotor.modal.data import prepare
-from touchdown.rotor.rotor_file import load as load_rotor
-from touchdown.rotor.rotor_file import shipped
 
 SCENES = {"rotor1-9000": "rotor_I", "rotor2-case1": "rotor_II"}
 ENDS = "AB"
