@@ -34,7 +34,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
         *("amb", "housing", "catalogue", "rolling", "contact", "seat"),
     ),
-    "rotor": ("portrait", "flexible", "rigid", "file", "statics", "modal", "beams", "drag"),
+    "rotor": ("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),
     "modelkit": ("instance", "body", "model", "integrators", "kernel"),
 }
 REPORTED = {"touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"}
