@@ -29,7 +29,7 @@ from touchdown.bearings.rolling.bodies.race import Race, press_race
 from touchdown.bearings.rolling.bodies.state import ball_motion, balls_of
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 MODULES = {"cageless": detailed_cageless, "caged": detailed_caged}
 IMPACT = 1.5e-3  # s

@@ -17,15 +17,14 @@ from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.fmus.slave import ModelSlave
 from touchdown.fmus.sources import ROOT, content_hash
 from touchdown.modelkit.model import Model
+from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor
-from touchdown.rotor.rotor_file import parse, read, shipped
 
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
-from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.fmus.slave import ModelSlave
+from touchdown.rotor.file import parse
 from touchdown.rotor.flexible import flexible_rotor
-from touchdown.rotor.rotor_file import parse
 
 TEXT = {text!r}
 
@@ -82,7 +81,7 @@ def _declared(name: str) -> Model:
 
 
 def _from_rotor(path: Path) -> Recipe:
-    text = read(path)
+    text = text_of(path)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     own = hashlib.sha256(text.encode()).hexdigest()[:16]
     model = flexible_rotor(parse(text, str(path)), name, own)

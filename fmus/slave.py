@@ -23,7 +23,8 @@ from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
 from touchdown.fmus.description import describe, guid
-from touchdown.modelkit.model import Instance, Model, ModelError
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
 
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step

@@ -34,11 +34,12 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
         *("amb", "housing", "catalogue", "rolling", "contact", "seat"),
     ),
-    "rotor": ("portrait", "flexible", "rigid", "rotor_file", "statics", "modal", "beams", "drag"),
-    "modelkit": ("model", "body", "integrators", "kernel"),
+    "rotor": ("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),
+    "modelkit": ("instance", "body", "model", "integrators", "kernel"),
 }
 REPORTED = {"touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"}
 """What describes rotor files may read them; nothing of it is co-simulation."""
+STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 MOST = 12  # entries of a folder
 
 
@@ -129,9 +130,9 @@ def test_only_the_twin_steps_models_in_the_master() -> None:
     users = set()
     for name, path in modules("master").items():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and node.module == "touchdown.modelkit.model":
+            if isinstance(node, ast.ImportFrom) and node.module in STEPPED:
                 # errors of a model's may be caught anywhere
                 users |= {name for one in node.names if one.name != "ModelError"}
             elif isinstance(node, ast.Import):
-                users |= {name for one in node.names if one.name == "touchdown.modelkit.model"}
+                users |= {name for one in node.names if one.name in STEPPED}
     assert users == {"touchdown.master.components.twin"}

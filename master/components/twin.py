@@ -12,7 +12,8 @@ import numpy as np
 from touchdown.fmus.description import causality
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Component, Variable
-from touchdown.modelkit.model import Instance, Model, ModelError, Slot
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError, Slot
 
 
 def _variable(slot: Slot) -> Variable:

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Integrators compiled into the models that step with them, one method each, and what controls the step."""

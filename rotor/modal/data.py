@@ -1,7 +1,7 @@
 """What the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
 
 Prepared once from the shaft and the parameters, outside the kernels. Modal coordinates are
-mass-normalised and the same in both planes; the polar matrix couples the planes (`rotor.modal.motion`).
+mass-normalised and the same in both planes; the polar matrix couples the planes (`rotor.motion`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from touchdown.modelkit.ports import MODES
-from touchdown.modelkit.variables import array, integer, real
+from touchdown.modelkit.variables import array, group, integer, real
 from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
 from touchdown.rotor.modal.modes import RIGID, Basis, basis
 from touchdown.rotor.modal.stresses import recovery
@@ -23,40 +23,61 @@ NEGLIGIBLE = 1e-9  # of a station's inv_m: a mode that has a node there
 
 
 @dataclass(frozen=True)
+class Gyroscopic:
+    """The modal polar matrix G = Q diag(principal) Q^T, polar inertia per length (1)."""
+
+    polar: np.ndarray = array(MOST_MODES, MOST_MODES)  # G (n, n)
+    turn: np.ndarray = array(MOST_MODES, MOST_MODES)  # Q^T (n, n)
+    principal: np.ndarray = array(MOST_MODES)  # (n,)
+
+
+@dataclass(frozen=True)
+class ModalUnbalance:
+    """Unbalance of each mode in the rotor's frame (n,), kg^0.5 m."""
+
+    present: int = integer(0, "whether there is any unbalance")
+    x: np.ndarray = array(MOST_MODES)
+    y: np.ndarray = array(MOST_MODES)
+
+
+@dataclass(frozen=True)
+class StressRows:
+    """Stresses at the ends of the elements, R of them in use."""
+
+    ends: int = integer(0, "of the elements, two each")
+    node: np.ndarray = array(MOST_ENDS)  # (R,), counted from 1
+    bending: np.ndarray = array(MOST_ENDS, MOST_MODES)  # (R, n), Pa per modal coordinate
+    shear: np.ndarray = array(MOST_ENDS, MOST_MODES)  # (R, n)
+    bending_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # (R, S), Pa/N, of the modes left out
+    shear_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # (R, S)
+
+
+@dataclass(frozen=True)
 class Derived:
-    """Constants of the kernels; rows and columns in use come first."""
+    """Constants of the kernels: n modes, S stations, N nodes; rows and columns in use come first."""
 
     modes: int = integer(0, "per plane, the rigid ones and residual vectors included")
     stations: int = integer(0, "places that take a load")
     sensors: int = integer(0, "places that only tell their motion")
     nodes: int = integer(0, "of the finite elements")
-    ends: int = integer(0, "of the elements, two each")
-    unbalanced: int = integer(0, "whether there is any unbalance")
     mass: float = real(0.0, "kg", "of the rotor")
     inertia: float = real(0.0, "kg.m2", "polar")
     damping_ratio: float = real(0.0, "1", "of the elastic modes")
-    inv_m: np.ndarray = array(MOST_STATIONS)
-    static_fy: np.ndarray = array(MOST_STATIONS)  # N, holds the rotor at rest at the start
-    sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start
-    stiffness: np.ndarray = array(MOST_MODES)  # omega^2
-    damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega
-    weight: np.ndarray = array(MOST_MODES)  # modal force of gravity, per m/s2, upwards
-    shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)
-    sensor_shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)
-    slots: np.ndarray = array(MOST_STATIONS)  # modes told of at a station
-    slot: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # of a mode; -1: none
-    lumped: np.ndarray = array(MOST_STATIONS)  # whether the last slot holds more than one mode
-    polar: np.ndarray = array(MOST_MODES, MOST_MODES)  # modal polar matrix, Q diag(principal) Q^T
-    turn: np.ndarray = array(MOST_MODES, MOST_MODES)  # Q^T
-    principal: np.ndarray = array(MOST_MODES)
-    unbalance_x: np.ndarray = array(MOST_MODES)  # modal unbalance in the rotor's frame, kg^0.5 m
-    unbalance_y: np.ndarray = array(MOST_MODES)
-    position: np.ndarray = array(MOST_NODES)  # m
-    end_node: np.ndarray = array(MOST_ENDS)  # counted from 0
-    bending: np.ndarray = array(MOST_ENDS, MOST_MODES)  # Pa per modal coordinate
-    shear: np.ndarray = array(MOST_ENDS, MOST_MODES)
-    bending_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # Pa/N, of the modes left out
-    shear_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)
+    position: np.ndarray = array(MOST_NODES)  # of the nodes (N,), m
+    stiffness: np.ndarray = array(MOST_MODES)  # omega^2 (n,), 1/s2
+    damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega (n,), 1/s
+    weight: np.ndarray = array(MOST_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
+    sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5
+    shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the stations (S, n), 1/kg^0.5
+    sensor_shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the sensors
+    inv_m: np.ndarray = array(MOST_STATIONS)  # (S,), 1/kg
+    static_fy: np.ndarray = array(MOST_STATIONS)  # (S,), N, holds the rotor at rest at the start
+    slots: np.ndarray = array(MOST_STATIONS)  # modes told of at a station (S,)
+    slot: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # of a mode there (S, n), from 0; -1: none
+    lumped: np.ndarray = array(MOST_STATIONS)  # whether the last slot holds more than one mode (S,)
+    gyroscopic: Gyroscopic = group(Gyroscopic)
+    unbalance: ModalUnbalance = group(ModalUnbalance)
+    stress: StressRows = group(StressRows)
 
 
 def seats(shaft: Shaft) -> list[int]:
@@ -66,7 +87,7 @@ def seats(shaft: Shaft) -> list[int]:
 
 @lru_cache(maxsize=16)
 def chosen_basis(shaft: Shaft, modes: int, residual: int) -> Basis:
-    """Free-free modes, with residual vectors at the seats where asked for."""
+    """The lowest `modes` free-free modes (0: all), with residual vectors at the seats where asked for."""
     return basis(shaft, modes, tuple(dict.fromkeys(seats(shaft))) if residual else ())
 
 
@@ -74,52 +95,72 @@ def chosen_basis(shaft: Shaft, modes: int, residual: int) -> Basis:
 def prepare(
     shaft: Shaft, modes: int, residual: int, damping_ratio: float, gravity: float, acceleration: int
 ) -> Derived:
-    """All constants of a rotor; `acceleration`: stresses by mode acceleration."""
-    found = chosen_basis(shaft, modes, residual)
-    n = len(found.omega)
-    shape = found.deflections([s.node for s in shaft.stations])
-    sensed = found.deflections([s.node for s in shaft.sensors])
-    weight = np.zeros(n)
-    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
+    """All constants of a rotor with the lowest `modes` modes (0: all), residual vectors where asked for.
+
+    damping_ratio is that of the elastic modes, gravity in m/s2; `acceleration`: stresses by mode
+    acceleration. Raises ModelError where there are not so many modes.
+    """
+    kept = chosen_basis(shaft, modes, residual)
+    shape = kept.deflections([s.node for s in shaft.stations])
+    stiffness = kept.omega**2
     static = static_forces(shaft, gravity)
-    slots, slot = _slots(shape)
-    principal, turned = np.linalg.eigh(found.gyroscopic)
-    stiffness = found.omega**2
-    sag = np.zeros(n)
+    sag = np.zeros(len(stiffness))
     sag[RIGID:] = (shape[:, RIGID:].T @ static) / stiffness[RIGID:]
-    unbalance = np.zeros(n, complex)
-    for u in shaft.unbalances:
-        unbalance += u.moment * np.exp(1j * u.angle) * found.shapes[2 * (u.node - 1)]
-    stresses = recovery(shaft, found, [s.node for s in shaft.stations])
-    per_load = 1.0 if acceleration else 0.0
+    weight = np.zeros(len(stiffness))
+    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
+    slots, slot = _slots(shape)
     return Derived(
-        modes=n,
+        modes=len(stiffness),
         stations=len(shaft.stations),
         sensors=len(shaft.sensors),
         nodes=shaft.nodes,
-        ends=len(stresses.node),
-        unbalanced=int(np.any(unbalance != 0.0)),
         mass=shaft.mass,
         inertia=shaft.polar_inertia,
         damping_ratio=damping_ratio,
+        position=_room(shaft.positions(), MOST_NODES),
+        stiffness=_room(stiffness, MOST_MODES),
+        damping=_room(2.0 * damping_ratio * kept.omega, MOST_MODES),
+        weight=_room(weight, MOST_MODES),
+        sag=_room(sag, MOST_MODES),
+        shape=_room(shape, MOST_STATIONS, MOST_MODES),
+        sensor_shape=_room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
         inv_m=_room(np.sum(shape**2, axis=1), MOST_STATIONS),
         static_fy=_room(static, MOST_STATIONS),
-        sag=_room(sag, MOST_MODES),
-        stiffness=_room(stiffness, MOST_MODES),
-        damping=_room(2.0 * damping_ratio * found.omega, MOST_MODES),
-        weight=_room(weight, MOST_MODES),
-        shape=_room(shape, MOST_STATIONS, MOST_MODES),
-        sensor_shape=_room(sensed, MOST_STATIONS, MOST_MODES),
         slots=_room(slots, MOST_STATIONS),
         slot=_room(slot, MOST_STATIONS, MOST_MODES),
         lumped=_room(np.sum(slot >= 0, axis=1) > slots, MOST_STATIONS),
-        polar=_room(found.gyroscopic, MOST_MODES, MOST_MODES),
-        turn=_room(turned.T, MOST_MODES, MOST_MODES),
+        gyroscopic=_gyroscopic(kept),
+        unbalance=_unbalance(shaft, kept),
+        stress=_stress_rows(shaft, kept, 1.0 if acceleration else 0.0),
+    )
+
+
+def _gyroscopic(kept: Basis) -> Gyroscopic:
+    principal, axes = np.linalg.eigh(kept.gyroscopic)
+    return Gyroscopic(
+        polar=_room(kept.gyroscopic, MOST_MODES, MOST_MODES),
+        turn=_room(axes.T, MOST_MODES, MOST_MODES),
         principal=_room(principal, MOST_MODES),
-        unbalance_x=_room(np.real(unbalance), MOST_MODES),
-        unbalance_y=_room(np.imag(unbalance), MOST_MODES),
-        position=_room(shaft.positions(), MOST_NODES),
-        end_node=_room(stresses.node - 1, MOST_ENDS),
+    )
+
+
+def _unbalance(shaft: Shaft, kept: Basis) -> ModalUnbalance:
+    unbalance = np.zeros(len(kept.omega), complex)
+    for u in shaft.unbalances:
+        unbalance += u.moment * np.exp(1j * u.angle) * kept.shapes[2 * (u.node - 1)]
+    return ModalUnbalance(
+        present=int(np.any(unbalance != 0.0)),
+        x=_room(np.real(unbalance), MOST_MODES),
+        y=_room(np.imag(unbalance), MOST_MODES),
+    )
+
+
+def _stress_rows(shaft: Shaft, kept: Basis, per_load: float) -> StressRows:
+    """`per_load`: 1 where loads add what the modes left out would, else 0."""
+    stresses = recovery(shaft, kept, [s.node for s in shaft.stations])
+    return StressRows(
+        ends=len(stresses.node),
+        node=_room(stresses.node, MOST_ENDS),
         bending=_room(stresses.bending, MOST_ENDS, MOST_MODES),
         shear=_room(stresses.shear, MOST_ENDS, MOST_MODES),
         bending_load=_room(per_load * stresses.bending_load, MOST_ENDS, MOST_STATIONS),
@@ -142,21 +183,22 @@ def static_forces(shaft: Shaft, gravity: float) -> np.ndarray:
 
 
 def _slots(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How many elastic modes each station tells of, and which place (from 0) each mode takes there.
+    """How many elastic modes each station tells of (S,), and which slot each mode takes there (S, n).
 
-    What is more than `MODES` is lumped in the last place; modes without a share there have none (-1).
+    shape: (S, n). Slots count from 0; what is more than `MODES` is lumped in the last one, and modes
+    without a share there have none (-1).
     """
     gain = shape**2
     slot = np.full(shape.shape, -1.0)
     for row, mine in enumerate(gain):
         told = [k for k in range(RIGID, len(mine)) if mine[k] > NEGLIGIBLE * np.sum(mine)]
-        for place, k in enumerate(told):
-            slot[row, k] = min(place, MODES - 1)
+        for number, k in enumerate(told):
+            slot[row, k] = min(number, MODES - 1)
     return slot.max(axis=1, initial=-1.0) + 1.0, slot
 
 
 def _room(values: np.ndarray, *size: int) -> np.ndarray:
     """`values` at the beginning of a zero array of the given size."""
-    found = np.zeros(size)
-    found[tuple(slice(n) for n in values.shape)] = values
-    return found
+    room = np.zeros(size)
+    room[tuple(slice(n) for n in values.shape)] = values
+    return room

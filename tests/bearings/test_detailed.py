@@ -19,7 +19,7 @@ from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 MODELS = {"detailed_cageless": detailed_cageless.MODEL, "detailed_caged": detailed_caged.MODEL}
 SCENES = {name: f"disk-{name.removeprefix('detailed_')}-detailed" for name in MODELS}

@@ -20,8 +20,9 @@ from slave_driver import Slave
 from touchdown.fmus.build import build
 from touchdown.fmus.description import base_unit, causality
 from touchdown.fmus.recipes import names, recipe
-from touchdown.modelkit.model import Instance, Model, ModelError, Slot, slots
-from touchdown.rotor.rotor_file import shipped
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError, Slot, slots
+from touchdown.rotor.file import shipped
 
 every_fmu = pytest.mark.parametrize("fmu", names())
 

@@ -7,7 +7,8 @@ import pytest
 from slave_driver import TOUCHING
 
 from touchdown.fmus.recipes import names, recipe
-from touchdown.modelkit.model import Instance, Model, ModelError, slots
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError, slots
 
 STEP = 2e-5  # s
 every_model = pytest.mark.parametrize("name", [name for name in names() if name != "rotor_II"])

@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.modelkit.model import Instance, Model, ModelError
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
 from touchdown.rotor.beams.assembly import assemble, solve, unit_forces
+from touchdown.rotor.file import load, parse, shipped
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.motion import ANGLE, LOSS, SPIN, energies
 from touchdown.rotor.modal.stresses import end_nodes, recovery, stress_rows
-from touchdown.rotor.rotor_file import load, parse, shipped
+from touchdown.rotor.motion.equations import energies
+from touchdown.rotor.motion.state import ANGLE, LOSS, SPIN
 
 SHAFT = load(shipped()["rotor_I"])
 MODEL = flexible_rotor(SHAFT, "rotor_I")
@@ -60,17 +62,17 @@ def run(rotor: Instance, steps: int, step: float) -> None:
 def coordinates(rotor: Instance) -> tuple[np.ndarray, np.ndarray]:
     """Modal coordinates and velocities, x + i y."""
     n = int(rotor.record["d"]["modes"])
-    px, py, vx, vy = np.array(rotor.record["y"][: 4 * n]).reshape(4, n)
+    px, py, vx, vy = np.array(rotor.record["q"][: 4 * n]).reshape(4, n)
     return px + 1j * py, vx + 1j * vy
 
 
 def behind(rotor: Instance, index: int) -> float:
     """Angle, spin or loss."""
-    return float(rotor.record["y"][4 * int(rotor.record["d"]["modes"]) + index])
+    return float(rotor.record["q"][4 * int(rotor.record["d"]["modes"]) + index])
 
 
 def derivative(rotor: Instance, t: float, state: np.ndarray) -> np.ndarray:
-    whole = np.zeros(len(rotor.record["y"]))
+    whole = np.zeros(len(rotor.record["q"]))
     whole[: len(state)] = state
     found = np.zeros_like(whole)
     rotor.model.rhs(t, whole, found, rotor.record)  # type: ignore[misc]
@@ -80,7 +82,7 @@ def derivative(rotor: Instance, t: float, state: np.ndarray) -> np.ndarray:
 def integrated(rotor: Instance, step: float) -> np.ndarray:
     """State after a macro step by an integrator that knows nothing of modes."""
     rotor.record["half"] = 0.5 * step
-    state = np.array(rotor.record["y"][: int(rotor.record["n"])])
+    state = np.array(rotor.record["q"][: int(rotor.record["n"])])
     found = solve_ivp(
         lambda t, y: derivative(rotor, t, y), (0.0, step), state, "DOP853", rtol=1e-12, atol=1e-16
     )
@@ -96,7 +98,7 @@ def deviations(step: float, micro_steps: list[float], **parameters: float) -> li
         rotor = started(PULLED, micro_step=micro_step, **setting)
         rotor.step(0.0, step)
         count = 2 * int(rotor.record["d"]["modes"])
-        found.append(float(np.max(np.abs(rotor.record["y"][:count] - exact[:count]))))
+        found.append(float(np.max(np.abs(rotor.record["q"][:count] - exact[:count]))))
     return found
 
 
@@ -144,7 +146,7 @@ def test_a_tilting_rigid_rotor_precesses() -> None:
     """Tilt rate w turns at Ip/Id Omega: slope = w0 (exp(i k t) - 1) / (i k), seats move by their arms."""
     rotor = started(modes=2, residual=0, unbalance_scale=0.0, gravity=0.0, speed=FAST)
     rate, span, steps = 20.0, 1e-2, 100
-    rotor.record["y"][2 * 2 + 1] = rate * math.sqrt(SHAFT.diametral_inertia)
+    rotor.record["q"][2 * 2 + 1] = rate * math.sqrt(SHAFT.diametral_inertia)
     run(rotor, steps, span / steps)
     turn = SHAFT.polar_inertia / SHAFT.diametral_inertia * FAST
     assert turn * span > 1.0
@@ -241,8 +243,8 @@ def ledger(
     """(what the energy lacks at the end, work in and out at the stations), in J, over 2 ms of pulling."""
     rotor = started(speed=FAST, vx=0.1, vy=-0.2, **parameters)
     if not gyroscopic:
-        rotor.record["d"]["polar"] = 0.0
-        rotor.record["d"]["principal"] = 0.0
+        rotor.record["d"]["gyroscopic"]["polar"] = 0.0
+        rotor.record["d"]["gyroscopic"]["principal"] = 0.0
     before, crossed, step = total(rotor), 0.0, 2e-5
     for k in range(100):
         give(rotor, PULLED, math.cos(2e3 * k * step))
@@ -289,7 +291,7 @@ def test_heat_and_work_are_those_of_the_equations() -> None:
         rotor = started(PULLED, micro_step=length, **setting)
         rotor.step(0.0, 1e-4)
         first = 4 * int(rotor.record["d"]["modes"]) + LOSS
-        found = rotor.record["y"][first : len(exact)]
+        found = rotor.record["q"][first : len(exact)]
         assert len(found) == 1 + len(NAMES)
         assert np.min(np.abs(exact[first:])) > 1e-5
         errors.append(np.max(np.abs(found / exact[first:] - 1.0)))
@@ -331,11 +333,11 @@ def test_unbalance_makes_little_energy(unbalance: float, largest: float) -> None
 def test_the_equations_keep_the_energy() -> None:
     """The derivative itself, a hundred times the unbalance and moments; i alpha G p, aside."""
     rotor = started(PULLED, speed=FAST, unbalance_scale=100.0, vx=0.1, vy=-0.2)
-    rotor.record["d"]["polar"] = 0.0
+    rotor.record["d"]["gyroscopic"]["polar"] = 0.0
     before, end = total(rotor), integrated(rotor, 1e-3)
-    rotor.record["y"][: len(end)] = end
+    rotor.record["q"][: len(end)] = end
     works = end[4 * int(rotor.record["d"]["modes"]) + 3 :]
-    after = sum(energies(rotor.record["y"], rotor.record)) + behind(rotor, LOSS) - np.sum(works)
+    after = sum(energies(rotor.record["q"], rotor.record)) + behind(rotor, LOSS) - np.sum(works)
     assert abs(after - before) < 1e-8 * np.sum(np.abs(works))
 
 
@@ -376,12 +378,12 @@ def test_a_mode_load_leaves_the_angular_momentum() -> None:
     for rotor in (plain, loaded):
         rotor.step(0.0, 4e-5)
     d, kick = plain.record["d"], coordinates(loaded)[1] - coordinates(plain)[1]
-    moment = 100.0 * (d["unbalance_x"] + 1j * d["unbalance_y"])[: len(kick)]
+    moment = 100.0 * (d["unbalance"]["x"] + 1j * d["unbalance"]["y"])[: len(kick)]
     given = np.sum(np.real(kick * np.conj(1j * moment * np.exp(1j * behind(plain, ANGLE)))))
     change = behind(loaded, SPIN) - behind(plain, SPIN)
     assert abs(change) > 1e-4
     assert SHAFT.polar_inertia * change == pytest.approx(-given, rel=1e-9)
-    gain = sum(energies(loaded.record["y"], loaded.record)) - sum(energies(plain.record["y"], plain.record))
+    gain = sum(energies(loaded.record["q"], loaded.record)) - sum(energies(plain.record["q"], plain.record))
     work = loaded.record["o"]["station"][1]["work"] - plain.record["o"]["station"][1]["work"]
     assert gain == pytest.approx(float(work), rel=1e-9)
 
@@ -395,9 +397,9 @@ def test_gravity_pulls_the_translation_only() -> None:
     d = rotor.record["d"]
     assert np.flatnonzero(d["weight"]).tolist() == [0]
     assert d["weight"][0] == pytest.approx(math.sqrt(SHAFT.mass), rel=1e-15)
-    assert not d["polar"][0].any()
-    assert not d["polar"][:, 0].any()
-    assert np.count_nonzero(d["polar"]) > 100
+    assert not d["gyroscopic"]["polar"][0].any()
+    assert not d["gyroscopic"]["polar"][:, 0].any()
+    assert np.count_nonzero(d["gyroscopic"]["polar"]) > 100
 
 
 def test_a_rotor_that_nothing_holds_falls_straight_and_unbent() -> None:
@@ -557,9 +559,10 @@ def test_peaks_are_held_and_one_instant_is_kept(node: int) -> None:
     rotor.record["p"]["residual"] = 0  # so that loads at the seats have stresses of their own
     rotor.start(0.0)
     d, o = rotor.record["d"], rotor.record["o"]
-    n, ends = int(d["modes"]), int(d["ends"])
+    stress = d["stress"]
+    n, ends = int(d["modes"]), int(stress["ends"])
     step, history = 2e-5, []
-    assert np.array_equal(end_nodes(SHAFT) - 1, d["end_node"][:ends])
+    assert np.array_equal(end_nodes(SHAFT), stress["node"][:ends])
     for k in range(100):
         give(rotor, PULLED if k < 20 else {}, math.sin(math.pi * k / 20.0))
         rotor.step(k * step, step)
@@ -568,7 +571,7 @@ def test_peaks_are_held_and_one_instant_is_kept(node: int) -> None:
         last = force[0] + 0.5 * step * force[1]
         p = coordinates(rotor)[0]
         history.append([
-            d[kind][:ends, :n] @ p + d[f"{kind}_load"][:ends, : len(NAMES)] @ last
+            stress[kind][:ends, :n] @ p + stress[f"{kind}_load"][:ends, : len(NAMES)] @ last
             for kind in ("bending", "shear")
         ])  # fmt: skip
         assert o["stress"]["bending"] == pytest.approx(np.max(np.abs(history[-1][0])), rel=1e-12)

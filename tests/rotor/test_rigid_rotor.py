@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 from touchdown.rotor.rigid import MODEL
 
 

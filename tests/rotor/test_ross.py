@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from touchdown.rotor.beams.shaft import Element, Shaft, cowper
+from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.rotor_file import load, shipped
 
 ross = pytest.importorskip("ross")
 

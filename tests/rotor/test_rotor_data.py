@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.rotor_file import load, shipped
 from touchdown.rotor.statics import at_rest
 
 

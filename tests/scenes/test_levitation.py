@@ -12,9 +12,9 @@ from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import load as load_rotor
+from touchdown.rotor.file import shipped
 from touchdown.rotor.modal.data import prepare
-from touchdown.rotor.rotor_file import load as load_rotor
-from touchdown.rotor.rotor_file import shipped
 
 SCENES = {"rotor1-9000": "rotor_I", "rotor2-case1": "rotor_II"}
 ENDS = "AB"
@@ -40,7 +40,7 @@ def full_speed(name: str) -> float:
 def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarray:
     """Rate of change of (p, p', force at A, force at B), p = p_x + i p_y the modal coordinates.
 
-    The equations of `rotor.modal.motion` with the law of `bearings.amb`, about the rotor at rest.
+    The equations of `rotor.motion.equations` with the law of `bearings.amb`, about the rotor at rest.
     """
     rotor, scene = shaft(name), load(name)
     d = prepare(rotor, modes, residual, rotor.damping_ratio, GRAVITY, 0)
@@ -49,7 +49,7 @@ def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarra
     a = np.zeros((2 * n + len(ENDS),) * 2, complex)
     a[p, v] = np.eye(n)
     a[v, p] = -np.diag(d.stiffness[:n])
-    a[v, v] = 1j * speed * d.polar[:n, :n] - np.diag(d.damping[:n])
+    a[v, v] = 1j * speed * d.gyroscopic.polar[:n, :n] - np.diag(d.damping[:n])
     for i, end in enumerate(ENDS, 2 * n):
         control = scene.components[f"amb_{end}"].set
         assert control["sensed"] == 1

@@ -15,7 +15,7 @@ from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
-from touchdown.rotor.rotor_file import shipped
+from touchdown.rotor.file import shipped
 
 SMALL = """
 title = "Small shaft"

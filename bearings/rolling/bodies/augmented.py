@@ -23,7 +23,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 
 def accelerations(

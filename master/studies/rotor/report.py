@@ -12,9 +12,9 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import find, shipped
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait, portrait
-from touchdown.rotor.rotor_file import find, shipped
 from touchdown.rotor.statics import Rest
 
 RPM = 60.0 / (2.0 * math.pi)

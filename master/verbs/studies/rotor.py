@@ -32,7 +32,7 @@ def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.units import to_si
     from touchdown.master.studies.rotor.report import report
-    from touchdown.rotor.rotor_file import shipped
+    from touchdown.rotor.file import shipped
 
     speed = to_si(options.speed, "rad/s", "--speed")
     modes = to_si(options.modes, "1", "--modes")

@@ -13,7 +13,7 @@ from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit import oscillator
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 JOURNALS = ["rotor.A.x", "rotor.A.y", "rotor.B.x", "rotor.B.y"]
 

@@ -9,7 +9,7 @@ import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
 from touchdown.bearings import amb, bushing
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 
 def in_contact(order: int) -> Instance:

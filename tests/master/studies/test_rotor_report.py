@@ -13,8 +13,8 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.studies.rotor.figure import campbell, modes, rest
 from touchdown.master.studies.rotor.report import NO_REST, report, table
+from touchdown.rotor.file import find, shipped
 from touchdown.rotor.portrait import Portrait, portrait
-from touchdown.rotor.rotor_file import find, shipped
 
 SPEED = math.pi * 600.0  # rad/s, 18000 rpm
 PLAIN = """

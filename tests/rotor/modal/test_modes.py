@@ -11,9 +11,9 @@ import pytest
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.assembly import assemble, unit_forces
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis, flexibility, residual_flexibility
-from touchdown.rotor.rotor_file import load, shipped
 
 
 @pytest.fixture(params=sorted(shipped()), scope="module")

@@ -11,9 +11,9 @@ import pytest
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.assembly import assemble, unit_forces
 from touchdown.rotor.beams.shaft import Element, Shaft
+from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.stresses import bending_per_moment, recovery, shear_per_force, stress_rows
-from touchdown.rotor.rotor_file import load, shipped
 from touchdown.rotor.statics import at_rest
 
 ELEMENT = Element(length=0.1, outer_diameter=0.06, modulus=207e9, density=7830.0, poisson=0.3)

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Unbalance
-from touchdown.rotor.rotor_file import MOST_NODES, RotorFileError, load
+from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.file import RotorFileError, load
 
 GOOD = """
 title = "A rotor"
