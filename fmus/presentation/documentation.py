@@ -9,11 +9,12 @@ from html import escape
 from inspect import cleandoc
 from pathlib import Path
 
-from touchdown.fmus.description import VERSION, causality
+from touchdown.fmus.description import causality
 from touchdown.fmus.host import NEEDED
 from touchdown.fmus.link import Interpreter
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import ROOT
+from touchdown.fmus.version import VERSION
 from touchdown.modelkit.model import Slot, slots
 
 SOURCE = "O. Halminen, Multibody models for examination of touchdown bearing systems (LUT, 2016)"
