@@ -1,10 +1,10 @@
 """What other co-simulation tools cost on the same FMUs, and how far off they are.
 
-The drops of tests/peers at a macro step of 5 us: by this project's master with its default scheme, and by
-libcosim, ecos, fmpy's SSP runner and cofmupy, which step all FMUs in parallel with loads predicted one step
-ahead (scheme jacobi-lead). Cost is what is spent beyond the kernels, per FMU that is stepped and macro
-step: processor time of all threads, and time on the wall. Errors are those against the same drop at a
-macro step of 1 us. The tools are installed from PyPI; ecos needs Debian's libtbb12.
+The drops of tests/master/interop/peers at a macro step of 5 us: by this project's master with its default
+scheme, and by libcosim, ecos, fmpy's SSP runner and cofmupy, which step all FMUs in parallel with loads
+predicted one step ahead (scheme jacobi-lead). Cost is what is spent beyond the kernels, per FMU that is
+stepped and macro step: processor time of all threads, and time on the wall. Errors are those against the
+same drop at a macro step of 1 us. The tools are installed from PyPI; ecos needs Debian's libtbb12.
 
     python benchmarks/peers.py [--repeat 7] [--falls disk,"rotor I"]
 """

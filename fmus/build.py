@@ -12,9 +12,9 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
-from touchdown.fmus.documentation import page
-from touchdown.fmus.icon import icon
 from touchdown.fmus.link import Interpreter, linked
+from touchdown.fmus.presentation.documentation import page
+from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import write_host, write_package, write_script
 from touchdown.modelkit.kernel import user_cache

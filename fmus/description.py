@@ -8,11 +8,9 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from xml.etree.ElementTree import Element, SubElement, tostring
 
+from touchdown.fmus.version import RELEASED, VERSION
 from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.model import Model, Slot, slots
-
-VERSION = "0.1.0"
-RELEASED = "2026-11-21T00:00:00Z"  # not the time of the build: equal sources give equal FMUs
 
 _SYMBOLS = {
     "m": {"m": 1},

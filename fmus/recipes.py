@@ -14,8 +14,9 @@ from importlib import import_module
 from pathlib import Path
 
 from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
-from touchdown.fmus.sources import ROOT, content_hash
+from touchdown.fmus.sources import content_hash
 from touchdown.modelkit.model import Model
 from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor
@@ -53,8 +54,7 @@ class Recipe:
 
 def names() -> list[str]:
     """FMUs of the project: its scripts, and the rotors that come with it."""
-    scripts = (ROOT / "fmus" / "scripts").glob("*.py")
-    return sorted([path.stem for path in scripts if path.stem != "__init__"] + list(shipped()))
+    return sorted([*scripts(), *shipped()])
 
 
 def recipe(name: str) -> Recipe:
@@ -66,10 +66,9 @@ def recipe(name: str) -> Recipe:
         return _from_rotor(Path(name))
     if name in shipped():
         return _from_rotor(shipped()[name])
-    if name not in names():
+    if name not in scripts():
         raise LookupError(f"there is no FMU called {name}")
-    script = (ROOT / "fmus" / "scripts" / f"{name}.py").read_text(encoding="utf-8")
-    return Recipe(name, script, content_hash(), _declared(name))
+    return Recipe(name, scripts()[name].read_text(encoding="utf-8"), content_hash(), _declared(name))
 
 
 def _declared(name: str) -> Model:

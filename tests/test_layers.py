@@ -22,7 +22,8 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",
-        *("fmpy", "h5py", "matplotlib", "tqdm", "numpy", "scipy", "fmu_manipulation_toolbox"),
+        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
+        *("numpy", "scipy"),
     },
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it

@@ -49,15 +49,20 @@ def shipped() -> dict[str, Path]:
 
 def load(name: str) -> Scene:
     """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    path = locate(name)
+    return parse(tables(path), path.stem, path.parent)
+
+
+def locate(name: str) -> Path:
+    """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
     if name.endswith(".toml"):
-        path = Path(name)
-    elif name in shipped():
-        path = shipped()[name]
-    else:
+        return Path(name)
+    try:
+        return shipped()[name]
+    except KeyError:
         raise TouchdownError(
             f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
-        )
-    return parse(_tables(path, ()), path.stem, path.parent)
+        ) from None
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
@@ -104,7 +109,7 @@ def read_names(path: Path) -> dict[str, str]:
     return _checked_names(_toml(path, "names"), f"names in {path}")
 
 
-def _tables(path: Path, before: tuple[Path, ...]) -> dict[str, Any]:
+def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
     """The tables of a scene's file over those of the scene it extends; `before`: files that led here."""
     data = _toml(path, "scene")
     if "extends" not in data:
@@ -118,7 +123,7 @@ def _tables(path: Path, before: tuple[Path, ...]) -> dict[str, Any]:
         raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
     if start.resolve() in (*before, path.resolve()):
         raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
-    return _over(_tables(start, (*before, path.resolve())), data)
+    return _over(tables(start, (*before, path.resolve())), data)
 
 
 def _toml(path: Path, what: str) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from touchdown.fmus.recipes import presets
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -114,6 +113,10 @@ class Scene:
 
 def checked_preset(name: object, where: str) -> str | None:
     """A named set of parameters, or None. Raises TouchdownError where there is none of that name."""
-    if name is not None and name not in presets():
+    if name is None:
+        return None
+    from touchdown.fmus.recipes import presets  # imports numba, which a list of scenes can do without
+
+    if name not in presets():
         raise TouchdownError(f"{where}: there is no preset {name}; {one_of(str(name), presets())}")
-    return None if name is None else str(name)
+    return str(name)

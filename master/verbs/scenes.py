@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.scene.scene import Scene
+from touchdown.master.verbs import completion
+from touchdown.master.verbs.arguments import add_scene_name
+from touchdown.master.verbs.completion import complete
+from touchdown.master.verbs.verb import Verb
+
+if TYPE_CHECKING:
+    from touchdown.master.scene.scene import Scene
+
+EXAMPLES = (
+    "touchdown scenes",
+    "touchdown scenes rotor1-9000",
+    "touchdown scenes disk-caged-simplified --variables bearing",
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("scenes", help="list the scenes, or show one")
-    verb.add_argument("scene", nargs="?", help="show this scene's components and settings")
-    verb.add_argument(
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb, "show this scene's components and settings", nargs="?")
+    named = verb.add_argument(
         "--variables", metavar="COMPONENT", help="show what can be set in this component of the scene"
     )
-    verb.set_defaults(run=execute)
+    complete(named, completion.components)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -65,3 +76,6 @@ def _show_variables(scene: Scene, name: str) -> None:
             ends = (("from", v.minimum), ("to", v.maximum))
             bounds = " ".join(f"{word} {bound:g}" for word, bound in ends if bound is not None)
             print(f"  {v.name:<34}{value:>12.6g} {v.unit or '1':<10}{bounds:<14} {v.description}")
+
+
+VERB = Verb("scenes", "list the scenes, or show one", EXAMPLES, declare, execute)

@@ -22,8 +22,8 @@ from places import COMMAND, SUPPORT
 
 from touchdown.fmus import link
 from touchdown.fmus.build import build
-from touchdown.fmus.documentation import page
 from touchdown.fmus.link import Interpreter, LinkError, interpreter
+from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED

@@ -11,7 +11,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import SPIN, VX, VY
-from touchdown.modelkit.model import Instance
+from touchdown.modelkit.instance import Instance
 
 
 def instance_of(bearing: str) -> Instance:

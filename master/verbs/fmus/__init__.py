@@ -1,1 +1,1 @@
-"""TODO."""
+"""Verbs that make and check FMUs and packages of them."""

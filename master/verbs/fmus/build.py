@@ -4,25 +4,33 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
+from touchdown.master.verbs import completion
+from touchdown.master.verbs.arguments import add_output
+from touchdown.master.verbs.completion import complete
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown build -o build",
+    "touchdown build simplified_caged housing --link-python -o build/linked",
+    "touchdown build my-rotor.toml",
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("build", help="build the FMUs")
-    verb.add_argument(
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    names = verb.add_argument(
         "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
     )
-    verb.add_argument("-o", "--output", type=Path, default=Path("build"), help="folder (default: build)")
+    complete(names, completion.fmus)
+    add_output(verb, Path("build"))
     verb.add_argument(
         "--link-python",
         action="store_true",
         help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
     )
-    verb.set_defaults(run=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -48,3 +56,6 @@ def execute(options: argparse.Namespace) -> int:
         except LinkError as error:
             raise TouchdownError(str(error)) from None
     return 0
+
+
+VERB = Verb("build", "build the FMUs", EXAMPLES, declare, execute)

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from touchdown.master.common.errors import FAILED
+from touchdown.master.verbs import completion
+from touchdown.master.verbs.completion import complete
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown check simplified_caged",
+    "touchdown check my-bearing.fmu --as bearing --names my-names.toml",
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("check", help="check FMUs: validity, contract, a dry run")
-    verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    fmus = verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
+    complete(fmus, completion.fmus)
     roles = ("bearing", "rotor", "amb", "housing")
     verb.add_argument("--as", dest="role", choices=roles, help="what it is to stand in for")
     verb.add_argument(
         "--names", type=Path, metavar="FILE", help="TOML: what it calls the variables of the contract"
     )
-    verb.set_defaults(run=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -33,3 +39,6 @@ def execute(options: argparse.Namespace) -> int:
         print(report.text)
         failed += bool(report.problems)
     return FAILED if failed else 0
+
+
+VERB = Verb("check", "check FMUs: validity, contract, a dry run", EXAMPLES, declare, execute)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
-from touchdown.master.verbs.arguments import add_scene, chosen_scene
+from touchdown.master.verbs.arguments import add_output, add_scene, chosen_scene
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = ("touchdown container disk-caged-simplified --scheme jacobi-lead -o disk.fmu",)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("container", help="write a scene as one FMU, for tools that take only one")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
     add_scene(verb)
-    verb.add_argument("-o", "--output", type=Path, help="file (default: SCENE.fmu)")
-    verb.set_defaults(run=execute)
+    add_output(verb, "SCENE.fmu", "file")
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -25,3 +25,8 @@ def execute(options: argparse.Namespace) -> int:
     path = write(scene, options.output or Path(f"{scene.name}.fmu"))
     print(f"{path}: macro step {scene.run.macro_step:g} s, scheme {scene.run.scheme.name}")
     return 0
+
+
+VERB = Verb(
+    "container", "write a scene as one FMU, for tools that take only one", EXAMPLES, declare, execute
+)

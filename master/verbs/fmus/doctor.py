@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from touchdown.master.common.errors import FAILED
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown doctor",
+    "touchdown doctor build/simplified_caged.fmu",
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("doctor", help="what a host of the FMUs needs on this machine; try FMUs")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
     verb.add_argument("fmus", nargs="*", type=Path, metavar="FMU", help="try these in a clean process")
-    verb.set_defaults(run=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -31,3 +34,6 @@ def execute(options: argparse.Namespace) -> int:
         print(reason or f"{path}: OK", flush=True)
         good = good and not reason
     return 0 if good else FAILED
+
+
+VERB = Verb("doctor", "what a host of the FMUs needs on this machine; try FMUs", EXAMPLES, declare, execute)

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
-from touchdown.master.verbs.arguments import add_scene, chosen_scene
+from touchdown.master.verbs.arguments import add_output, add_scene, chosen_scene
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown ssp disk-caged-simplified -o disk.ssp",
+    'touchdown ssp rotor1-9000 --scheme jacobi-lead --macro-step "5 us" --outputs-only',
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("ssp", help="write a scene as an SSP package, for other tools")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
     add_scene(verb)
     verb.add_argument(
         "--outputs-only",
         action="store_true",
         help="connect outputs only; constants such as inv_m are start values (for libcosim and others)",
     )
-    verb.add_argument("-o", "--output", type=Path, help="file (default: SCENE.ssp)")
-    verb.set_defaults(run=execute)
+    add_output(verb, "SCENE.ssp", "file")
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -33,3 +36,6 @@ def execute(options: argparse.Namespace) -> int:
         f"macro step {scene.run.macro_step:g} s"
     )
     return 0
+
+
+VERB = Verb("ssp", "write a scene as an SSP package, for other tools", EXAMPLES, declare, execute)

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Verbs that run a scene many times, or describe what is in it."""

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
-from touchdown.master.verbs.arguments import settings
+from touchdown.master.verbs.arguments import add_scene_name, add_settings, settings
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown advise rotor1-9000",
+    "touchdown advise disk-caged-simplified --set bearing.preset=6014",
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("advise", help="which macro step each coupling scheme bears in a scene")
-    verb.add_argument("scene", help="name of a scene, or path of a .toml")
-    verb.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="set COMPONENT.VARIABLE"
-    )
-    verb.set_defaults(run=execute)
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    add_settings(verb, "set COMPONENT.VARIABLE")
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -32,3 +33,6 @@ def execute(options: argparse.Namespace) -> int:
         scheme = SCHEMES[name]
         print(f"  {name:<18}{1e6 * advice.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")
     return 0
+
+
+VERB = Verb("advise", "which macro step each coupling scheme bears in a scene", EXAMPLES, declare, execute)

@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import SCHEMES, scheme
-from touchdown.master.studies.sweep.variation import listed
-from touchdown.master.verbs.arguments import count, settings
+from touchdown.master.verbs.arguments import (
+    above_zero,
+    add_output,
+    add_quiet,
+    add_scene_name,
+    add_settings,
+    count,
+    results_folder,
+    settings,
+)
+from touchdown.master.verbs.screen import named_progress
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    'touchdown compare disk-caged-simplified --schemes hold,velocity,interface --macro-steps "5,20,100 us"',
+    'touchdown compare disk-caged-simplified --models --repeat 1 --duration "3 ms"',
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("compare", help="speed against error of coupling schemes, or of --models")
-    verb.add_argument("scene", help="name of a scene, or path of a .toml")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
     verb.add_argument(
         "--models",
         action="store_true",
@@ -34,10 +45,9 @@ def add_to(verbs: Any) -> None:
     verb.add_argument("--timed", help='of the runs that are timed, such as "1 s" (default: as compared)')
     verb.add_argument("--repeat", default="3", metavar="N", help="runs that are timed (default: 3)")
     verb.add_argument("--in-process", action="store_true", help="time the models without FMUs")
-    verb.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="set in all runs")
-    verb.add_argument("-o", "--output", type=Path, help="folder (default: runs/compare-SCENE)")
-    verb.add_argument("--quiet", action="store_true", help="no progress bar")
-    verb.set_defaults(run=execute)
+    add_settings(verb)
+    add_output(verb, "runs/compare-SCENE")
+    add_quiet(verb)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -59,14 +69,14 @@ def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
     asked = Asked(
         schemes=tuple(SCHEMES) if options.schemes is None else _names(options.schemes),
         steps=STEPS if options.macro_steps is None else _steps(options.macro_steps),
-        duration=_above(options.duration, "s", "--duration"),
-        wanted=_above(options.wanted, "m", "--wanted") or WANTED,
+        duration=above_zero(options.duration, "s", "--duration"),
+        wanted=above_zero(options.wanted, "m", "--wanted") or WANTED,
         repeat=count(options.repeat, "--repeat"),
-        timed=_above(options.timed, "s", "--timed"),
+        timed=above_zero(options.timed, "s", "--timed"),
         in_process=options.in_process,
     )
-    folder = _folder(options, f"compare-{scene.name}")
-    with _Progress(pieces(scene, asked), options.quiet) as begin:
+    folder = results_folder(options, f"compare-{scene.name}")
+    with named_progress(pieces(scene, asked), options.quiet) as begin:
         found = compare(scene, asked, begin)
     write(found, folder)
     return [*lines(found), f"results in {folder}"]
@@ -77,41 +87,27 @@ def _models(scene: Any, options: argparse.Namespace) -> list[str]:
     from touchdown.master.studies.models.report import lines, write
     from touchdown.master.studies.models.variants import variants
 
-    duration = _above(options.duration, "s", "--duration")
+    duration = above_zero(options.duration, "s", "--duration")
     repeat = count(options.repeat, "--repeat")
-    folder = _folder(options, f"compare-models-{scene.name}")
+    folder = results_folder(options, f"compare-models-{scene.name}")
     chosen = variants(scene)
-    with _Progress(1 + len(chosen), options.quiet) as begin:
+    with named_progress(1 + len(chosen), options.quiet) as begin:
         found = compare(scene, chosen, duration, repeat, options.in_process, begin)
     write(found, folder)
     return [*lines(found), f"results in {folder}"]
 
 
 def _names(text: str) -> tuple[str, ...]:
+    from touchdown.master.studies.sweep.variation import listed
+
     return tuple(dict.fromkeys(scheme(name).name for name in listed(text, f"--schemes {text}")))
 
 
 def _steps(text: str) -> tuple[float, ...]:
-    found = [_above(item, "s", "--macro-steps") for item in listed(text, f"--macro-steps {text}")]
+    from touchdown.master.studies.sweep.variation import listed
+
+    found = [above_zero(item, "s", "--macro-steps") for item in listed(text, f"--macro-steps {text}")]
     return tuple(sorted({step for step in found if step is not None}))
-
-
-def _above(text: str | None, unit: str, option: str) -> float | None:
-    """A number above 0 in the SI unit; None where the option is not given."""
-    if text is None:
-        return None
-    value = to_si(text, unit, option)
-    if not 0.0 < value < float("inf"):
-        raise TouchdownError(f"{option} {text} must be above 0")
-    return value
-
-
-def _folder(options: argparse.Namespace, name: str) -> Path:
-    from touchdown.master.results.run import make_writable
-
-    folder = options.output or Path("runs") / name
-    make_writable(folder)
-    return folder
 
 
 def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> None:
@@ -128,22 +124,6 @@ def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> Non
             raise TouchdownError(f"--set {name}: compare sets it itself; use {instead[name]}")
 
 
-class _Progress:
-    """A bar over pieces of work, named as they begin."""
-
-    def __init__(self, total: int, quiet: bool) -> None:
-        from tqdm import tqdm
-
-        self._begun = 0
-        self._bar = tqdm(total=total, disable=quiet, leave=False)
-
-    def __enter__(self) -> Callable[[str], None]:
-        def begin(what: str) -> None:
-            self._bar.update(1 if self._begun else 0)
-            self._begun += 1
-            self._bar.set_description(what)
-
-        return begin
-
-    def __exit__(self, *_: object) -> None:
-        self._bar.close()
+VERB = Verb(
+    "compare", "speed against error of coupling schemes, or of --models", EXAMPLES, declare, execute
+)

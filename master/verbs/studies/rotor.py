@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.verbs.arguments import add_output
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown rotor rotor_I",
+    'touchdown rotor my-rotor.toml --speed "12000 rpm" --modes 8 -o runs/my-rotor',
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("rotor", help="describe rotors: inertias, frequencies, modes, how they lie")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
     verb.add_argument(
         "rotors", nargs="*", metavar="ROTOR", help="name of a rotor, or path of its .toml (default: all)"
     )
-    verb.add_argument("-o", "--output", type=Path, help="folder (default: runs/rotor-ROTOR)")
+    add_output(verb, "runs/rotor-ROTOR")
     verb.add_argument(
         "--speed", default="9000 rpm", help='for forward and backward whirl (default: "9000 rpm")'
     )
@@ -25,7 +30,6 @@ def add_to(verbs: Any) -> None:
         metavar="N",
         help="per plane, the two rigid ones included; 0: all (default: 5)",
     )
-    verb.set_defaults(run=execute)
 
 
 def execute(options: argparse.Namespace) -> int:
@@ -51,3 +55,8 @@ def execute(options: argparse.Namespace) -> int:
         print(found.text)
         print(f"pictures in {folder}\n")
     return 0
+
+
+VERB = Verb(
+    "rotor", "describe rotors: inertias, frequencies, modes, how they lie", EXAMPLES, declare, execute
+)

@@ -3,36 +3,30 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
-from typing import Any
 
 from touchdown.master.common.errors import STOPPED, TouchdownError
 from touchdown.master.scene.schemes import SCHEMES, scheme
-from touchdown.master.verbs.arguments import count
+from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, count, results_folder
+from touchdown.master.verbs.screen import broken_off, complain, progress
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = ("touchdown stability --cases bounce,mass-1 --schemes hold,interface -o runs/stability",)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser(
-        "stability",
-        help="which macro steps the coupling schemes bear in hard cases, and what the ledger says",
-    )
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
     verb.add_argument("--cases", metavar="A,B", help="cases, by name (default: all that are short)")
     verb.add_argument("--schemes", metavar="A,B", help=f"of {', '.join(SCHEMES)} (default: all)")
     verb.add_argument("--long", action="store_true", help="also the cases that take minutes")
-    verb.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
-    verb.add_argument("-o", "--output", type=Path, default=Path("runs/stability"), help="folder")
-    verb.add_argument("--quiet", action="store_true", help="no progress bar")
-    verb.set_defaults(run=execute)
+    add_jobs(verb)
+    add_output(verb, Path("runs/stability"))
+    add_quiet(verb)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from tqdm import tqdm
-
     from touchdown.master.common.processes import INTERRUPTED
-    from touchdown.master.results.run import make_writable
     from touchdown.master.studies.stability.cases import chosen
     from touchdown.master.studies.stability.report import lines
     from touchdown.master.studies.stability.study import size, study
@@ -40,16 +34,15 @@ def execute(options: argparse.Namespace) -> int:
     cases = chosen(_names(options.cases, "--cases"), options.long)
     schemes = [scheme(name).name for name in _names(options.schemes, "--schemes")] or list(SCHEMES)
     jobs = count(options.jobs, "--jobs")
-    make_writable(options.output)
-    with tqdm(total=size(cases, schemes), desc="searches", disable=options.quiet, leave=False) as bar:
-        found = study(cases, schemes, options.output, jobs, bar.update)
+    folder = results_folder(options)
+    with progress(size(cases, schemes), "searches", options.quiet) as bar:
+        found = study(cases, schemes, folder, jobs, bar.update)
     print("\n".join(lines(found)))
-    print(f"results in {options.output}")
+    print(f"results in {folder}")
     if INTERRUPTED in found.failed.values():
-        print("touchdown: interrupted", file=sys.stderr)
-        return 130
+        return broken_off()
     if found.failed:
-        print(f"touchdown: {len(found.failed)} searches failed, see the end of the table", file=sys.stderr)
+        complain(f"{len(found.failed)} searches failed, see the end of the table")
         return STOPPED
     return 0
 
@@ -62,3 +55,12 @@ def _names(text: str | None, option: str) -> list[str]:
     if not all(names):
         raise TouchdownError(f"{option} {text}: a name is missing between the commas")
     return list(dict.fromkeys(names))
+
+
+VERB = Verb(
+    "stability",
+    "which macro steps the coupling schemes bear in hard cases, and what the ledger says",
+    EXAMPLES,
+    declare,
+    execute,
+)

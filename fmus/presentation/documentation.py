@@ -9,11 +9,12 @@ from html import escape
 from inspect import cleandoc
 from pathlib import Path
 
-from touchdown.fmus.description import VERSION, causality
+from touchdown.fmus.description import causality
 from touchdown.fmus.host import NEEDED
 from touchdown.fmus.link import Interpreter
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import ROOT
+from touchdown.fmus.version import VERSION
 from touchdown.modelkit.model import Slot, slots
 
 SOURCE = "O. Halminen, Multibody models for examination of touchdown bearing systems (LUT, 2016)"
@@ -37,10 +38,21 @@ td:first-child { font-family: monospace }
 
 def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
     """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to."""
+    title = _plain(recipe.model.title)
+    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter)]
+    return (
+        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
+        + "\n".join(body)
+        + f"\n<p>touchdown-cosim {VERSION}</p>\n</body>\n</html>\n"
+    )
+
+
+def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]:
+    """What stands below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
     own, *parts = _documented(recipe.script)
     body = [
-        f'<h1><img src="../model.png" alt="">{_plain(model.title)}</h1>',
         f"<p>{_plain(model.about)}.</p>",
         *_prose(own),
         f"<p>Numbers in parentheses are equations, tables, figures and sections of the source: {SOURCE}, "
@@ -53,12 +65,7 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
     ]
     for text in parts:
         body += _prose(text, heading="h3")
-    return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f"<title>{_plain(model.title)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
-        + "\n".join(body)
-        + f"\n<p>touchdown-cosim {VERSION}</p>\n</body>\n</html>\n"
-    )
+    return body
 
 
 # -- prose -------------------------------------------------------------------------------------------
