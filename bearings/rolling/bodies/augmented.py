@@ -59,7 +59,8 @@ class AugmentedBearing:
     """Equations of motion of a detailed bearing, its journal and its outer ring.
 
     State: positions and angles of all bodies, then their rates; the order of the bodies is journal, outer
-    ring, inner ring, balls, cage. `alpha`, `beta` (1/s) stabilise; with `eliminated` the rotation is left out instead.
+    ring, inner ring, balls, cage. `alpha`, `beta` (1/s) stabilise; with `eliminated` the rotation is left
+    out instead.
     """
 
     def __init__(
