@@ -21,7 +21,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_bodies import ANGLE, BALLS, SIZE, SPIN, VX, VY, X, Y
+from touchdown.bearings.rolling.ball_state import BALLS
+from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
 from touchdown.modelkit.model import Instance
 
 
@@ -57,8 +58,9 @@ class Surroundings:
 class AugmentedBearing:
     """Equations of motion of a detailed bearing, its journal and its outer ring.
 
-    State: positions and angles q, then their rates; the order of the bodies is journal, outer ring, inner
-    ring, balls, cage. `alpha`, `beta` (1/s) stabilise; with `eliminated` the rotation is left out instead.
+    State: positions and angles of all bodies, then their rates; the order of the bodies is journal, outer
+    ring, inner ring, balls, cage. `alpha`, `beta` (1/s) stabilise; with `eliminated` the rotation is left
+    out instead.
     """
 
     def __init__(
@@ -99,10 +101,10 @@ class AugmentedBearing:
 
     def initial(self, outer_angle: float = 0.0, outer_rate: float = 0.0) -> np.ndarray:
         """The instance's present state; the outer ring turned by a violation (rad, rad/s)."""
-        y = self.instance.record["y"]
-        outside = [y[seat.JX], y[seat.JY], 0.0, y[seat.HX], y[seat.HY], outer_angle]
-        speeds = [y[seat.JVX], y[seat.JVY], y[seat.JW], y[seat.HVX], y[seat.HVY], outer_rate]
-        return np.concatenate([outside, y[self._positions], speeds, y[self._rates]])
+        q = self.instance.record["q"]
+        outside = [q[seat.JX], q[seat.JY], 0.0, q[seat.HX], q[seat.HY], outer_angle]
+        speeds = [q[seat.JVX], q[seat.JVY], q[seat.JW], q[seat.HVX], q[seat.HVY], outer_rate]
+        return np.concatenate([outside, q[self._positions], speeds, q[self._rates]])
 
     def violation(self, state: np.ndarray) -> tuple[float, float]:
         """(C in m, C' in m/s)."""
@@ -112,33 +114,33 @@ class AugmentedBearing:
     def rhs(self, t: float, state: np.ndarray) -> np.ndarray:
         """Rates of the state."""
         n = self.coordinates
-        q, v = state[:n], state[n:]
-        forces = self._forces(q, v)
+        places, rates = state[:n], state[n:]
+        forces = self._forces(places, rates)
         if self.eliminated:
-            found = forces / self.mass
-            found[5] = 0.0
-            return np.concatenate([v, found])
+            free = forces / self.mass
+            free[5] = 0.0
+            return np.concatenate([rates, free])
         jacobian = np.zeros((1, n))
-        jacobian[0, 5] = self.radius * np.cos(q[5])
+        jacobian[0, 5] = self.radius * np.cos(places[5])
         position, rate = self.violation(state)
-        known = self.radius * np.sin(q[5]) * v[5] ** 2
+        known = self.radius * np.sin(places[5]) * rates[5] ** 2
         right = np.array([known - 2.0 * self.alpha * rate - self.beta**2 * position])
-        return np.concatenate([v, accelerations(self.mass, forces, jacobian, right)[0]])
+        return np.concatenate([rates, accelerations(self.mass, forces, jacobian, right)[0]])
 
-    def _forces(self, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Generalised applied forces Q_a of all bodies, by the model's own kernels."""
+    def _forces(self, places: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """Generalised applied forces Q_a (n,) of all bodies, by the model's own kernels."""
         m, a = self.instance.record, self.around
-        y, dy = np.zeros(len(m["y"])), np.zeros(len(m["y"]))
-        y[self._positions], y[self._rates] = q[6:], v[6:]
+        q, dq = np.zeros(len(m["q"])), np.zeros(len(m["q"]))
+        q[self._positions], q[self._rates] = places[6:], rates[6:]
         for part, at in (("journal", 0), ("housing", 3)):
             motion = m["u"][part]
-            motion["x"], motion["y"], motion["vx"], motion["vy"] = q[at], q[at + 1], v[at], v[at + 1]
-        m["u"]["journal"]["omega"] = v[2]
-        m["s"]["outer_spin"] = v[5]
+            motion["x"], motion["y"], motion["vx"], motion["vy"] = *places[at : at + 2], *rates[at : at + 2]
+        m["u"]["journal"]["omega"] = rates[2]
+        m["s"]["outer_spin"] = rates[5]
         assert self.instance.model.instant is not None
-        self.instance.model.instant(0.0, y, dy, m)
+        self.instance.model.instant(0.0, q, dq, m)
         journal, housing = m["o"]["journal"], m["o"]["housing"]
-        support = -a.stiffness * q[3:5] - a.damping * v[3:5]
+        support = -a.stiffness * places[3:5] - a.damping * rates[3:5]
         outside = [
             journal["fx"],
             journal["fy"],
@@ -147,4 +149,4 @@ class AugmentedBearing:
             housing["fy"] + support[1],
             float(m["s"]["outer_moment"]),
         ]
-        return np.concatenate([outside, self.mass[6:] * dy[self._rates]])
+        return np.concatenate([outside, self.mass[6:] * dq[self._rates]])
