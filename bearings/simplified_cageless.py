@@ -228,7 +228,7 @@ def start(words):
     m = words.view(MEMORY)[0]
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
-    place(m.q, m)
+    place(m.q, m.p.balls.count, m.d.angles)
     m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)

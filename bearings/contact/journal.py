@@ -116,7 +116,7 @@ def swing_rate(law, inv_m):
 def hermite(f0, d0, f1, d1, h, s):
     """Cubic through values f and slopes d at the ends of an interval of length h, at s in [0, 1].
 
-    Any unit for f, and that over h's for d.
+    h in s, f in any unit, d in that per second; returns what f is in.
     """
     r = 1.0 - s
     return r * r * ((1.0 + 2.0 * s) * f0 + s * h * d0) + s * s * ((3.0 - 2.0 * s) * f1 - r * h * d1)
@@ -124,7 +124,7 @@ def hermite(f0, d0, f1, d1, h, s):
 
 @kernel
 def _crossing(f0, d0, f1, d1, h):
-    """Where in [0, 1] that cubic, positive at 0 and not at 1, crosses zero (bisection). Units as there."""
+    """Where in [0, 1] that cubic, positive at 0 and not at 1, crosses zero (bisection); units as there."""
     low, high = 0.0, 1.0
     for _ in range(60):
         middle = 0.5 * (low + high)

@@ -173,8 +173,8 @@ class BallSet:
             direction = -0.5 * math.pi - off
             reach = (max(self.play, 0.0) + sunk) / math.cos(half_gap)
         guess = [reach / scale * math.cos(direction), reach / scale * math.sin(direction)]
-        found = least_squares(imbalance, guess, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        return float(found.x[0] * scale), float(found.x[1] * scale)
+        balance = least_squares(imbalance, guess, xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        return float(balance.x[0] * scale), float(balance.x[1] * scale)
 
     def problem(self) -> str | None:
         """Why these balls cannot be put together, or None."""

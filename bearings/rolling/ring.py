@@ -12,7 +12,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.journal import note, touch, watch_contact
 from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.rolling.pitch_circle import Gap
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
 
@@ -81,7 +81,7 @@ def gap(q):
     )
 
 
-@kernel
+@inlined
 def translate(q, dq, m, journal, fx, fy):
     """Derivatives dq of the ring but for its spin, under the journal's `Touch` and the balls' force (N)."""
     p = m.p
@@ -92,7 +92,7 @@ def translate(q, dq, m, journal, fx, fy):
     dq[RANGLE] = q[RW]
 
 
-@kernel
+@inlined
 def accelerate(q, dq, m, journal, balls):
     """Derivatives dq of the ring under the journal's `Touch` and the balls' `Total` (N, N m)."""
     translate(q, dq, m, journal, balls.fx, balls.fy)

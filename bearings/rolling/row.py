@@ -19,7 +19,7 @@ from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, press_ball
 from touchdown.modelkit.angles import cosine_and_sine
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.variables import array, real
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
@@ -85,11 +85,10 @@ class Loads(NamedTuple):
 
 
 @kernel
-def place(q, m):
-    """Put the balls in the state q at rest at m.d.angles (rad)."""
-    count = m.p.balls.count
+def place(q, count, angles):
+    """Put `count` balls in the state q at rest at their `angles` (count,) (rad)."""
     for b in range(count):
-        q[BALLS + b] = m.d.angles[b]
+        q[BALLS + b] = angles[b]
         q[BALLS + b + count], q[BALLS + b + 2 * count] = 0.0, 0.0
 
 
@@ -103,7 +102,7 @@ def drift(trial, q, mid, h, m):
         trial[i] = q[i] + h * mid[i + n]
 
 
-@kernel
+@inlined
 def raceway(m, grip, resistance):
     """The `Raceway` of all balls; grip (s/kg) and rolling resistance (1) as they are to act."""
     d, law = m.d, m.d.race
@@ -113,7 +112,7 @@ def raceway(m, grip, resistance):
     )
 
 
-@kernel
+@inlined
 def _loads_of(s, n):
     """`Loads` (n,) as views of `s` (RaceBalls)."""
     loads = s.fx[:n], s.fy[:n], s.moment[:n], s.along[:n], s.turning[:n], s.heat[:n]

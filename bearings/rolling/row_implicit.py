@@ -19,13 +19,10 @@ from typing import NamedTuple
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import slope
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import BALLS, part
+from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.pitch_circle import meet
-from touchdown.bearings.rolling.row import ANGLE, ORBIT, SPIN, raceway
+from touchdown.bearings.rolling.row import raceway
 from touchdown.modelkit.kernel import kernel
-
-# What describes the matrix lies where the state does: of each ball, in place of angle, orbit and spin,
-INNER, OUTER, LEVER = ANGLE, ORBIT, SPIN  # k_i, k_o (N s/m) and l (m); at the ring's spin its slope (1/s)
 
 
 class BallBlock(NamedTuple):
@@ -44,17 +41,21 @@ class BallBlock(NamedTuple):
 
 @kernel
 def linearise(q, stiff, m):
-    """Fill `stiff` (m.n,), which describes J at the state q, from the loads of the last evaluation."""
+    """Fill `stiff` (m.n,), which describes J at the state q, from the loads of the last evaluation.
+
+    In the places of a ball's angle, orbit and spin it holds k_i, k_o (N s/m) and l (m); in that of the
+    ring's spin, what the journal makes of it (1/s).
+    """
     p, d, s = m.p, m.d, m.s.balls
-    gap, way = ring.gap(q), raceway(m, 0.0, 0.0)
-    orbit, spin = part(q, ORBIT, m), part(q, SPIN, m)
-    inner, outer, lever = part(stiff, INNER, m), part(stiff, OUTER, m), part(stiff, LEVER, m)
-    for b in range(p.balls.count):
-        at = meet(gap, s.cosine[b], s.sine[b], orbit[b], spin[b], way)
-        pressed = s.force[b] + at.radius * d.mass * orbit[b] * orbit[b]
-        inner[b] = slope(at.inner, d.race_friction) * s.force[b] if s.force[b] > 0.0 else 0.0
-        outer[b] = slope(at.outer, d.race_friction) * pressed
-        lever[b] = at.lever
+    count, gap, way = p.balls.count, ring.gap(q), raceway(m, 0.0, 0.0)
+    for b in range(count):
+        i = BALLS + b
+        orbit = q[i + count]
+        at = meet(gap, s.cosine[b], s.sine[b], orbit, q[i + 2 * count], way)
+        pressed = s.force[b] + at.radius * d.mass * orbit * orbit
+        stiff[i] = slope(at.inner, d.race_friction) * s.force[b] if s.force[b] > 0.0 else 0.0
+        stiff[i + count] = slope(at.outer, d.race_friction) * pressed
+        stiff[i + 2 * count] = at.lever
     bore = p.journal_radius + p.clearance
     stiff[ring.RW] = 0.0
     if m.s.ring.normal > 0.0:
@@ -100,24 +101,23 @@ def solve(stiff, shift, right, m):
     """
     p, d = m.p, m.d
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
-    inner, outer, lever = part(stiff, INNER, m), part(stiff, OUTER, m), part(stiff, LEVER, m)
-    angle, orbit, spin = part(right, ANGLE, m), part(right, ORBIT, m), part(right, SPIN, m)
     ring_ring, of_ring = shift + stiff[ring.RW], right[ring.RW]
-    for b in range(count):
-        block = _ball_block(inner[b], outer[b], lever[b], shift, d)
+    for i in range(BALLS, BALLS + count):
+        inner, outer, lever = stiff[i], stiff[i + count], stiff[i + 2 * count]
+        block = _ball_block(inner, outer, lever, shift, d)
         scale = 1.0 / _determinant(block)
-        angle[b] /= shift
-        orbit[b], spin[b] = _solved(block, orbit[b], spin[b], scale)
+        orbit, spin = _solved(block, right[i + count], right[i + 2 * count], scale)
         with_ring = _solved(block, block.orbit_ring, block.spin_ring, scale)  # per speed of the ring
-        back = inner[b] * lever[b] / p.ring.inertia
-        ring_ring += back * (lever[b] - rm * with_ring[0] + rb * with_ring[1])
-        of_ring += back * (rm * orbit[b] - rb * spin[b])
+        back = inner * lever / p.ring.inertia
+        ring_ring += back * (lever - rm * with_ring[0] + rb * with_ring[1])
+        of_ring += back * (rm * orbit - rb * spin)
+        right[i], right[i + count], right[i + 2 * count] = right[i] / shift, orbit, spin
     turned = of_ring / ring_ring
-    for b in range(count):
-        block = _ball_block(inner[b], outer[b], lever[b], shift, d)
-        share = _solved(block, block.orbit_ring, block.spin_ring, turned / _determinant(block))
-        orbit[b] += share[0]
-        spin[b] += share[1]
+    for i in range(BALLS, BALLS + count):
+        block = _ball_block(stiff[i], stiff[i + count], stiff[i + 2 * count], shift, d)
+        orbit, spin = _solved(block, block.orbit_ring, block.spin_ring, turned / _determinant(block))
+        right[i + count] += orbit
+        right[i + 2 * count] += spin
     for i in range(BALLS):
         right[i] /= shift
     for i in range(m.s.seat.inside, m.n):

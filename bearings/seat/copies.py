@@ -98,7 +98,7 @@ def take_inputs(q, m):
 
 @kernel
 def clear(q, m):
-    """Clear what q gathers over a macro step: impulse, first moment, work, responses to the load."""
+    """Clear what the state q gathers over a macro step: impulse, moment, work, responses to the load."""
     for i in range(JPX, JE + 1):
         q[i] = 0.0
     for i in range(HFX, HPY + 1):
@@ -188,7 +188,7 @@ def drift(trial, q, mid, h, m):
 
 @kernel
 def _drift_modes(trial, q, mid, h, m):
-    """`drift` of the elastic modes."""
+    """`drift` of the elastic modes, in the states `trial`, q and `mid` (m.n,)."""
     for n in range(m.s.seat.modes):
         i = m.s.seat.inside + PER_MODE * n
         trial[i + ZX] = q[i + ZX] + h * mid[i + ZVX]

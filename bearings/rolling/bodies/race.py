@@ -17,7 +17,7 @@ from touchdown.bearings.contact.pair import Place, friction_force, slip
 from touchdown.bearings.contact.search import Disc, Outline, race_place
 from touchdown.bearings.rolling.ball_state import rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
@@ -83,14 +83,14 @@ class Forces(NamedTuple):
     loss: object  # W, heat
 
 
-@kernel
+@inlined
 def places_of(contacts, n):
     """`Places` (n,) as views of `contacts` (Contacts)."""
     c = contacts
     return Places(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
 
 
-@kernel
+@inlined
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts

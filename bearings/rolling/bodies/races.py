@@ -55,7 +55,7 @@ def _one_race(balls, body, angle, race, profile, starts, contacts, m):
 
 @kernel
 def _accelerate(balls, dq, m):
-    """Derivatives dq of the `balls` under what both races do to them, and gravity."""
+    """Derivatives dq (m.n,) of the `balls` under what both races do to them, and gravity."""
     d, gravity, inner, outer = m.d, m.p.gravity, m.s.inner, m.s.outer
     dx, dy, turning = part(dq, X, m), part(dq, Y, m), part(dq, ANGLE, m)
     ax, ay, alpha = part(dq, VX, m), part(dq, VY, m), part(dq, SPIN, m)
