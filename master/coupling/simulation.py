@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-import signal
 import threading
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import load
 from touchdown.master.coupling.connections import LOAD, SLOPE
@@ -38,8 +39,20 @@ class Outcome:
     start_up: float = 0.0  # s, loading and initialising
     residual: float = 0.0  # of the ledger, over its scale
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
-    stopped_because: str = ""
-    coupling: dict[str, float] = field(default_factory=dict)  # what the scheme has to say of itself
+    ended: Ended = Ended.COMPLETED
+    reason: str = ""  # why, where it did not complete
+    coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
+
+    def raise_if_interrupted(self) -> None:
+        """Raise KeyboardInterrupt where Ctrl-C ended the run."""
+        if self.ended is Ended.INTERRUPTED:
+            raise KeyboardInterrupt
+
+    def raise_if_stopped(self) -> None:
+        """Raise TouchdownError where the run could not go on, KeyboardInterrupt where Ctrl-C ended it."""
+        self.raise_if_interrupted()
+        if self.ended is Ended.STOPPED:
+            raise TouchdownError(self.reason)
 
 
 def open_system(scene: Scene, in_process: bool = False) -> System:
@@ -52,7 +65,7 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
 
 
 @contextmanager
-def opened(scene: Scene, in_process: bool = False) -> Iterator[System]:
+def opened(scene: Scene, in_process: bool = False) -> Generator[System]:
     """The scene's system, freed at the end."""
     system = open_system(scene, in_process)
     try:
@@ -66,13 +79,13 @@ def simulate(
     system: System,
     record_to: Path | None = None,
     progress: Callable[[float, float], None] = lambda time, residual: None,
-    watch: Callable[[float, System], None] | None = None,
+    watch: Callable[[float, System], str | None] | None = None,
 ) -> Outcome:
     """Initialise `system` and run it to the scene's end.
 
     progress(time from zero in s, ledger residual) is called now and then; watch(time, system) after
-    every macro step. A run that cannot go on, or is interrupted, keeps its recording; the reason then
-    stands in the outcome's `stopped_because`.
+    every macro step, and ends the run where it gives a reason to. A run that ends early keeps its
+    recording; the outcome says how it ended, and why.
     """
     began = clock.perf_counter()
     outcome = Outcome()
@@ -91,40 +104,12 @@ def simulate(
             outcome.start_up = clock.perf_counter() - began
             _loop(scene, system, coupling, steps, ledger, recorder, outcome, progress, watch, interrupted)
         except TouchdownError as error:
-            outcome.stopped_because = str(error)
+            outcome.ended, outcome.reason = Ended.STOPPED, str(error)
         finally:
             problem = recorder.close() if recorder is not None else ""
-        outcome.stopped_because = outcome.stopped_because or problem
+        if problem and outcome.ended in (Ended.COMPLETED, Ended.AS_WANTED):
+            outcome.ended, outcome.reason = Ended.STOPPED, problem
     return outcome
-
-
-_noted: threading.Event | None = None  # while interrupts are noted; they are the process's, not a run's
-
-
-@contextmanager
-def interrupts_noted() -> Iterator[threading.Event]:
-    """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU.
-
-    May be nested; what was noted outside is known inside.
-    """
-    global _noted
-    outer = _noted
-    if outer is not None or threading.current_thread() is not threading.main_thread():
-        yield outer or threading.Event()
-        return
-    _noted = noted = threading.Event()
-
-    def note(*_: object) -> None:
-        if noted.is_set():  # asked a second time: now, whatever it breaks
-            raise KeyboardInterrupt
-        noted.set()
-
-    before = signal.signal(signal.SIGINT, note)
-    try:
-        yield noted
-    finally:
-        signal.signal(signal.SIGINT, before)
-        _noted = None
 
 
 def macro_steps(duration: float, step: float) -> int:
@@ -148,7 +133,7 @@ def _loop(
     recorder: Recorder | None,
     outcome: Outcome,
     progress: Callable[[float, float], None],
-    watch: Callable[[float, System], None] | None,
+    watch: Callable[[float, System], str | None] | None,
     interrupted: threading.Event,
 ) -> None:
     step, every = scene.run.macro_step, scene.run.record_every
@@ -157,7 +142,8 @@ def _loop(
     try:
         for k in range(steps):
             if interrupted.is_set():
-                raise TouchdownError("interrupted")
+                outcome.ended, outcome.reason = Ended.INTERRUPTED, Ended.INTERRUPTED.value
+                break
             time = k * step
             stepper.step(k, time, step)
             ledger.update()
@@ -170,7 +156,10 @@ def _loop(
             if noticed:
                 limit = _judge(scene, ledger, outcome)
             if watch is not None:
-                watch(outcome.end, system)
+                enough = watch(outcome.end, system)
+                if enough:
+                    outcome.ended, outcome.reason = Ended.AS_WANTED, enough
+                    break
             if done % BEAT == 0 or done == steps:
                 outcome.wall_time = clock.perf_counter() - began
                 idle = [name for name in system.order if not _has_work(system.components[name])]

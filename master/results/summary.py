@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import get_window
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.coupling.system import System, housing_port
@@ -80,10 +81,10 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
     """All figures of a run; None where something did not happen or was too short to tell."""
     found: dict[str, object] = {
         "scene": scene.name,
-        "completed": not outcome.stopped_because,
+        "completed": outcome.ended is Ended.COMPLETED,
     }
-    if outcome.stopped_because:
-        found["stopped_because"] = outcome.stopped_because
+    if outcome.ended is not Ended.COMPLETED:
+        found["stopped_because"] = outcome.reason
     seats = touchdown_seats(system)
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""

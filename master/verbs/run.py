@@ -25,6 +25,7 @@ def add_to(verbs: Any) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
+    from touchdown.master.common.ended import Ended
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
 
@@ -41,10 +42,10 @@ def execute(options: argparse.Namespace) -> int:
     print(f"results in {result.folder}")
     for warning in result.warnings:
         print(f"touchdown: warning: {warning}", file=sys.stderr)
-    if result.stopped_because:
+    if result.ended is not Ended.COMPLETED:
         print(
             f"touchdown: stopped: {result.stopped_because}; what was recorded is in {result.folder}",
             file=sys.stderr,
         )
-        return 130 if result.stopped_because == "interrupted" else STOPPED
+        return 130 if result.ended is Ended.INTERRUPTED else STOPPED
     return 0

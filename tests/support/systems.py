@@ -78,7 +78,7 @@ def history(
         outcome = simulate(scene, system, watch=watch)
     finally:
         system.close()
-    assert not outcome.stopped_because, outcome.stopped_because
+    assert not outcome.reason, outcome.reason
     values = np.array(rows).T
     return np.array(times), dict(zip(names, values, strict=True)), outcome
 

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
@@ -82,10 +81,9 @@ class Stop:
 
 
 class Watch:
-    """Keeps the seats' traces while a scene runs, and breaks it off as `stop` has it."""
+    """Keeps the seats' traces while a scene runs, and ends it as `stop` has it."""
 
     def __init__(self, system: System, seats: Sequence[Attachment], zero: float, stop: Stop | None) -> None:
-        self.over = False  # broken off
         self._zero, self._stop = zero, stop
         self._time: list[float] = []
         self._rows: list[list[list[float]]] = [[] for _ in seats]
@@ -94,7 +92,7 @@ class Watch:
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 
-    def __call__(self, time: float, system: System) -> None:
+    def __call__(self, time: float, system: System) -> str | None:
         now = time - self._zero
         self._time.append(now)
         for i, rows in enumerate(self._rows):
@@ -110,8 +108,8 @@ class Watch:
         if stop is not None and self._first is not None and len(self._time) % stop.every == 0:
             parted = all(last is not None and now - last > PARTED for last in self._loaded)
             if now - self._first >= stop.after - ROUNDING or (stop.early and parted):
-                self.over = True
-                raise TouchdownError("the first impact is over")
+                return "the first impact is over"
+        return None
 
     def traces(self) -> list[Trace]:
         """Of all seats."""
@@ -134,9 +132,6 @@ def run_watched(
     zero = system.value(scene.zero) if scene.zero else 0.0
     watch = Watch(system, seats, zero, stop)
     outcome = simulate(scene, system, watch=watch)
-    if outcome.stopped_because == "interrupted":
-        raise KeyboardInterrupt
-    if outcome.stopped_because and not watch.over:
-        raise TouchdownError(outcome.stopped_because)
+    outcome.raise_if_stopped()
     names = [seat_name(a, list(seats)) for a in seats]
     return outcome, dict(zip(names, watch.traces(), strict=True))

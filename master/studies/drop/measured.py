@@ -10,7 +10,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.simulation import Outcome, opened
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
@@ -120,9 +120,3 @@ class Sampler:
         for seat in list(self._ends) if seats is None else seats:
             _, bearing = self._ends.pop(seat)
             self.peaks[seat] = system.value(f"{bearing}.contact.peak_force")
-
-
-def refuse_interrupted(outcome: Outcome) -> None:
-    """Raise KeyboardInterrupt where a run was interrupted."""
-    if outcome.stopped_because == "interrupted":
-        raise KeyboardInterrupt

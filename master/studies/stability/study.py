@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from touchdown.master.common.processes import INTERRUPTED, run_all
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.processes import TaskOutcome, run_all
 from touchdown.master.studies.stability.report import Study, write_csv
 from touchdown.master.studies.stability.trials import Case, Finding, Right, examine, reference
 
@@ -30,17 +32,17 @@ def study(
     """Examine every case with every scheme, and write tables and picture into `folder`.
 
     done() after each reference and each finding. After Ctrl-C what is there is written, and the rest is
-    "interrupted". Starts processes: see `touchdown.master.common.processes`.
+    INTERRUPTED. Starts processes: see `touchdown.master.common.processes`.
     """
-    failed: dict[str, str] = {}
+    failed: dict[str, TaskOutcome[Any]] = {}
     rights: dict[str, Right] = {}
-    for case, ended in zip(cases, run_all(reference, cases, jobs, done), strict=True):
-        if ended.value is None:
-            failed[case.name] = ended.failed
+    for case, outcome in zip(cases, run_all(reference, cases, jobs, done), strict=True):
+        if outcome.value is None:
+            failed[case.name] = outcome
         else:
-            rights[case.name] = ended.value
+            rights[case.name] = outcome.value
     tasks: list[Task] = []
-    if INTERRUPTED not in failed.values():
+    if not _interrupted(failed.values()):
         tasks = [
             Task(case, scheme, rights[case.name])
             for case in cases
@@ -48,18 +50,23 @@ def study(
             for scheme in schemes
         ]
     findings: dict[tuple[str, str], Finding] = {}
-    for task, ended in zip(tasks, run_all(_examine, tasks, jobs, done), strict=True):
-        if ended.value is None:
-            failed[f"{task.case.name} with {task.scheme}"] = ended.failed
+    for task, outcome in zip(tasks, run_all(_examine, tasks, jobs, done), strict=True):
+        if outcome.value is None:
+            failed[f"{task.case.name} with {task.scheme}"] = outcome
         else:
-            findings[task.case.name, task.scheme] = ended.value
-    found = Study(cases, schemes, rights, findings, failed)
+            findings[task.case.name, task.scheme] = outcome.value
+    why = {what: outcome.reason for what, outcome in failed.items()}
+    found = Study(cases, schemes, rights, findings, why, _interrupted(failed.values()))
     write_csv(found, folder)
     if findings:
         from touchdown.master.studies.stability.figure import draw  # matplotlib is slow to import
 
         draw(found, folder / "stability.png")
     return found
+
+
+def _interrupted(failed: Iterable[TaskOutcome[Any]]) -> bool:
+    return any(outcome.ended is Ended.INTERRUPTED for outcome in failed)
 
 
 def size(cases: Sequence[Case], schemes: Sequence[str]) -> int:

@@ -20,8 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.processes import INTERRUPTED
 from touchdown.master.coupling.advisor import fastest_contact
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.system import System
@@ -167,9 +167,7 @@ def attempted(case: Case, scheme: str, step: float, right: Right) -> Attempt:
         for figure, value, exact in zip(case.figures, values, right.values, strict=False)
     ]
     error = float(np.max(errors)) if values else math.inf  # not a number stays it
-    return Attempt(
-        step, values, error, outcome.residual, outcome.warned_at is not None, outcome.stopped_because
-    )
+    return Attempt(step, values, error, outcome.residual, outcome.warned_at is not None, outcome.reason)
 
 
 def reference(case: Case) -> Right:
@@ -178,8 +176,8 @@ def reference(case: Case) -> Right:
     if right is None:
         bounds = Bounds(case.journals)
         outcome, values = _run(case, schemes.DEFAULT, REFERENCE_STEP, bounds)
-        if outcome.stopped_because:
-            raise TouchdownError(f"the reference of case {case.name} stopped: {outcome.stopped_because}")
+        if outcome.ended is not Ended.COMPLETED:
+            raise TouchdownError(f"the reference of case {case.name} stopped: {outcome.reason}")
         right = Right(values, bounds.fastest, bounds.farthest)
     return replace(right, rate=_contact_rate(case))
 
@@ -191,7 +189,7 @@ def _contact_rate(case: Case) -> float:
 
 
 class Bounds:
-    """Notes how fast and how far journals get, and breaks a run off where they get beyond what is given."""
+    """Notes how fast and how far journals get, and ends a run where they get beyond what is given."""
 
     def __init__(
         self, journals: Sequence[str], speed: float = math.inf, distance: float = math.inf
@@ -201,17 +199,16 @@ class Bounds:
         self._speed, self._distance = speed, distance
         self._names = [(*journal.split(".", 1), axis) for journal in journals for axis in "xy"]
 
-    def __call__(self, time: float, system: System) -> None:
+    def __call__(self, time: float, system: System) -> str | None:
         at, signals = system.position, system.signals
         for body, port, axis in self._names:
             distance = abs(float(signals[at[body, f"{port}.{axis}"]]))
             speed = abs(float(signals[at[body, f"{port}.v{axis}"]]))
             if not (speed <= self._speed and distance <= self._distance):
-                raise TouchdownError(
-                    f"{body}.{port} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {time:.6g} s"
-                )
+                return f"{body}.{port} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {time:.6g} s"
             self.fastest = max(self.fastest, speed)
             self.farthest = max(self.farthest, distance)
+        return None
 
 
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
@@ -221,8 +218,7 @@ def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome,
     )
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, watch=bounds)
-        if outcome.stopped_because == INTERRUPTED:
-            raise TouchdownError(INTERRUPTED)
-        if outcome.stopped_because:
+        outcome.raise_if_interrupted()
+        if outcome.ended is not Ended.COMPLETED:
             return outcome, ()
         return outcome, tuple(sum(map(system.value, figure.variables)) for figure in case.figures)

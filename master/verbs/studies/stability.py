@@ -31,7 +31,6 @@ def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from tqdm import tqdm
 
-    from touchdown.master.common.processes import INTERRUPTED
     from touchdown.master.results.run import make_writable
     from touchdown.master.studies.stability.cases import chosen
     from touchdown.master.studies.stability.report import lines
@@ -45,7 +44,7 @@ def execute(options: argparse.Namespace) -> int:
         found = study(cases, schemes, options.output, jobs, bar.update)
     print("\n".join(lines(found)))
     print(f"results in {options.output}")
-    if INTERRUPTED in found.failed.values():
+    if found.interrupted:
         print("touchdown: interrupted", file=sys.stderr)
         return 130
     if found.failed:

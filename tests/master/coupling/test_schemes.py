@@ -72,7 +72,7 @@ def final_signals(scene: Scene, in_process: bool) -> np.ndarray:
     system = open_system(scene, in_process)
     try:
         outcome = simulate(scene, system)
-        assert not outcome.stopped_because
+        assert not outcome.reason
         assert system.value("bearing.contact.peak_force") > 300.0
         return system.signals.copy()
     finally:
@@ -165,11 +165,11 @@ def test_a_step_that_is_too_long_stops_and_names_one_that_holds(name: str, step:
         load("disk-caged-simplified").with_setting("run.duration", 0.05).with_setting("run.scheme", name)
     )
     outcome = simulated(scene.with_setting("run.macro_step", step))
-    assert "bearing.journal on rotor.A" in outcome.stopped_because
-    suggested = float(outcome.stopped_because.rpartition(" ")[2])
+    assert "bearing.journal on rotor.A" in outcome.reason
+    suggested = float(outcome.reason.rpartition(" ")[2])
     assert suggested < step
     again = simulated(scene.with_setting("run.macro_step", suggested))
-    assert not again.stopped_because
+    assert not again.reason
 
 
 def simulated(scene: Scene) -> Outcome:

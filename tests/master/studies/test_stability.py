@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 from touchdown.master.cli import main
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
-from touchdown.master.common.processes import INTERRUPTED, Ended
+from touchdown.master.common.processes import INTERRUPTED, TaskOutcome
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.studies.stability import study as stability_study
@@ -227,9 +228,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 def test_what_is_done_stays_after_ctrl_c(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def one_then_ctrl_c(work: object, tasks: list[object], *_: object) -> list[Ended[object]]:
-        done = [Ended(cast(Callable[[object], object], work)(task)) for task in tasks[:1]]
-        return [*done, *(Ended(None, INTERRUPTED) for _ in tasks[1:])]
+    def one_then_ctrl_c(work: object, tasks: list[object], *_: object) -> list[TaskOutcome[object]]:
+        done = [TaskOutcome(cast(Callable[[object], object], work)(task)) for task in tasks[:1]]
+        return [*done, *(INTERRUPTED for _ in tasks[1:])]
 
     monkeypatch.setattr(stability_study, "run_all", one_then_ctrl_c)
     assert command(tmp_path, "--cases", "bounce", "--schemes", "interface,hold") == 130
@@ -244,7 +245,9 @@ def test_a_case_without_reference_fails_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        stability_study, "run_all", lambda work, tasks, *_: [Ended(None, "broke") for _ in tasks]
+        stability_study,
+        "run_all",
+        lambda work, tasks, *_: [TaskOutcome(None, Ended.STOPPED, "broke") for _ in tasks],
     )
     assert command(tmp_path, "--cases", "bounce", "--schemes", "interface") == STOPPED
     assert "failed: bounce: broke" in capsys.readouterr().out
