@@ -11,6 +11,7 @@ from systems import history, rotor_on
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.rolling import ball_bodies, cage, ring
 from touchdown.bearings.rolling.ball_bodies import ANGLE, BALLS, SPIN, VX, VY, X, Y
+from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
@@ -378,7 +379,7 @@ def test_adaptive_steps_follow_two_references(name: str) -> None:
     rows: list[np.ndarray] = []
     system = open_system(scene, in_process=True)
     instance = system.components["bearing"].instance  # type: ignore[attr-defined]
-    simulate(scene, system, watch=lambda time, running: rows.append(instance.record["y"].copy()))
+    simulate(scene, system, observers=[EveryStep(lambda _: rows.append(instance.record["y"].copy()))])
     weight = instance.record["weight"][: first.shape[1]]
     inside = slice(seat.INSIDE, first.shape[1])
     apart = np.max(np.abs((first - second) * weight)[:, inside], axis=1)

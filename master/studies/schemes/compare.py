@@ -223,9 +223,9 @@ class _Judge:
         try:
             with opened(scene, True) as system:
                 sampler = Sampler(system, self.looks.landing, self.looks.every[step])
-                outcome = simulate(scene, system, watch=sampler)
+                outcome = simulate(scene, system, observers=[sampler])
                 outcome.raise_if_stopped()
-                sampler.finish(system)
+                sampler.finish()
         except TouchdownError as error:
             return Row(name, step, failed=str(error))
         residual = outcome.residual

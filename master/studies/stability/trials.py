@@ -22,9 +22,10 @@ import numpy as np
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import POSITION
 from touchdown.master.coupling.advisor import fastest_contact
+from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
-from touchdown.master.coupling.system import System
 from touchdown.master.scene import schemes
 from touchdown.master.scene.scene import Scene
 
@@ -188,7 +189,7 @@ def _contact_rate(case: Case) -> float:
         return fastest_contact(system)[1]
 
 
-class Bounds:
+class Bounds(Observer):
     """Notes how fast and how far journals get, and ends a run where they get beyond what is given."""
 
     def __init__(
@@ -197,18 +198,19 @@ class Bounds:
         self.fastest = 0.0  # m/s
         self.farthest = 0.0  # m
         self._speed, self._distance = speed, distance
-        self._names = [(*journal.split(".", 1), axis) for journal in journals for axis in "xy"]
+        self._directions = [(journal, axis) for journal in journals for axis in POSITION]
 
-    def __call__(self, time: float, system: System) -> str | None:
-        at, signals = system.position, system.signals
-        for body, port, axis in self._names:
-            distance = abs(float(signals[at[body, f"{port}.{axis}"]]))
-            speed = abs(float(signals[at[body, f"{port}.v{axis}"]]))
+    def stepped(self, now: Moment) -> None:
+        for journal, axis in self._directions:
+            distance = abs(now.system.signal(f"{journal}.{axis}"))
+            speed = abs(now.system.signal(f"{journal}.v{axis}"))
             if not (speed <= self._speed and distance <= self._distance):
-                return f"{body}.{port} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {time:.6g} s"
+                now.stop(
+                    f"{journal} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {now.time:.6g} s"
+                )
+                return
             self.fastest = max(self.fastest, speed)
             self.farthest = max(self.farthest, distance)
-        return None
 
 
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
@@ -217,7 +219,7 @@ def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome,
         {"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": NEVER}
     )
     with opened(scene, in_process=True) as system:
-        outcome = simulate(scene, system, watch=bounds)
+        outcome = simulate(scene, system, observers=[bounds])
         outcome.raise_if_interrupted()
         if outcome.ended is not Ended.COMPLETED:
             return outcome, ()

@@ -7,6 +7,7 @@ import pytest
 from systems import history, rotor_on
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, energy_scale, open_system, simulate
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
@@ -141,7 +142,8 @@ def residual(name: str, step: float) -> tuple[float, float]:
         return sum(parts) - system.value("amb.supplied")
 
     before: list[float] = []
-    outcome = simulate(scene, system, watch=lambda *_: before.append(total()) if not before else None)
+    first = EveryStep(lambda _: before.append(total()) if not before else None)
+    outcome = simulate(scene, system, observers=[first])
     return outcome.residual, abs(total() - before[0]) / energy_scale(scene, system)
 
 
