@@ -105,11 +105,9 @@ def switch(value: object, name: str) -> bool:
         raise TouchdownError(f"{name} = {value} must be true or false") from None
 
 
-def beginnings(value: object) -> tuple[str, ...]:
+def beginnings(value: object, name: str) -> tuple[str, ...]:
     """Of recorded variables: a list of text, or text with commas."""
     parts = value.split(",") if isinstance(value, str) else texts(value)
     if parts is None or not all(part.strip() for part in parts):
-        raise TouchdownError(
-            f'run.record = {value!r} must be a list such as ["rotor.A", "bearing.contact"]'
-        )
+        raise TouchdownError(f'{name} = {value!r} must be a list such as ["rotor.A", "bearing.contact"]')
     return tuple(part.strip() for part in parts)

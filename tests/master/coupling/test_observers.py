@@ -122,15 +122,15 @@ def test_ctrl_c_is_no_error_of_the_run() -> None:
 
 def test_the_contract_names_what_docs_have() -> None:
     """Derived from the ports' declarations, in their order."""
-    assert contract.MOTION == (
+    assert (
         *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "omega", "alpha_free", "inv_I"),
         *("k_over_m", "c_over_m", "static_fx", "static_fy"),
-    )
+    ) == contract.MOTION
     assert contract.SENSED == ("x", "y", "vx", "vy")
     assert (contract.LOAD, contract.SLOPE) == (("fx", "fy", "mz"), ("dfx", "dfy", "dmz"))
     assert contract.SPIN == ("omega", "alpha_free", "inv_I", "mz", "dmz")
     assert contract.MOUNT == ("k_over_m", "c_over_m")
-    assert contract.MODE_MOTION == (*contract.MOTION[:7], *contract.MOUNT)
+    assert (*contract.MOTION[:7], *contract.MOUNT) == contract.MODE_MOTION
     assert contract.MODE_LOAD == ("qx", "qy", "px", "py")
     assert (contract.WORK, contract.JUMP) == ("work", "jump")
     assert {contract.UNITS[name] for name in contract.LOAD} == {"N", "N.m"}
