@@ -27,6 +27,7 @@ from touchdown.modelkit.ports import (
     MountReaction,
     PointMotion,
     SeatReaction,
+    StaticLoad,
 )
 from touchdown.modelkit.status import BAD_INPUT, OK
 from touchdown.modelkit.variables import group, integer, real
@@ -52,11 +53,8 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class HeldMotion(FlexibleSeatMotion):
+class HeldMotion(StaticLoad, FlexibleSeatMotion):
     """Motion of the journal, and what it takes to hold it."""
-
-    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here", constant=True)
-    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here", constant=True)
 
 
 @dataclass(frozen=True)

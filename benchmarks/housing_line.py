@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 
+from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
@@ -29,7 +30,8 @@ def simulated(scene: Scene) -> tuple[System, np.ndarray, np.ndarray]:
     """(System at the end, times from the shutdown, rows of NAMES) at every macro step."""
     system = open_system(scene, in_process=True)
     rows: list[list[float]] = []
-    simulate(scene, system, watch=lambda _, running: rows.append([running.value(n) for n in NAMES]))
+    keep = EveryStep(lambda now: rows.append([now.system.value(name) for name in NAMES]))
+    simulate(scene, system, observers=[keep])
     zero = system.value(str(scene.zero))
     return system, scene.run.macro_step * (1 + np.arange(len(rows))) - zero, np.array(rows)
 

@@ -30,8 +30,8 @@ from drops import FALLS, Fall
 from environments import REQUIREMENTS, Found, UnavailableError, run, title
 
 from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts
@@ -78,7 +78,7 @@ def ours(fall: Fall) -> Found:
     system = open_system(fall.scene)
     marks: list[tuple[float, float]] = []
 
-    def watch(_: float, __: System) -> None:
+    def watch(_: Moment) -> None:
         nonlocal done
         done += 1
         if done == WARM_UP:
@@ -86,7 +86,7 @@ def ours(fall: Fall) -> Found:
 
     done = 0
     try:
-        simulate(fall.scene, system, watch=watch)
+        simulate(fall.scene, system, observers=[EveryStep(watch)])
         marks.append((clock.perf_counter(), clock.process_time()))
         wall, processor = (1e6 * (b - a) / (done - WARM_UP) for a, b in zip(*marks, strict=True))
         return Found({name: system.value(name) for name in fall.wanted}, wall, processor)

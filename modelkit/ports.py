@@ -83,6 +83,14 @@ class SeatMotion(BodyMotion):
 
 
 @dataclass(frozen=True)
+class StaticLoad:
+    """What a body takes to be held at rest, stated beside its motion."""
+
+    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
+    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
+
+
+@dataclass(frozen=True)
 class FlexibleSeatMotion(SeatMotion):
     """Motion of a journal, and of the elastic modes that have a share in it.
 

@@ -16,7 +16,14 @@ import numpy as np
 from touchdown.modelkit.body import finite
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, memory_layout
-from touchdown.modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState, PointMotion
+from touchdown.modelkit.ports import (
+    MODES,
+    Energy,
+    FlexibleSeatLoad,
+    FlexibleSeatState,
+    PointMotion,
+    StaticLoad,
+)
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from touchdown.modelkit.variables import group, groups, integer, real
 from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
@@ -66,11 +73,8 @@ class Inputs:
 
 
 @dataclass(frozen=True)
-class StationState(FlexibleSeatState):
+class StationState(StaticLoad, FlexibleSeatState):
     """Motion at a station, and what holds the rotor there."""
-
-    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
-    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
 
 
 @dataclass(frozen=True)

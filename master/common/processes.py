@@ -5,42 +5,45 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.interrupts import interrupts_ignored
 
 GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
-INTERRUPTED = "interrupted"
 
 Task = TypeVar("Task")
 Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
-class Ended(Generic[Value]):
-    """How a task ended: what it gave, or why it failed."""
+class TaskOutcome(Generic[Value]):
+    """How a task ended: what it gave, or why it gave nothing."""
 
     value: Value | None
-    failed: str = ""
+    ended: Ended = Ended.COMPLETED
+    reason: str = ""  # why, where it did not complete
+
+
+INTERRUPTED = TaskOutcome[Any](None, Ended.INTERRUPTED, Ended.INTERRUPTED.value)
 
 
 def run_all(
     work: Callable[[Task], Value], tasks: Sequence[Task], jobs: int, done: Callable[[], object]
-) -> list[Ended[Value]]:
+) -> list[TaskOutcome[Value]]:
     """How each task ended, `jobs` at a time in processes that import `work`; done() after each.
 
     A task that raises has failed, and one whose process dies; the others go on. After Ctrl-C those that
-    have not ended are "interrupted". A script that calls it needs `if __name__ == "__main__":`.
+    have not ended are INTERRUPTED. A script that calls it needs `if __name__ == "__main__":`.
     """
-    ended: dict[int, Ended[Value]] = {}
+    ended: dict[int, TaskOutcome[Value]] = {}
     jobs = max(1, min(jobs, len(tasks)))
     try:
         _run_pool(work, dict(enumerate(tasks)), jobs, ended, done)
@@ -48,18 +51,18 @@ def run_all(
             if place not in ended:  # a process that dies takes its pool along: which one shows alone
                 _run_pool(work, {place: task}, 1, ended, done)
                 if place not in ended:
-                    ended[place] = Ended(None, "its process died")
+                    ended[place] = TaskOutcome(None, Ended.STOPPED, "its process died")
                     done()
     except KeyboardInterrupt:
         pass
-    return [ended.get(place, Ended(None, INTERRUPTED)) for place in range(len(tasks))]
+    return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
 
 
 def _run_pool(
     work: Callable[[Any], Value],
     tasks: Mapping[int, Any],
     jobs: int,
-    ended: dict[int, Ended[Value]],
+    ended: dict[int, TaskOutcome[Value]],
     done: Callable[[], object],
 ) -> None:
     """Run tasks and note how they ended; those of a pool that broke are left out."""
@@ -71,7 +74,7 @@ def _run_pool(
         while waiting or running:
             while waiting and len(running) < jobs:  # a queue in the pool would go on after Ctrl-C
                 place = waiting.pop(0)
-                with _interrupts_ignored():
+                with interrupts_ignored():
                     running[pool.submit(work, tasks[place])] = place
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 ended[running.pop(future)] = _outcome(future)
@@ -85,28 +88,17 @@ def _run_pool(
     pool.shutdown()
 
 
-def _outcome(future: Future[Value]) -> Ended[Value]:
+def _outcome(future: Future[Value]) -> TaskOutcome[Value]:
     """What a task's process handed back; raises BrokenProcessPool where it died."""
     try:
-        return Ended(future.result())
+        return TaskOutcome(future.result())
     except BrokenProcessPool:
         raise
+    except KeyboardInterrupt:  # the task's own: its run was interrupted
+        return INTERRUPTED
     except Exception as error:
         what = str(error) if isinstance(error, TouchdownError) else f"{type(error).__name__}: {error}"
-        return Ended(None, what)
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Processes started meanwhile ignore Ctrl-C, but for their runs, which note it and end in order."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+        return TaskOutcome(None, Ended.STOPPED, what)
 
 
 def _end(processes: Sequence[BaseProcess]) -> None:

@@ -16,7 +16,7 @@ BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 class Unit:
     """A unit by its SI base units: value in SI = factor * value + offset."""
 
-    exponents: Mapping[str, int] = field(default_factory=dict)  # of BASE; those that are not 0
+    exponents: Mapping[str, int] = field(default_factory=dict[str, int])  # of BASE; those that are not 0
     factor: float = 1.0
     offset: float = 0.0
 

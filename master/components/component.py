@@ -11,13 +11,46 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Unit
 
-SETTABLE = ("Real", "Integer", "Boolean", "Enumeration")  # kinds; an enumeration by its number
+
+class Kind(StrEnum):
+    """Types of FMI 2.0's variables."""
+
+    REAL = "Real"
+    INTEGER = "Integer"
+    BOOLEAN = "Boolean"
+    STRING = "String"
+    ENUMERATION = "Enumeration"
+
+
+class Causality(StrEnum):
+    """What FMI 2.0's variables are for."""
+
+    PARAMETER = "parameter"
+    CALCULATED_PARAMETER = "calculatedParameter"
+    INPUT = "input"
+    OUTPUT = "output"
+    LOCAL = "local"
+    INDEPENDENT = "independent"
+
+
+class Variability(StrEnum):
+    """When FMI 2.0's variables may change."""
+
+    CONSTANT = "constant"
+    FIXED = "fixed"
+    TUNABLE = "tunable"
+    DISCRETE = "discrete"
+    CONTINUOUS = "continuous"
+
+
+SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 
 
 @dataclass(frozen=True)
@@ -26,9 +59,9 @@ class Variable:
 
     name: str
     reference: int
-    kind: str  # "Real" or "Integer"; of others, "Boolean" and "Enumeration" can be set
-    causality: str
-    variability: str
+    kind: Kind
+    causality: Causality
+    variability: Variability
     unit: str | None
     minimum: float | None
     maximum: float | None
@@ -38,12 +71,12 @@ class Variable:
     @property
     def settable(self) -> bool:
         """Whether a scene may give it a value."""
-        return self.causality in ("parameter", "input") and self.kind in SETTABLE
+        return self.causality in (Causality.PARAMETER, Causality.INPUT) and self.kind in SETTABLE
 
     @property
     def constant(self) -> bool:
         """Whether its value is settled once the component is initialised."""
-        return self.variability in ("fixed", "constant", "tunable")
+        return self.variability in (Variability.FIXED, Variability.CONSTANT, Variability.TUNABLE)
 
 
 class Component(ABC):
@@ -124,7 +157,7 @@ class Component(ABC):
         """Values of any variables, integers as such."""
         values = self.reader(names)()
         kinds = [self.variable(name).kind for name in names]
-        return [int(v) if k == "Integer" else float(v) for v, k in zip(values, kinds, strict=True)]
+        return [int(v) if k is Kind.INTEGER else float(v) for v, k in zip(values, kinds, strict=True)]
 
     can_save = True  # whether its state can be saved
 
@@ -152,5 +185,5 @@ def check_value(component: Component, variable: Variable, value: float) -> None:
         raise TouchdownError(f"{what} must be at least {variable.minimum:g}")
     if variable.maximum is not None and value > variable.maximum:
         raise TouchdownError(f"{what} must be at most {variable.maximum:g}")
-    if variable.kind != "Real" and value != round(value):
+    if variable.kind is not Kind.REAL and value != round(value):
         raise TouchdownError(f"{what} must be a whole number")

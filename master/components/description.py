@@ -8,6 +8,7 @@ from typing import Any
 from xml.parsers import expat
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import Causality, Kind, Variability
 
 
 def refuse_definitions(path: Path) -> None:
@@ -38,9 +39,24 @@ def refuse_lies(path: Path, description: Any) -> None:
         names.add(v.name)
         if not 0 <= v.valueReference < 2**32:
             raise TouchdownError(f"{what} has the value reference {v.valueReference}; it must fit 32 bits")
-        if v.causality in ("parameter", "input"):
+        _refuse_unknown(what, v)
+        if v.causality in (Causality.PARAMETER, Causality.INPUT):
             other = owners.setdefault((v.type, v.valueReference), v.name)
             if other != v.name:
                 raise TouchdownError(
                     f"{what} and {other} can both be set and share the value reference {v.valueReference}"
                 )
+
+
+def _refuse_unknown(what: str, variable: Any) -> None:
+    """Raise TouchdownError where a variable is of a type, causality or variability that FMI 2.0 lacks."""
+    for kind, stated in (
+        (Kind, variable.type),
+        (Causality, variable.causality),
+        (Variability, variable.variability),
+    ):
+        known = [str(one) for one in kind]
+        if stated is not None and stated not in known:
+            raise TouchdownError(
+                f"{what} has the {kind.__name__.lower()} {stated}; FMI 2.0 has {', '.join(known)}"
+            )

@@ -7,16 +7,10 @@ call costs the crossing and nothing else.
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import os
-import shutil
-import tempfile
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from fmpy import calloc, free, read_model_description, sharedLibraryExtension
@@ -32,62 +26,14 @@ from fmpy.fmi2 import (
     fmi2True,
 )
 
-from touchdown.master.common.archives import refuse_hostile
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
-from touchdown.master.components.component import Component, Variable
+from touchdown.master.components.component import Causality, Component, Kind, Variability, Variable
 from touchdown.master.components.description import refuse_definitions, refuse_lies
+from touchdown.master.components.unpack import unpack
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
-
-
-@dataclass(frozen=True)
-class Format:
-    """A kind of archive."""
-
-    name: str  # for people, with its article
-    heart: str  # the file it must have
-    maker: str  # what makes one
-
-
-FMU = Format("an FMU", "modelDescription.xml", "`touchdown build` makes the project's own")
-
-
-def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
-    """Unpack an archive into a folder named by its content; returns the folder.
-
-    Refuses what is not of that kind and entries that would leave the folder.
-    """
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise TouchdownError(f"there is no file {path}; {kind.maker}") from None
-    except OSError as error:
-        raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
-    folder = cache / "unpacked" / hashlib.sha256(content).hexdigest()[:24]
-    if folder.is_dir():
-        return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    fresh = Path(tempfile.mkdtemp(dir=folder.parent))
-    try:
-        with zipfile.ZipFile(path) as archive:
-            refuse_hostile(path, archive)
-            if kind.heart not in archive.namelist():
-                raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
-            archive.extractall(fresh)
-        try:
-            fresh.rename(folder)
-        except OSError:
-            if not folder.is_dir():  # else another process was first
-                raise
-    except (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, OSError, zlib.error) as error:
-        raise TouchdownError(
-            f"{path} is damaged or not {kind.name} ({error}); build or download it again"
-        ) from None
-    finally:
-        shutil.rmtree(fresh, ignore_errors=True)
-    return folder
 
 
 def describe(path: Path, folder: Path) -> Any:
@@ -140,10 +86,12 @@ def variables_of(description: Any) -> dict[str, Variable]:
         v.name: Variable(
             name=v.name,
             reference=v.valueReference,
-            kind=v.type,
-            causality=v.causality or "local",
-            variability=v.variability or "continuous",
-            unit=(v.unit or (v.declaredType.unit if v.declaredType else None)) if v.type == "Real" else "1",
+            kind=Kind(v.type),
+            causality=Causality(v.causality or Causality.LOCAL),
+            variability=Variability(v.variability or Variability.CONTINUOUS),
+            unit=(v.unit or (v.declaredType.unit if v.declaredType else None))
+            if v.type == Kind.REAL
+            else "1",
             minimum=number(v.min),
             maximum=number(v.max),
             start=number(v.start),
@@ -182,6 +130,17 @@ def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, U
     """Variables and units of an FMU, which is not loaded."""
     description = describe(path, unpack(path, cache))
     return variables_of(description), units_of(description)
+
+
+class _Fetch(NamedTuple):
+    """A call that fetches all values of one type; the arrays must outlive their addresses."""
+
+    call: Callable[..., int]
+    at: np.ndarray  # where the values go
+    references: np.ndarray
+    data: np.ndarray
+    of: int  # address of `references`
+    into: int  # address of `data`
 
 
 class FmuComponent(Component):
@@ -261,13 +220,13 @@ class FmuComponent(Component):
 
     def set(self, values: Mapping[str, float]) -> None:
         calls = (
-            ("Real", self._set_real, "f8"),
-            ("Integer", self._set_integer, "i4"),
-            ("Enumeration", self._set_integer, "i4"),
-            ("Boolean", self._set_boolean, "i4"),
+            (Kind.REAL, self._set_real, "f8"),
+            (Kind.INTEGER, self._set_integer, "i4"),
+            (Kind.ENUMERATION, self._set_integer, "i4"),
+            (Kind.BOOLEAN, self._set_boolean, "i4"),
         )
         for kind, call, dtype in calls:
-            names = [n for n in values if self.variable(n).kind == kind]
+            names = [n for n in values if self.variable(n).kind is kind]
             if names:
                 references = self._references(names)
                 data = np.array([values[n] for n in names]).astype(dtype)
@@ -295,16 +254,20 @@ class FmuComponent(Component):
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values = np.zeros(len(names))
-        parts = []
-        for kind, call, dtype in (("Real", self._get_real, "f8"), ("Integer", self._get_integer, "i4")):
-            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind == kind], dtype=np.intp)
+        fetches: list[_Fetch] = []
+        for kind, call, dtype in (
+            (Kind.REAL, self._get_real, "f8"),
+            (Kind.INTEGER, self._get_integer, "i4"),
+        ):
+            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind is kind], dtype=np.intp)
             if len(at):
                 references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
-                parts.append((call, references, references.ctypes.data, data, data.ctypes.data, at))
+                addresses = references.ctypes.data, data.ctypes.data
+                fetches.append(_Fetch(call, at, references, data, *addresses))
 
         def fetch() -> np.ndarray:
-            for call, references, address, data, into, at in parts:
-                status = call(self._component, address, len(references), into)
+            for call, at, references, data, of, into in fetches:
+                status = call(self._component, of, len(references), into)
                 if status > WARNING:
                     self._check(status, "reading")
                 values[at] = data

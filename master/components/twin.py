@@ -6,12 +6,13 @@ It drives the same instance class as the FMU's slave through the same calls, so 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from touchdown.fmus.description import causality
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component, Variable
+from touchdown.master.components.component import Causality, Component, Kind, Variability, Variable
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot
 
@@ -22,15 +23,23 @@ def _variable(slot: Slot) -> Variable:
     return Variable(
         name=slot.variable.name,
         reference=slot.index,
-        kind="Real" if spec.kind == "real" else "Integer",
-        causality=role,
-        variability=variability,
+        kind=Kind.REAL if spec.kind == "real" else Kind.INTEGER,
+        causality=Causality(role),
+        variability=Variability(variability),
         unit=spec.unit,
         minimum=spec.minimum if spec.minimum is not None else spec.above,
         maximum=spec.maximum,
         start=slot.variable.default,
         description=spec.meaning,
     )
+
+
+class _Fetch(NamedTuple):
+    """Values of one type."""
+
+    store: np.ndarray  # the instance's memory, seen as that type
+    references: np.ndarray  # in it
+    at: np.ndarray  # where the values go
 
 
 class TwinComponent(Component):
@@ -47,7 +56,7 @@ class TwinComponent(Component):
     def set(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             v = self.variable(name)
-            if v.kind == "Real":
+            if v.kind is Kind.REAL:
                 self.instance.reals[v.reference] = value
             else:
                 self.instance.integers[v.reference] = int(value)
@@ -84,15 +93,16 @@ class TwinComponent(Component):
         values = np.zeros(len(names))
         variables = [self.variable(n) for n in names]
         integers = self._words.view("i8")
-        parts = []
-        for kind, store in (("Real", self._words), ("Integer", integers)):
-            at = np.array([i for i, v in enumerate(variables) if v.kind == kind], dtype=np.intp)
-            parts.append((store, np.array([variables[i].reference for i in at], dtype=np.intp), at))
+        fetches: list[_Fetch] = []
+        for kind, store in ((Kind.REAL, self._words), (Kind.INTEGER, integers)):
+            at = np.array([i for i, v in enumerate(variables) if v.kind is kind], dtype=np.intp)
+            references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
+            fetches.append(_Fetch(store, references, at))
 
         def fetch() -> np.ndarray:
             if self._initialising:
                 self._start()
-            for store, references, at in parts:
+            for store, references, at in fetches:
                 values[at] = store[references]
             return values
 

@@ -1,33 +1,32 @@
-"""The loop: macro steps at t = k H, bearings first, then the bodies under the loads handed over."""
+"""The loop: macro steps at t = k H, and observers that are told of each."""
 
 from __future__ import annotations
 
 import math
-import signal
 import threading
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import load
-from touchdown.master.coupling.connections import LOAD, SLOPE
-from touchdown.master.coupling.ledger import Ledger
+from touchdown.master.coupling.assembly import assemble
+from touchdown.master.coupling.ledger import Judge, Ledger
+from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
 from touchdown.master.coupling.recorder import Recorder
+from touchdown.master.coupling.retirement import Retirement
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System, assemble
-from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.step_sizes import shorter_step
-
-BEAT = 64  # macro steps between looks at progress, ledger and components that have nothing left to do
 
 
-@dataclass
+@dataclass(frozen=True)
 class Outcome:
     """What the loop reports beside the recording."""
 
@@ -38,8 +37,20 @@ class Outcome:
     start_up: float = 0.0  # s, loading and initialising
     residual: float = 0.0  # of the ledger, over its scale
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
-    stopped_because: str = ""
-    coupling: dict[str, float] = field(default_factory=dict)  # what the scheme has to say of itself
+    ended: Ended = Ended.COMPLETED
+    reason: str = ""  # why, where it did not complete
+    coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
+
+    def raise_if_interrupted(self) -> None:
+        """Raise KeyboardInterrupt where Ctrl-C ended the run."""
+        if self.ended is Ended.INTERRUPTED:
+            raise KeyboardInterrupt
+
+    def raise_if_stopped(self) -> None:
+        """Raise TouchdownError where the run could not go on, KeyboardInterrupt where Ctrl-C ended it."""
+        self.raise_if_interrupted()
+        if self.ended is Ended.STOPPED:
+            raise TouchdownError(self.reason)
 
 
 def open_system(scene: Scene, in_process: bool = False) -> System:
@@ -48,11 +59,11 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     def load_one(name: str, fmu: str) -> Component:
         return load(name, fmu, scene.folder, in_process)
 
-    return assemble(scene, scene.run.scheme, load_one)
+    return assemble(scene, load_one)
 
 
 @contextmanager
-def opened(scene: Scene, in_process: bool = False) -> Iterator[System]:
+def opened(scene: Scene, in_process: bool = False) -> Generator[System]:
     """The scene's system, freed at the end."""
     system = open_system(scene, in_process)
     try:
@@ -65,66 +76,41 @@ def simulate(
     scene: Scene,
     system: System,
     record_to: Path | None = None,
-    progress: Callable[[float, float], None] = lambda time, residual: None,
-    watch: Callable[[float, System], None] | None = None,
+    progress: Callable[[float, float], object] = lambda time, residual: None,
+    observers: Iterable[Observer] = (),
 ) -> Outcome:
-    """Initialise `system` and run it to the scene's end.
+    """Initialise `system` and run it to the scene's end, or until an observer ends it.
 
-    progress(time from zero in s, ledger residual) is called now and then; watch(time, system) after
-    every macro step. A run that cannot go on, or is interrupted, keeps its recording; the reason then
-    stands in the outcome's `stopped_because`.
+    progress(time from zero in s, ledger residual) is called now and then; `observers` are told of every
+    macro step. Whatever ends the run, its recording is complete up to there; where that is not an error
+    of an observer's own, the outcome says how it ended, and why.
     """
     began = clock.perf_counter()
-    outcome = Outcome()
     with interrupts_noted() as interrupted:
-        outcome.zero = system.value(scene.zero) if scene.zero else 0.0
-        steps = macro_steps(outcome.zero + scene.run.duration, scene.run.macro_step)
+        zero = system.value(scene.zero) if scene.zero else 0.0
+        now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)
         ledger = Ledger(system, energy_scale(scene, system))
-        recorder = None
-        if record_to is not None:
-            recorder = Recorder(record_to, system.components, scene.run.record_arrays, scene.run.record)
-        try:
-            if recorder is not None:
-                recorder.append(-outcome.zero)
-            outcome.start_up = clock.perf_counter() - began
-            _loop(scene, system, coupling, steps, ledger, recorder, outcome, progress, watch, interrupted)
-        except TouchdownError as error:
-            outcome.stopped_because = str(error)
-        finally:
-            problem = recorder.close() if recorder is not None else ""
-        outcome.stopped_because = outcome.stopped_because or problem
-    return outcome
-
-
-_noted: threading.Event | None = None  # while interrupts are noted; they are the process's, not a run's
-
-
-@contextmanager
-def interrupts_noted() -> Iterator[threading.Event]:
-    """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU.
-
-    May be nested; what was noted outside is known inside.
-    """
-    global _noted
-    outer = _noted
-    if outer is not None or threading.current_thread() is not threading.main_thread():
-        yield outer or threading.Event()
-        return
-    _noted = noted = threading.Event()
-
-    def note(*_: object) -> None:
-        if noted.is_set():  # asked a second time: now, whatever it breaks
-            raise KeyboardInterrupt
-        noted.set()
-
-    before = signal.signal(signal.SIGINT, note)
-    try:
-        yield noted
-    finally:
-        signal.signal(signal.SIGINT, before)
-        _noted = None
+        judge = Judge(ledger, scene.run)
+        with _recording(scene, now, record_to) as recording:
+            told = [ledger, judge, *observers, *recording]
+            told.append(Retirement(coupling, told))
+            told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.residual)))
+            start_up = clock.perf_counter() - began
+            wall_time = _loop(coupling, told, now, interrupted)
+    return Outcome(
+        steps=now.done,
+        zero=zero,
+        end=now.time,
+        wall_time=wall_time,
+        start_up=start_up,
+        residual=ledger.residual,
+        warned_at=judge.warned_at,
+        ended=now.ended or Ended.COMPLETED,
+        reason=now.reason,
+        coupling=coupling.figures,
+    )
 
 
 def macro_steps(duration: float, step: float) -> int:
@@ -140,82 +126,56 @@ def energy_scale(scene: Scene, system: System) -> float:
 
 
 def _loop(
-    scene: Scene,
-    system: System,
-    stepper: Stepper,
-    steps: int,
-    ledger: Ledger,
-    recorder: Recorder | None,
-    outcome: Outcome,
-    progress: Callable[[float, float], None],
-    watch: Callable[[float, System], None] | None,
-    interrupted: threading.Event,
-) -> None:
-    step, every = scene.run.macro_step, scene.run.record_every
-    limit = scene.run.warn_residual * ledger.scale if ledger.scale > 0.0 else math.inf
+    coupling: Stepper, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
+) -> float:
+    """Take macro steps until the end, or until the run is to end; returns the time it took (s)."""
+    step = coupling.run.macro_step
+    tell = [observer.stepped for observer in observers]
     began = clock.perf_counter()
     try:
-        for k in range(steps):
+        for number in range(now.steps):
             if interrupted.is_set():
-                raise TouchdownError("interrupted")
-            time = k * step
-            stepper.step(k, time, step)
-            ledger.update()
-            done = k + 1
-            outcome.steps = done
-            outcome.end = done * step
-            noticed = not ledger.total <= limit
-            if recorder is not None and (noticed or done % every == 0 or done == steps):
-                recorder.append(outcome.end - outcome.zero)
-            if noticed:
-                limit = _judge(scene, ledger, outcome)
-            if watch is not None:
-                watch(outcome.end, system)
-            if done % BEAT == 0 or done == steps:
-                outcome.wall_time = clock.perf_counter() - began
-                idle = [name for name in system.order if not _has_work(system.components[name])]
-                if idle:
-                    system.retire(idle)
-                    stepper.follow()
-                    ledger.follow(system)
-                    if recorder is not None:
-                        recorder.rest(idle)
-                progress(outcome.end - outcome.zero, ledger.residual)
+                now.stop(Ended.INTERRUPTED.value, Ended.INTERRUPTED)
+                break
+            coupling.step(number, number * step, step)
+            now.done = number + 1
+            now.time = now.done * step
+            now.last = now.done == now.steps
+            for stepped in tell:
+                stepped(now)
+            if now.ended is not None:
+                break
+    except TouchdownError as error:
+        now.fail(str(error))
+    return clock.perf_counter() - began
+
+
+class _Recording(Observer):
+    """Records every few macro steps, the last one, and what somebody wants kept."""
+
+    def __init__(self, recorder: Recorder, every: int) -> None:
+        self._recorder, self._every = recorder, every
+
+    def stepped(self, now: Moment) -> None:
+        if now.done % self._every == 0 or now.last or now.kept == now.done or now.ended is not None:
+            self._recorder.append(now.since_zero)
+
+    def retired(self, names: Sequence[str]) -> None:
+        self._recorder.rest(names)
+
+
+@contextmanager
+def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[Observer]]:
+    """The observer that records into a file at `path`, if there is one; the file is closed at the end."""
+    if path is None:
+        yield []
+        return
+    run = scene.run
+    recorder = Recorder(path, now.system.components, run.record_arrays, run.record)
+    try:
+        recorder.append(-now.zero)
+        yield [_Recording(recorder, run.record_every)]
     finally:
-        outcome.wall_time = clock.perf_counter() - began
-        outcome.residual = ledger.residual
-        outcome.coupling = stepper.figures
-
-
-def _has_work(component: Component) -> bool:
-    """A component that says `active` = 0, and gives no load, gives nothing any more and is not stepped."""
-    variable = component.variables.get("active")
-    if variable is None or variable.causality != "output" or variable.kind != "Integer":
-        return True
-    loads = [name for name in component.variables if name.rpartition(".")[2] in LOAD + SLOPE]
-    given = [name for name in loads if component.variables[name].causality == "output"]
-    return component.read(["active"])[0] != 0 or any(component.read(given))
-
-
-def _judge(scene: Scene, ledger: Ledger, outcome: Outcome) -> float:
-    """Warn, or stop, where the coupling makes or loses too much energy; returns the next limit (J)."""
-    run, time = scene.run, outcome.end - outcome.zero
-    if ledger.residual <= run.stop_residual:
-        outcome.warned_at = time
-        return run.stop_residual * ledger.scale
-    worst = ledger.worst()
-    name = worst.attachment.title if worst else "the system"
-    raise TouchdownError(
-        f"the energy ledger of {name} is off by {ledger.residual:.2g} of the energy lost by falling at "
-        f"t = {time:.6g} s; {_remedy(run, ledger.residual)}"
-    )
-
-
-def _remedy(run: RunSpec, residual: float) -> str:
-    if run.scheme.error_order == 0:
-        smaller = 0.1 * run.tolerance
-        return f"the tolerance of {run.tolerance:g} m is too large, try --set run.tolerance={smaller:g}"
-    return (
-        f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
-        f"try --macro-step {shorter_step(run, residual):g}"
-    )
+        problem = recorder.close()
+        if problem:
+            now.fail(problem)

@@ -7,21 +7,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 
-from touchdown.master.components.component import Component, Variable
-from touchdown.master.coupling.connections import LOAD, MOTION, NEEDED, SLOPE
+from touchdown.master.components.component import Causality, Component, Kind, Variable
+from touchdown.master.components.contract import (
+    FORCE,
+    LOAD,
+    MODE_LOAD,
+    MODE_MOTION,
+    MOTION,
+    MOUNT,
+    NEEDED,
+    POSITION,
+    SLOPE,
+    SPIN,
+    STATIC,
+    UNITS,
+)
 from touchdown.modelkit.ports import MODES
 
-UNITS = {
-    "x": "m", "y": "m", "vx": "m/s", "vy": "m/s", "ax_free": "m/s2", "ay_free": "m/s2", "inv_m": "1/kg",
-    "omega": "rad/s", "alpha_free": "rad/s2", "inv_I": "1/(kg.m2)", "k_over_m": "1/s2", "c_over_m": "1/s",
-    "fx": "N", "fy": "N", "mz": "N.m", "dfx": "N/s", "dfy": "N/s", "dmz": "N.m/s",
-    "static_fx": "N", "static_fy": "N",
-}  # fmt: skip
-SPIN = ("omega", "alpha_free", "inv_I", "mz", "dmz")
-STATIC = ("static_fx", "static_fy")
-_MODE = {"bearing": "qx", "body": "x"}
-MOUNT = ("k_over_m", "c_over_m")
+TAKING = (Causality.INPUT,)
+GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
+
+
+class Side(StrEnum):
+    """Whose port it is."""
+
+    BEARING = "bearing"  # takes motion and gives load
+    BODY = "body"  # the other way round
+    SENSOR = "sensor"  # takes motion only
+
+
+_MODE = {Side.BEARING: MODE_LOAD[0], Side.BODY: MODE_MOTION[0]}  # by which an elastic mode is counted
 
 
 @dataclass
@@ -44,20 +61,18 @@ class Report:
         return "\n".join([f"{self.name}: {verdict}", *body])
 
 
-def ports(component: Component) -> dict[str, str]:
-    """Ports by name and kind: a "bearing" takes motion and gives load, a "body" the other way round, a
-    "sensor" takes motion only.
-    """
-    found: dict[str, str] = {}
+def ports(component: Component) -> dict[str, Side]:
+    """Sides of a component's ports, by the ports' names."""
+    found: dict[str, Side] = {}
     for variable in component.variables.values():
         port, _, suffix = variable.name.rpartition(".")
         if not port or port.endswith("]"):  # modes belong to their seat
             continue
-        if variable.causality == "input" and suffix in NEEDED["motion"]:
-            loaded = any(f"{port}.{load}" in component.variables for load in NEEDED["load"])
-            found[port] = "bearing" if loaded else "sensor"
-        elif variable.causality == "input" and suffix in NEEDED["load"]:
-            found[port] = "body"
+        if variable.causality is Causality.INPUT and suffix in POSITION:
+            loaded = any(f"{port}.{load}" in component.variables for load in FORCE)
+            found[port] = Side.BEARING if loaded else Side.SENSOR
+        elif variable.causality is Causality.INPUT and suffix in FORCE:
+            found[port] = Side.BODY
     return found
 
 
@@ -66,17 +81,17 @@ class Role:
     """What a component can be in a scene."""
 
     title: str
-    side: str  # of its ports
+    side: Side  # of its ports
     ports: tuple[str, ...] = ()  # by the names that the project's scenes attach; none: any
     optional: tuple[str, ...] = ()  # ports it may have
     parameters: Mapping[str, str] = field(default_factory=dict)  # names and units
 
 
 ROLES = {
-    "bearing": Role("a bearing", "bearing", ("journal",), ("housing",)),
-    "amb": Role("a magnetic bearing", "bearing", ("journal",), ("housing",), {"shutdown_time": "s"}),
-    "rotor": Role("a rotor", "body"),  # whatever its seats are called
-    "housing": Role("a housing", "body", ("seat",)),
+    "bearing": Role("a bearing", Side.BEARING, ("journal",), ("housing",)),
+    "amb": Role("a magnetic bearing", Side.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
+    "rotor": Role("a rotor", Side.BODY),  # whatever its seats are called
+    "housing": Role("a housing", Side.BODY, ("seat",)),
 }
 
 
@@ -86,7 +101,7 @@ def check_ports(component: Component, report: Report) -> None:
     if not found:
         report.lines.append("no port of a bearing or a body: it can only be connected variable by variable")
     for port, side in found.items():
-        if side == "sensor":
+        if side is Side.SENSOR:
             report.lines.append(f"port {port}: of a sensor")
         else:
             _check_port(component, port, side, report)
@@ -99,9 +114,9 @@ def check_role(component: Component, role: str, report: Report) -> None:
     for port in (*wanted.ports, *(p for p in wanted.optional if p in found)):
         if port not in found:
             _check_port(component, port, wanted.side, report)
-        elif found[port] != wanted.side:
+        elif found[port] is not wanted.side:
             report.problems.append(f"port {port} is of a {found[port]}, not of a {wanted.side}")
-    seats = [p for p, side in found.items() if side == wanted.side and _spins(component, p)]
+    seats = [p for p, side in found.items() if side is wanted.side and _spins(component, p)]
     if not wanted.ports and not seats:
         report.problems.append(
             f"no port of a {wanted.side} that spins; {wanted.title} needs for each of its seats, called A "
@@ -109,27 +124,27 @@ def check_role(component: Component, role: str, report: Report) -> None:
         )
     for name, unit in wanted.parameters.items():
         variable = component.variables.get(name)
-        if variable is None or variable.causality != "parameter":
+        if variable is None or variable.causality is not Causality.PARAMETER:
             report.problems.append(f"{name} is missing (parameter in {unit}); scenes count from it")
         else:
-            _check_variable(variable, ("parameter",), unit, report)
+            _check_variable(variable, (Causality.PARAMETER,), unit, report)
 
 
 def _spins(component: Component, port: str) -> bool:
     return any(f"{port}.{suffix}" in component.variables for suffix in SPIN)
 
 
-def _check_port(component: Component, port: str, side: str, report: Report) -> None:
-    takes, gives = (MOTION, LOAD + SLOPE) if side == "bearing" else (LOAD + SLOPE, MOTION)
+def _check_port(component: Component, port: str, side: Side, report: Report) -> None:
+    takes, gives = (MOTION, LOAD + SLOPE) if side is Side.BEARING else (LOAD + SLOPE, MOTION)
     missing: list[str] = []
-    for suffixes, causes in ((takes, ("input",)), (gives, ("output", "calculatedParameter"))):
+    for suffixes, causes in ((takes, TAKING), (gives, GIVING)):
         for suffix in suffixes:
             variable = component.variables.get(f"{port}.{suffix}")
             if variable is not None:
                 _check_variable(variable, causes, UNITS[suffix], report)
                 continue
             missing.append(suffix)
-            if suffix in (*NEEDED["motion"], *NEEDED["load"]):
+            if suffix in NEEDED:
                 report.problems.append(
                     f"{port}.{suffix} is missing ({causes[0]} in {UNITS[suffix]}); "
                     f"no {side} works without it"
@@ -138,10 +153,10 @@ def _check_port(component: Component, port: str, side: str, report: Report) -> N
         report.lines.append(_portrait(component, port, side, missing))
 
 
-def _check_variable(variable: Variable, causes: tuple[str, ...], unit: str, report: Report) -> None:
+def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, report: Report) -> None:
     if variable.causality not in causes:
         report.problems.append(f"{variable.name} has the causality {variable.causality}, not {causes[0]}")
-    elif variable.kind != "Real":
+    elif variable.kind is not Kind.REAL:
         report.problems.append(f"{variable.name} is of the type {variable.kind}, not Real")
     elif variable.unit is None:
         report.unitless.append(f"{variable.name} in {unit}")
@@ -149,12 +164,12 @@ def _check_variable(variable: Variable, causes: tuple[str, ...], unit: str, repo
         report.problems.append(f"{variable.name} is in {variable.unit}, not in {unit}")
 
 
-def _portrait(component: Component, port: str, side: str, missing: Sequence[str]) -> str:
+def _portrait(component: Component, port: str, side: Side, missing: Sequence[str]) -> str:
     """What a port is, and what it does without."""
     spins = _spins(component, port)
     text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"
     modes = sum(f"{port}.mode[{k}].{_MODE[side]}" in component.variables for k in range(1, MODES + 1))
     text += f", with up to {modes} elastic modes" if modes else ""
-    rare = (*NEEDED["motion"], *NEEDED["load"], *STATIC, *(MOUNT if spins else SPIN))
+    rare = (*NEEDED, *STATIC, *(MOUNT if spins else SPIN))
     optional = [suffix for suffix in missing if suffix not in rare]
     return text + (f"; without {', '.join(optional)}" if optional else "")

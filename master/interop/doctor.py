@@ -22,7 +22,8 @@ from touchdown.fmus.link import (
     why_not_compiled,
 )
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.fmu import describe, unpack
+from touchdown.master.components.fmu import describe
+from touchdown.master.components.unpack import unpack
 from touchdown.master.interop import trial
 from touchdown.modelkit.kernel import user_cache
 

@@ -9,9 +9,11 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
-from touchdown.master.coupling.simulation import Outcome, interrupts_noted, open_system, simulate
+from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.summary import summarise
@@ -24,6 +26,7 @@ class Result:
 
     folder: Path
     summary: dict[str, object]
+    ended: Ended = Ended.COMPLETED
     stopped_because: str = ""
     warnings: list[str] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
@@ -58,12 +61,12 @@ def run_scene(
         finally:
             system.close()
     warnings = []
-    if outcome.warned_at is not None and not outcome.stopped_because:
+    if outcome.warned_at is not None and outcome.ended is Ended.COMPLETED:
         warnings.append(
             f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
             f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
         )
-    return Result(folder, summary, outcome.stopped_because, warnings, drawn)
+    return Result(folder, summary, outcome.ended, outcome.reason, warnings, drawn)
 
 
 def _write_results(

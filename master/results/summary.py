@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import get_window
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.coupling.system import System, housing_port
@@ -65,8 +66,7 @@ def touchdown_seats(system: System) -> list[Attachment]:
     return [
         a
         for a in system.attachments
-        if "contact.first_time" in system.components[a.bearing].variables
-        and f"{a.bearing_port}.omega" in system.components[a.bearing].variables
+        if f"{a.bearing}.contact.first_time" in system and a.bearing_end.full("omega") in system
     ]
 
 
@@ -80,10 +80,10 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
     """All figures of a run; None where something did not happen or was too short to tell."""
     found: dict[str, object] = {
         "scene": scene.name,
-        "completed": not outcome.stopped_because,
+        "completed": outcome.ended is Ended.COMPLETED,
     }
-    if outcome.stopped_because:
-        found["stopped_because"] = outcome.stopped_because
+    if outcome.ended is not Ended.COMPLETED:
+        found["stopped_because"] = outcome.reason
     seats = touchdown_seats(system)
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
@@ -94,8 +94,8 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
             found |= _whirl_figures(system, a, seat_name(a, seats), recording)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
-        port = next(a.body_port for a in seats if a.body == name)
-        found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(f"{name}.{port}.omega")
+        seat = next(a for a in seats if a.body == name)
+        found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(seat.motion("omega"))
     found |= stress_figures(system, outcome)
     found |= outcome.coupling
     found |= _run_figures(scene, system, outcome, recording)
@@ -122,8 +122,8 @@ def _bearing_figures(system: System, a: Attachment, outcome: Outcome) -> dict[st
 def _orbit_figures(
     system: System, a: Attachment, outcome: Outcome, recording: Recording
 ) -> dict[str, object]:
-    x = recording[f"{a.body}.{a.body_port}.x"]
-    y = recording[f"{a.body}.{a.body_port}.y"]
+    x = recording[a.motion("x")]
+    y = recording[a.motion("y")]
     time = recording.time
     fall = None
     after = time > 0.0
@@ -147,10 +147,7 @@ def _orbit_figures(
 def relative_orbit(system: System, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
     """Journal's position relative to the housing's, the bearing's centre (m)."""
     port = housing_port(system, a)
-    x, y = (
-        recording[f"{a.body}.{a.body_port}.{axis}"] - (recording[f"{port}.{axis}"] if port else 0.0)
-        for axis in "xy"
-    )
+    x, y = (recording[a.motion(axis)] - (recording[f"{port}.{axis}"] if port else 0.0) for axis in "xy")
     return x, y
 
 
@@ -159,7 +156,7 @@ def whirl_at(system: System, a: Attachment, recording: Recording) -> Whirl | Non
     if "clearance" not in system.components[a.bearing].variables:
         return None
     clearance = system.value(f"{a.bearing}.clearance")
-    spin = float(np.median(recording[f"{a.body}.{a.body_port}.omega"]))
+    spin = float(np.median(recording[a.motion("omega")]))
     return classify(recording.time, *relative_orbit(system, a, recording), clearance, spin)
 
 

@@ -29,7 +29,7 @@ gives takes the place of what stands there, table by table; a component that nam
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +37,17 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import to_si
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire, checked_preset
-from touchdown.master.scene.tables import flat, pairs, reference, references, refuse_unknown, table, whole
+from touchdown.master.scene.tables import (
+    entries,
+    flat,
+    items,
+    pairs,
+    reference,
+    references,
+    refuse_unknown,
+    table,
+    whole,
+)
 
 SHIPPED = Path(__file__).parent / "shipped"
 
@@ -139,29 +149,33 @@ def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
     """`base` with `changes` put in, nested tables likewise, unless they name another FMU."""
     found = dict(base)
     for key, value in changes.items():
-        there = found.get(key)
-        if isinstance(value, Mapping) and isinstance(there, Mapping) and "fmu" not in value:
-            found[key] = _over(there, value)
-        else:
+        there, given = entries(found.get(key)), entries(value)
+        if there is None or given is None or "fmu" in given:
             found[key] = value
+        else:
+            found[key] = _over(there, given)
     return found
 
 
 def _wires(value: object, where: str) -> tuple[Wire, ...]:
     """Pairs, some with factor and offset."""
-    if not isinstance(value, list) or not all(isinstance(wire, list) for wire in value):
+    wires = [items(wire) for wire in items(value) or ()]
+    if not isinstance(value, list) or None in wires:
         raise TouchdownError(f'{where} must be a list such as [["rotor.A.x", "probe.x"]]')
-    found: list[Wire] = []
-    for wire in value:
-        ((source, target),) = pairs([wire[:2]], where)
-        scale = None
-        if len(wire) > 2:
-            if len(wire) != 4:
-                raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
-            what = f"{where}: {source} to {target}"
-            scale = to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset")
-        found.append(Wire(source, target, scale))
-    return tuple(found)
+    return tuple(_wire(wire, where) for wire in wires if wire is not None)
+
+
+def _wire(wire: Sequence[object], where: str) -> Wire:
+    """Source and target, and where it is scaled, factor and offset."""
+    ((source, target),) = pairs([list(wire[:2])], where)
+    if len(wire) == 2:
+        return Wire(source, target)
+    if len(wire) != 4:
+        raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
+    what = f"{where}: {source} to {target}"
+    return Wire(
+        source, target, (to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset"))
+    )
 
 
 def _names(value: object, where: str, folder: Path) -> dict[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,15 +11,6 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
 from touchdown.master.scene.tables import beginnings, refuse_unknown, switch, whole
-
-RUN_UNITS = {
-    "duration": "s",
-    "macro_step": "s",
-    "tolerance": "m",
-    "record_every": "1",
-    "warn_residual": "1",
-    "stop_residual": "1",
-}
 
 
 @dataclass(frozen=True)
@@ -39,22 +30,38 @@ class RunSpec:
 
 def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
     """A copy with the keys of [run] in `changes` set; raises TouchdownError for what cannot be."""
-    refuse_unknown(changes, ("scheme", "record", "record_arrays", *RUN_UNITS), "[run]")
-    values: dict[str, Any] = {}
-    for key, value in changes.items():
-        if key == "scheme":
-            values[key] = value if isinstance(value, Scheme) else scheme(str(value))
-            continue
-        if key == "record_arrays":
-            values[key] = switch(value, f"run.{key}")
-            continue
-        if key == "record":
-            values[key] = beginnings(value)
-            continue
-        number = to_si(value, RUN_UNITS[key], f"run.{key}")
-        if number <= 0.0 or not math.isfinite(number):
-            raise TouchdownError(f"run.{key} = {value} must be above 0")
-        if key == "record_every":
-            number = whole(value, f"run.{key}")
-        values[key] = number
+    refuse_unknown(changes, tuple(READERS), "[run]")
+    values: dict[str, Any] = {key: READERS[key](value, f"run.{key}") for key, value in changes.items()}
     return replace(run, **values)
+
+
+def _scheme(value: object, name: str) -> Scheme:
+    return value if isinstance(value, Scheme) else scheme(str(value))
+
+
+def _above_zero(unit: str) -> Callable[[object, str], float]:
+    def read(value: object, name: str) -> float:
+        number = to_si(value, unit, name)
+        if number <= 0.0 or not math.isfinite(number):
+            raise TouchdownError(f"{name} = {value} must be above 0")
+        return number
+
+    return read
+
+
+def _steps_above_zero(value: object, name: str) -> int:
+    _above_zero("1")(value, name)
+    return whole(value, name)
+
+
+READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
+    "scheme": _scheme,
+    "record": beginnings,
+    "record_arrays": switch,
+    "duration": _above_zero("s"),
+    "macro_step": _above_zero("s"),
+    "tolerance": _above_zero("m"),
+    "record_every": _steps_above_zero,
+    "warn_residual": _above_zero("1"),
+    "stop_residual": _above_zero("1"),
+}

@@ -18,12 +18,12 @@ class ComponentSpec:
     """A component: where it comes from and what is set in it."""
 
     fmu: str
-    set: Mapping[str, object] = field(default_factory=dict)
+    set: Mapping[str, object] = field(default_factory=dict[str, object])
     preset: str | None = None  # a named set of parameters, applied first
     every: int = 1  # macro steps of the run that it takes in one
-    names: Mapping[str, str] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict[str, str])
     """Variables of the contract, and what this FMU calls them."""
-    inherited: Mapping[str, object] = field(default_factory=dict)
+    inherited: Mapping[str, object] = field(default_factory=dict[str, object])
     """Settings of the component it was swapped for; those it has are applied before `set`."""
 
 

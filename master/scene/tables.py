@@ -6,25 +6,45 @@ Every function raises TouchdownError with `where` the mistake stands and what to
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, cast
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import to_si
 
 
+def entries(value: object) -> Mapping[str, Any] | None:
+    """A table of whatever is in it; None where it is no table."""
+    return cast(Mapping[str, Any], value) if isinstance(value, Mapping) else None
+
+
 def table(value: object, where: str) -> Mapping[str, Any]:
     """A table of whatever is in it."""
-    if not isinstance(value, Mapping):
+    found = entries(value)
+    if found is None:
         raise TouchdownError(f"{where} must be a table")
-    return value
+    return found
+
+
+def items(value: object) -> list[object] | None:
+    """A list of whatever is in it; None where it is no list."""
+    return cast(list[object], value) if isinstance(value, list) else None
+
+
+def texts(value: object) -> list[str] | None:
+    """A list of text; None where it is no list, or holds something else."""
+    found = items(value)
+    if found is None or not all(isinstance(item, str) for item in found):
+        return None
+    return cast(list[str], found)
 
 
 def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
     """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
     found: dict[str, object] = {}
     for key, value in table.items():
-        if isinstance(value, Mapping):
-            found |= flat(value, f"{prefix}{key}.")
+        inner = entries(value)
+        if inner is not None:
+            found |= flat(inner, f"{prefix}{key}.")
         else:
             found[f"{prefix}{key}"] = value
     return found
@@ -39,12 +59,18 @@ def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str)
 
 def pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
     """A list of pairs of dotted names."""
-    if not isinstance(value, list) or not all(
-        isinstance(p, list) and len(p) == 2 and all(isinstance(s, str) and "." in s for s in p)
-        for p in value
-    ):
+    listed = items(value)
+    found = [] if listed is None else [_pair(item) for item in listed]
+    if listed is None or None in found:
         raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
-    return tuple((p[0], p[1]) for p in value)
+    return tuple(pair for pair in found if pair is not None)
+
+
+def _pair(value: object) -> tuple[str, str] | None:
+    names = texts(value)
+    if names is None or len(names) != 2 or not all("." in name for name in names):
+        return None
+    return names[0], names[1]
 
 
 def reference(value: object, where: str) -> str:
@@ -56,9 +82,10 @@ def reference(value: object, where: str) -> str:
 
 def references(value: object, where: str) -> tuple[str, ...]:
     """A list of COMPONENT.VARIABLE."""
-    if not isinstance(value, list):
+    listed = items(value)
+    if listed is None:
         raise TouchdownError(f'{where} = {value!r} must be a list of variables, such as ["rotor.mass"]')
-    return tuple(reference(item, where) for item in value)
+    return tuple(reference(item, where) for item in listed)
 
 
 def whole(value: object, name: str) -> int:
@@ -78,11 +105,9 @@ def switch(value: object, name: str) -> bool:
         raise TouchdownError(f"{name} = {value} must be true or false") from None
 
 
-def beginnings(value: object) -> tuple[str, ...]:
+def beginnings(value: object, name: str) -> tuple[str, ...]:
     """Of recorded variables: a list of text, or text with commas."""
-    parts = value.split(",") if isinstance(value, str) else value
-    if not isinstance(parts, list) or not all(isinstance(part, str) and part.strip() for part in parts):
-        raise TouchdownError(
-            f'run.record = {value!r} must be a list such as ["rotor.A", "bearing.contact"]'
-        )
+    parts = value.split(",") if isinstance(value, str) else texts(value)
+    if parts is None or not all(part.strip() for part in parts):
+        raise TouchdownError(f'{name} = {value!r} must be a list such as ["rotor.A", "bearing.contact"]')
     return tuple(part.strip() for part in parts)

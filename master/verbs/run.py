@@ -29,6 +29,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
+    from touchdown.master.common.ended import Ended
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
 
@@ -44,9 +45,9 @@ def execute(options: argparse.Namespace) -> int:
     print(table(result.summary))
     print(f"results in {result.folder}")
     warn(result.warnings)
-    if result.stopped_because:
+    if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
-        return BROKEN_OFF if result.stopped_because == "interrupted" else STOPPED
+        return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
     return 0
 
 

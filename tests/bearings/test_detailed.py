@@ -14,6 +14,7 @@ from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies import cage
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
+from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
@@ -209,7 +210,7 @@ def finished(scene: Scene) -> System:
     """The system at the end of a run."""
     system = open_system(scene, in_process=True)
     outcome = simulate(scene, system)
-    assert not outcome.stopped_because, outcome.stopped_because
+    assert not outcome.reason, outcome.reason
     return system
 
 
@@ -343,7 +344,7 @@ def test_adaptive_steps_follow_two_references(name: str) -> None:
     rows: list[np.ndarray] = []
     system = open_system(scene, in_process=True)
     instance = system.components["bearing"].instance  # type: ignore[attr-defined]
-    simulate(scene, system, watch=lambda time, running: rows.append(instance.record["q"].copy()))
+    simulate(scene, system, observers=[EveryStep(lambda _: rows.append(instance.record["q"].copy()))])
     weight = instance.record["weight"][: first.shape[1]]
     inside = slice(seat.INSIDE, first.shape[1])
     apart = np.max(np.abs((first - second) * weight)[:, inside], axis=1)

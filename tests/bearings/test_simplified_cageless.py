@@ -24,7 +24,7 @@ def finished(scene: Scene) -> System:
     """The system at the end of a run."""
     system = open_system(scene, in_process=True)
     outcome = simulate(scene, system)
-    assert not outcome.stopped_because, outcome.stopped_because
+    assert not outcome.reason, outcome.reason
     return system
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from systems import run_to_end
 
+from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
@@ -72,13 +72,13 @@ def sampled(scene: Scene, times: np.ndarray) -> np.ndarray:
     mark = next(marks)
     zero = system.value(str(scene.zero))
 
-    def watch(time: float, running: System) -> None:
+    def watch(now: Moment) -> None:
         nonlocal mark
-        if abs(time - zero - mark) < 1e-9:
-            found.append([running.value(name) for name in JOURNAL])
+        if abs(now.time - zero - mark) < 1e-9:
+            found.append([now.system.value(name) for name in JOURNAL])
             mark = next(marks)
 
-    simulate(scene, system, watch=watch)
+    simulate(scene, system, observers=[EveryStep(watch)])
     assert system.value("bearing.contact.peak_force") > 300.0
     return np.array(found)
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
@@ -70,15 +70,15 @@ def history(
     times: list[float] = []
     rows: list[list[float]] = []
 
-    def watch(time: float, running: System) -> None:
-        times.append(time)
-        rows.append([running.value(name) for name in names])
+    def watch(now: Moment) -> None:
+        times.append(now.time)
+        rows.append([now.system.value(name) for name in names])
 
     try:
-        outcome = simulate(scene, system, watch=watch)
+        outcome = simulate(scene, system, observers=[EveryStep(watch)])
     finally:
         system.close()
-    assert not outcome.stopped_because, outcome.stopped_because
+    assert not outcome.reason, outcome.reason
     values = np.array(rows).T
     return np.array(times), dict(zip(names, values, strict=True)), outcome
 

@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
-from touchdown.master.coupling.steppers.rates import Rates
+from typing import NamedTuple
+
+import numpy as np
+
+from touchdown.master.components.component import Component
+from touchdown.master.coupling.layout import Scaling
+from touchdown.master.coupling.steppers.rates import Part, Rates
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import RunSpec
+
+
+class Turn(NamedTuple):
+    """What a component does in a macro step: take its inputs, cut them, step, give."""
+
+    component: Component
+    places: np.ndarray  # of its inputs in the signals
+    every: int  # macro steps of the run that it takes in one
+    cuts: tuple[Scaling | Part, ...]  # what is done to its inputs
 
 
 class GaussSeidel(Stepper):
@@ -16,25 +31,21 @@ class GaussSeidel(Stepper):
         self.follow()
 
     def follow(self) -> None:
-        system = self.system
-        rates = Rates(system, self.run.macro_step)
-        self._turns = [
-            (
-                system.components[name],
-                system.take[name],
-                system.every[name],
-                [*system.scales.get(name, ()), *rates.parts(name)],
-            )
-            for name in system.order
-        ]
+        rates = Rates(self.system, self.run.macro_step)
+        self._turns = [self._turn(name, rates) for name in self.system.order]
+
+    def _turn(self, name: str, rates: Rates) -> Turn:
+        system, intake = self.system, self.system.intakes[name]
+        cuts = (*intake.scalings, *rates.parts(name))
+        return Turn(system.components[name], intake.places, system.every[name], cuts)
 
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
-        for component, take, every, parts in self._turns:
+        for component, places, every, cuts in self._turns:
             if number % every:
                 continue
-            component.inputs[:] = signals[take]
-            for part in parts:
+            component.inputs[:] = signals[places]
+            for part in cuts:
                 part.cut(component.inputs, number)
             component.push()
             component.step(time, every * step)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import POSITION
 from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_states
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.coupling.steppers.stepper import Stepper
@@ -77,7 +78,5 @@ class Halving(Stepper):
 
 def positions(system: System) -> np.ndarray:
     """Where the bodies' positions at the bearings stand in the signals."""
-    found = {
-        (a.body, f"{a.body_port}.{axis}") for a in system.attachments for axis in "xy"
-    } & system.position.keys()
-    return np.array(sorted(system.position[place] for place in found), dtype=np.intp)
+    names = {a.motion(axis) for a in system.attachments for axis in POSITION}
+    return np.array(sorted(system.position[name] for name in names & system.position.keys()), dtype=np.intp)

@@ -11,11 +11,13 @@ where that does not help either, the run stops and says so.
 
 from __future__ import annotations
 
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import POSITION
 from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_states
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
@@ -57,7 +59,7 @@ class Iterated(Stepper):
         require_states(system, run.scheme.name)
         self._steps = self._repeated = self._deepest = 0
         for a in system.attachments:
-            given = [f"{a.bearing_port}.{gain}" for gain in GAINS]
+            given = map(a.bearing_end.own, GAINS)
             bearing = system.components[a.bearing]
             bearing.set({name: 0.0 for name in given if name in bearing.variables})
         self.follow()
@@ -114,7 +116,7 @@ class Iterated(Stepper):
 
     def _take(self, start: np.ndarray, guess: np.ndarray, time: float, step: float) -> np.ndarray:
         """The step under the motion `guess` (m/s2 per channel); returns the motion that came of it."""
-        system, used = self.system, 0
+        system, intakes, used = self.system, self.system.intakes, 0
         for name, channels in self._channels.items():
             component = system.components[name]
             system.take_inputs(name)
@@ -130,7 +132,7 @@ class Iterated(Stepper):
             system.components[name].step(time, step)
             system.components[name].pull()
         came = [
-            channels.motion(system.inputs_from(name, start), system.inputs_from(name, system.signals), step)
+            channels.motion(intakes[name].of(start), intakes[name].of(system.signals), step)
             for name, channels in self._channels.items()
         ]
         return np.concatenate([np.zeros(0), *came])
@@ -148,24 +150,31 @@ def _channels(system: System, bearing: str) -> _Channels:
 
     Raises TouchdownError where it takes the position and nothing that could be prescribed with it.
     """
-    inputs = system.inputs_of(bearing)
-    linear, angular, gains = [], [], []
-    for port in dict.fromkeys(a.bearing_port for a in system.attachments if a.bearing == bearing):
-        for names in ((f"{port}.{axis}", f"{port}.v{axis}", f"{port}.a{axis}_free") for axis in "xy"):
-            if names[0] not in inputs:
-                continue
-            lacking = [name for name in names if name not in inputs]
-            if lacking:
-                raise TouchdownError(
-                    f"scheme iterated prescribes motion to {bearing}, which does not take {lacking[0]}; "
-                    "choose another scheme, such as velocity"
-                )
-            linear.append([inputs[name] for name in names])
-        turn = [f"{port}.omega", f"{port}.alpha_free"]
+    inputs = {name: place for place, name in enumerate(system.intakes[bearing].inputs)}
+    linear: list[list[int]] = []
+    angular: list[list[int]] = []
+    gains: list[int] = []
+    ports = dict.fromkeys(a.bearing_end for a in system.attachments if a.bearing == bearing)
+    for port in ports:
+        for axis in POSITION:
+            names = [port.own(name) for name in (axis, f"v{axis}", f"a{axis}_free")]
+            if names[0] in inputs:
+                _require_all(names, inputs, bearing)
+                linear.append([inputs[name] for name in names])
+        turn = [port.own(name) for name in ("omega", "alpha_free")]
         if all(name in inputs for name in turn):
             angular.append([inputs[name] for name in turn])
-        gains += [inputs[name] for gain in GAINS if (name := f"{port}.{gain}") in inputs]
+        gains += [inputs[name] for name in map(port.own, GAINS) if name in inputs]
     position, velocity, acceleration = np.array(linear, dtype=np.intp).reshape(-1, 3).T
     spin, spin_acceleration = np.array(angular, dtype=np.intp).reshape(-1, 2).T
     known = np.array(gains, dtype=np.intp)
     return _Channels(position, velocity, acceleration, spin, spin_acceleration, known)
+
+
+def _require_all(names: Sequence[str], inputs: Container[str], bearing: str) -> None:
+    lacking = [name for name in names if name not in inputs]
+    if lacking:
+        raise TouchdownError(
+            f"scheme iterated prescribes motion to {bearing}, which does not take {lacking[0]}; "
+            "choose another scheme, such as velocity"
+        )

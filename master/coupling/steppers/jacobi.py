@@ -14,14 +14,14 @@ class Jacobi(GaussSeidel):
 
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
-        due = [turn for turn in self._turns if number % turn[2] == 0]
-        for component, take, _, parts in due:
-            component.inputs[:] = signals[take]
-            for part in parts:
+        due = [turn for turn in self._turns if number % turn.every == 0]
+        for component, places, _, cuts in due:
+            component.inputs[:] = signals[places]
+            for part in cuts:
                 part.cut(component.inputs, number)
             component.push()
-        for component, _, every, _ in due:
-            component.step(time, every * step)
-        for component, _, every, _ in self._turns:
-            if (number + 1) % every == 0:  # until its own step ends, what it gave before holds
-                component.pull()
+        for turn in due:
+            turn.component.step(time, turn.every * step)
+        for turn in self._turns:
+            if (number + 1) % turn.every == 0:  # until its own step ends, what it gave before holds
+                turn.component.pull()

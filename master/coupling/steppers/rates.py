@@ -7,12 +7,14 @@ other way round there would be no state of the body to start the bearing's next 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.connections import LOAD, SLOPE, Attachment
+from touchdown.master.components.contract import LOAD, SLOPE
+from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.system import System
 
 
@@ -57,8 +59,16 @@ class Rates:
 
 
 def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> Part:
-    places = system.inputs_of(a.body)
-    means = [places[f"{a.body_port}.{name}"] for name in LOAD if f"{a.body_port}.{name}" in places]
-    slopes = [places[f"{a.body_port}.{name}"] for name in SLOPE if f"{a.body_port}.{name}" in places]
-    last = [place for name, place in places.items() if name.startswith(f"{a.body_port}.mode[")]
-    return Part(bearing, body, step, *(np.array(found, dtype=np.intp) for found in (means, slopes, last)))
+    inputs = system.intakes[a.body].inputs
+
+    def places(names: Iterable[str]) -> np.ndarray:
+        return np.array([inputs.index(name) for name in names if name in inputs], dtype=np.intp)
+
+    return Part(
+        bearing,
+        body,
+        step,
+        means=places(map(a.body_end.own, LOAD)),
+        slopes=places(map(a.body_end.own, SLOPE)),
+        last=places(name for name in inputs if name.startswith(a.body_end.own("mode["))),
+    )

@@ -69,7 +69,7 @@ def contacts(scene: Scene, system: System, recording: Recording, a: Attachment) 
     for ball in balls:
         _draw_ball(axes, scale, ball)
     if recording.at_end(f"{a.bearing}.contact.force") > 0.0:
-        rotor = _from_outer_ring(system, recording, a, f"{a.body}.{a.body_port}")
+        rotor = _from_outer_ring(system, recording, a, a.body_end.title)
         _draw_direction(axes, scale, ring, rotor)
     axes.set_aspect("equal")
     axes.set_xlabel("x [mm]")

@@ -104,7 +104,7 @@ def speeds(scene: Scene, system: System, recording: Recording, a: Attachment) ->
 
 
 def _draw_rotor(whole: Axes, near: Axes, system: System, recording: Recording, a: Attachment) -> None:
-    x, y = (UM * recording[f"{a.body}.{a.body_port}.{axis}"] for axis in "xy")
+    x, y = (UM * recording[a.motion(axis)] for axis in "xy")
     for axes in (whole, near):
         if "clearance" in system.components[a.bearing].variables:
             radius = UM * system.value(f"{a.bearing}.clearance")

@@ -66,7 +66,7 @@ def spectrum(scene: Scene, recording: Recording, a: Attachment) -> Figure:
 def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
     time = recording.time
     x = recording[f"{a.bearing}.ring.x"]
-    omega = recording[f"{a.body}.{a.body_port}.omega"]
+    omega = recording[a.motion("omega")]
     made: list[Spectrum] = []
     for start in windows(time):
         part = (time >= start) & (time <= start + LENGTH)
@@ -78,7 +78,7 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
 def _pendulum(recording: Recording, a: Attachment) -> float | None:
     """Frequency of the rotor's swing in the bearing (Hz)."""
     settled = recording.time >= BEGIN
-    x = recording[f"{a.body}.{a.body_port}.x"]
+    x = recording[a.motion("x")]
     return dominant_frequency(recording.time[settled], x[settled])
 
 

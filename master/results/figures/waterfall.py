@@ -34,22 +34,21 @@ def has_waterfall(recording: Recording, a: Attachment) -> bool:
         or 1.0 / interval(time) < COARSEST * (1.0 - 1e-6)
     ):
         return False
-    return f"{a.body}.{a.body_port}.vx" in recording and f"{a.body}.{a.body_port}.omega" in recording
+    return a.motion("vx") in recording and a.motion("omega") in recording
 
 
 def motion_waterfall(scene: Scene, recording: Recording, a: Attachment) -> Figure:
     """Amplitude of the rotor's horizontal velocity and displacement at a seat over frequency and rotor
     speed, for the parts of the run (Fig 15)."""
-    port = f"{a.body}.{a.body_port}"
     rows = on_grid(recording.time) & (recording.time >= -1e-9)
-    time, omega = recording.time[rows], recording[f"{port}.omega"][rows]
+    time, omega = recording.time[rows], recording[a.motion("omega")][rows]
     rate = 1.0 / interval(time)
     points = min(POINTS, 2 ** int(math.log2(len(time) // SPECTRA)))
     figure = sheet(13, 11)
     panels = figure.subplots(2, len(BANDS), squeeze=False)
     shown = (("a) velocity", "vx", 1e3, "mm/s", BLUE), ("b) displacement", "x", 1e6, "µm", ORANGE))
     for row, (title, variable, factor, unit, colour) in zip(panels, shown, strict=True):
-        values = factor * recording[f"{port}.{variable}"][rows]
+        values = factor * recording[a.motion(variable)][rows]
         frequency, centres, amplitude = waterfall(time, values, points, rate, SPECTRA)
         speeds = RPM * np.interp(centres, time, omega)
         for axes, band in zip(row, BANDS, strict=True):
@@ -61,7 +60,7 @@ def motion_waterfall(scene: Scene, recording: Recording, a: Attachment) -> Figur
             axes.set_xlabel("frequency [Hz]")
             axes.set_ylabel("rotor speed, middle of each part [rpm]")
     figure.suptitle(
-        f"{scene.title}: horizontal motion of the rotor at {port}\n"
+        f"{scene.title}: horizontal motion of the rotor at {a.body_end.title}\n"
         f"{SPECTRA} parts of {len(time) / rate / SPECTRA:.3g} s, from each {points} values at "
         f"{rate / 1e3:g} kHz, Hann; each line stands on its own axis, {STEP:g} decades above the last"
     )

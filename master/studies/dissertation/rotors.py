@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
@@ -141,7 +142,7 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
 def run_down(folder: Path) -> list[str]:
     """Rotor I over 16 s, and the tallest lines of its velocity at A in the first and the last 2 s."""
     result = run_scene(load("rotor1-waterfall"), folder / "rotor1-waterfall")
-    if result.stopped_because:
+    if result.ended is not Ended.COMPLETED:
         raise TouchdownError(f"rotor1-waterfall stopped: {result.stopped_because}")
     lines = [f"9000 to {result.summary['rotor_speed_end_rpm']:.0f} rpm in 16 s (source: 7780)"]
     recording = Recording(result.folder / "result.h5")

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import FORCE, POSITION
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name
@@ -81,62 +82,52 @@ class Stop:
     every: int = 1  # macro steps between looks
 
 
-class Watch:
-    """Keeps the seats' traces while a scene runs, and breaks it off as `stop` has it."""
+class Watch(Observer):
+    """Keeps the seats' traces while a scene runs, and ends it as `stop` has it."""
 
-    def __init__(self, system: System, seats: Sequence[Attachment], zero: float, stop: Stop | None) -> None:
-        self.over = False  # broken off
-        self._zero, self._stop = zero, stop
+    def __init__(self, system: System, seats: Sequence[Attachment], stop: Stop | None) -> None:
+        self._stop = stop
         self._time: list[float] = []
         self._rows: list[list[list[float]]] = [[] for _ in seats]
-        self._ends = [_ends(a) for a in seats]
+        self._names = [[*map(a.motion, POSITION), *map(a.load, FORCE)] for a in seats]
         self._read = [system.components[a.bearing].reader(PEAKS) for a in seats]
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 
-    def __call__(self, time: float, system: System) -> None:
-        now = time - self._zero
-        self._time.append(now)
+    def stepped(self, now: Moment) -> None:
+        time = now.since_zero
+        self._time.append(time)
         for i, rows in enumerate(self._rows):
-            row = [float(system.signals[system.position[end]]) for end in self._ends[i]]
+            row = [now.system.signal(name) for name in self._names[i]]
             if row[2] != 0.0 or row[3] != 0.0:  # peaks only grow in contact
-                self._loaded[i] = now
-                self._first = now if self._first is None else self._first
+                self._loaded[i] = time
+                self._first = time if self._first is None else self._first
                 row += self._read[i]().tolist()
             else:
                 row += rows[-1][4:] if rows else [0.0, 0.0]
             rows.append(row)
+        if self._enough(time):
+            now.stop("the first impact is over")
+
+    def _enough(self, time: float) -> bool:
+        """Whether the run may end at `time` (s from zero)."""
         stop = self._stop
-        if stop is not None and self._first is not None and len(self._time) % stop.every == 0:
-            parted = all(last is not None and now - last > PARTED for last in self._loaded)
-            if now - self._first >= stop.after - ROUNDING or (stop.early and parted):
-                self.over = True
-                raise TouchdownError("the first impact is over")
+        if stop is None or self._first is None or len(self._time) % stop.every:
+            return False
+        parted = all(last is not None and time - last > PARTED for last in self._loaded)
+        return time - self._first >= stop.after - ROUNDING or (stop.early and parted)
 
     def traces(self) -> list[Trace]:
         """Of all seats."""
         return [Trace(np.array(self._time), *np.array(rows).T) for rows in self._rows]
 
 
-def _ends(a: Attachment) -> list[tuple[str, str]]:
-    """Where the journal's position and the load on it are exchanged."""
-    motion, load = (a.body, a.body_port), (a.bearing, a.bearing_port)
-    return [
-        (name, f"{port}.{variable}")
-        for (name, port), variable in ((motion, "x"), (motion, "y"), (load, "fx"), (load, "fy"))
-    ]
-
-
 def run_watched(
     scene: Scene, system: System, seats: Sequence[Attachment], stop: Stop | None
 ) -> tuple[Outcome, Mapping[str, Trace]]:
     """Run a scene to its end, or as `stop` has it; raises TouchdownError where it stops by itself."""
-    zero = system.value(scene.zero) if scene.zero else 0.0
-    watch = Watch(system, seats, zero, stop)
-    outcome = simulate(scene, system, watch=watch)
-    if outcome.stopped_because == "interrupted":
-        raise KeyboardInterrupt
-    if outcome.stopped_because and not watch.over:
-        raise TouchdownError(outcome.stopped_because)
+    watch = Watch(system, seats, stop)
+    outcome = simulate(scene, system, observers=[watch])
+    outcome.raise_if_stopped()
     names = [seat_name(a, list(seats)) for a in seats]
     return outcome, dict(zip(names, watch.traces(), strict=True))

@@ -9,14 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import SENSED
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.simulation import Outcome, opened
+from touchdown.master.coupling.observer import Moment, Observer
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import DEFAULT
 from touchdown.master.studies.drop.first_impact import Stop, run_watched
-from touchdown.master.studies.drop.reference import MOTION
 
 FINE = 1e-6  # s, macro step of what peak forces are measured against
 LONGEST = 5e-3  # s after the first contact
@@ -93,36 +94,28 @@ def plan(landing: Landing, steps: Sequence[float]) -> Plan:
     return Plan(landing, every, clock[clock > landing.zero] - landing.zero)
 
 
-class Sampler:
+class Sampler(Observer):
     """Keeps the journals' motion at instants, and the peak forces at the ends of the first impacts."""
 
     def __init__(self, system: System, landing: Landing, every: int) -> None:
         self.times: list[float] = []  # s on the simulation's clock
         self.motion: list[list[np.ndarray]] = []
         self.peaks: dict[str, float] = {}
-        self._zero, self._every, self._steps = landing.zero, every, 0
-        self._read = [
-            system.components[a.body].reader([f"{a.body_port}.{v}" for v in MOTION]) for a in landing.seats
-        ]
+        self._every = every
+        self._system = system
+        self._read = [system.reader([a.motion(v) for v in SENSED]) for a in landing.seats]
         names = {seat_name(a, list(landing.seats)): a.bearing for a in landing.seats}
         self._ends = {seat: (end, names[seat]) for seat, (_, end) in landing.impacts.items()}
 
-    def __call__(self, time: float, system: System) -> None:
-        self._steps += 1
-        if self._steps % self._every == 0:
-            self.times.append(time)
+    def stepped(self, now: Moment) -> None:
+        if now.done % self._every == 0:
+            self.times.append(now.time)
             self.motion.append([read().copy() for read in self._read])
-        over = [seat for seat, (end, _) in self._ends.items() if time - self._zero >= end]
-        self.finish(system, over)
+        over = [seat for seat, (end, _) in self._ends.items() if now.since_zero >= end]
+        self.finish(over)
 
-    def finish(self, system: System, seats: Sequence[str] | None = None) -> None:
+    def finish(self, seats: Sequence[str] | None = None) -> None:
         """Read the peaks of `seats` (all that are left)."""
         for seat in list(self._ends) if seats is None else seats:
             _, bearing = self._ends.pop(seat)
-            self.peaks[seat] = system.value(f"{bearing}.contact.peak_force")
-
-
-def refuse_interrupted(outcome: Outcome) -> None:
-    """Raise KeyboardInterrupt where a run was interrupted."""
-    if outcome.stopped_because == "interrupted":
-        raise KeyboardInterrupt
+            self.peaks[seat] = self._system.value(f"{bearing}.contact.peak_force")

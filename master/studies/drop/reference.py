@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import SENSED
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 
 POSITION, VELOCITY = slice(0, 2), slice(2, 4)  # of a journal's motion
-MOTION = ("x", "y", "vx", "vy")
 MOST_IMPLICIT = 120  # states that an implicit solver takes: each Jacobian is as many evaluations
 
 
@@ -93,7 +93,7 @@ def agreeing(apart: np.ndarray, agreed: float) -> int:
 
 def solve(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, solver: Solver) -> Solve:
     """Journals at `times` (s from zero). Raises TouchdownError where the scene has no equations to join."""
-    names = [f"{a.body}.{a.body_port}.{variable}" for a in seats for variable in MOTION]
+    names = [a.motion(variable) for a in seats for variable in SENSED]
     monolith = Monolith(scene)
     began = clock.perf_counter()
     found = monolith.solve(times, names, solver.tolerance, solver.method)

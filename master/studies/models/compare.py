@@ -19,7 +19,6 @@ from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.first_impact import Peaks, Stop, Trace, run_watched
-from touchdown.master.studies.drop.measured import refuse_interrupted
 from touchdown.master.studies.models.variants import Variant
 
 LONGEST = 20e-3  # s after the first contact
@@ -209,7 +208,5 @@ class _Stopwatch:
         with tempfile.TemporaryDirectory() as folder, opened(variant.scene, self._in_process) as system:
             record_to = Path(folder) / "result.h5" if variant.recorded else None
             outcome = simulate(variant.scene, system, record_to)
-        refuse_interrupted(outcome)
-        if outcome.stopped_because:
-            raise TouchdownError(outcome.stopped_because)
+        outcome.raise_if_stopped()
         return outcome.wall_time / outcome.end

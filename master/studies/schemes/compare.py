@@ -27,7 +27,6 @@ from touchdown.master.studies.drop.measured import (
     fine,
     land,
     plan,
-    refuse_interrupted,
 )
 from touchdown.master.studies.drop.reference import (
     FIRST,
@@ -224,14 +223,11 @@ class _Judge:
         try:
             with opened(scene, True) as system:
                 sampler = Sampler(system, self.looks.landing, self.looks.every[step])
-                outcome = simulate(scene, system, watch=sampler)
-                if not outcome.stopped_because:
-                    sampler.finish(system)
+                outcome = simulate(scene, system, observers=[sampler])
+                outcome.raise_if_stopped()
+                sampler.finish()
         except TouchdownError as error:
             return Row(name, step, failed=str(error))
-        refuse_interrupted(outcome)
-        if outcome.stopped_because:
-            return Row(name, step, failed=outcome.stopped_because)
         residual = outcome.residual
         ledger = "stops" if residual > self.stop else "warns" if residual > self.warn else ""
         return Row(name, step, self._errors(sampler, residual), ledger=ledger)
@@ -254,7 +250,7 @@ class _Judge:
 def _warm_up(scene: Scene, asked: Asked) -> None:
     """Compile what is to be timed."""
     with opened(scene.with_setting("run.duration", 2.0 * scene.run.macro_step), asked.in_process) as system:
-        refuse_interrupted(simulate(scene, system))
+        simulate(scene, system).raise_if_interrupted()
 
 
 def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
@@ -268,9 +264,7 @@ def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
         for _ in range(asked.repeat):
             with opened(scene, asked.in_process) as system:
                 outcome = simulate(scene, system)
-            refuse_interrupted(outcome)
-            if outcome.stopped_because:
-                raise TouchdownError(outcome.stopped_because)
+            outcome.raise_if_stopped()
             spent.append(outcome.wall_time / outcome.end)
     except TouchdownError as error:
         return replace(row, failed=f"while it was timed: {error}")

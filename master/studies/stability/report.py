@@ -25,6 +25,7 @@ class Study:
     rights: Mapping[str, Right]  # by case
     findings: Mapping[tuple[str, str], Finding]  # by case and scheme; those that ended
     failed: Mapping[str, str]  # why, by what was to be done
+    interrupted: bool = False  # whether Ctrl-C ended it
 
     def finding(self, case: Case, scheme: str) -> Finding | None:
         """What was found of a case and a scheme, if it was."""

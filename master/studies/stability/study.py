@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeVar
 
-from touchdown.master.common.processes import INTERRUPTED, run_all
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.processes import TaskOutcome, run_all
 from touchdown.master.studies.stability.report import Study, write_csv
 from touchdown.master.studies.stability.trials import Case, Finding, Right, examine, reference
+
+Key = TypeVar("Key")
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -30,36 +35,42 @@ def study(
     """Examine every case with every scheme, and write tables and picture into `folder`.
 
     done() after each reference and each finding. After Ctrl-C what is there is written, and the rest is
-    "interrupted". Starts processes: see `touchdown.master.common.processes`.
+    INTERRUPTED. Starts processes: see `touchdown.master.common.processes`.
     """
-    failed: dict[str, str] = {}
-    rights: dict[str, Right] = {}
-    for case, ended in zip(cases, run_all(reference, cases, jobs, done), strict=True):
-        if ended.value is None:
-            failed[case.name] = ended.failed
-        else:
-            rights[case.name] = ended.value
+    rights, failed = _parted([case.name for case in cases], run_all(reference, cases, jobs, done))
     tasks: list[Task] = []
-    if INTERRUPTED not in failed.values():
-        tasks = [
-            Task(case, scheme, rights[case.name])
-            for case in cases
-            if case.name in rights
-            for scheme in schemes
-        ]
-    findings: dict[tuple[str, str], Finding] = {}
-    for task, ended in zip(tasks, run_all(_examine, tasks, jobs, done), strict=True):
-        if ended.value is None:
-            failed[f"{task.case.name} with {task.scheme}"] = ended.failed
-        else:
-            findings[task.case.name, task.scheme] = ended.value
-    found = Study(cases, schemes, rights, findings, failed)
+    if not _interrupted(failed):
+        begun = [case for case in cases if case.name in rights]
+        tasks = [Task(case, scheme, rights[case.name]) for case in begun for scheme in schemes]
+    pairs = [(task.case.name, task.scheme) for task in tasks]
+    findings, lost = _parted(pairs, run_all(_examine, tasks, jobs, done))
+    failed |= {f"{case} with {scheme}": outcome for (case, scheme), outcome in lost.items()}
+    why = {what: outcome.reason for what, outcome in failed.items()}
+    found = Study(cases, schemes, rights, findings, why, _interrupted(failed))
     write_csv(found, folder)
     if findings:
         from touchdown.master.studies.stability.figure import draw  # matplotlib is slow to import
 
         draw(found, folder / "stability.png")
     return found
+
+
+def _parted(
+    keys: Iterable[Key], outcomes: Iterable[TaskOutcome[Value]]
+) -> tuple[dict[Key, Value], dict[Key, TaskOutcome[Value]]]:
+    """What the tasks gave, and how those ended that gave nothing."""
+    given: dict[Key, Value] = {}
+    failed: dict[Key, TaskOutcome[Value]] = {}
+    for key, outcome in zip(keys, outcomes, strict=True):
+        if outcome.value is None:
+            failed[key] = outcome
+        else:
+            given[key] = outcome.value
+    return given, failed
+
+
+def _interrupted(failed: Mapping[str, TaskOutcome[Any]]) -> bool:
+    return any(outcome.ended is Ended.INTERRUPTED for outcome in failed.values())
 
 
 def size(cases: Sequence[Case], schemes: Sequence[str]) -> int:

@@ -20,11 +20,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.processes import INTERRUPTED
+from touchdown.master.components.contract import POSITION
 from touchdown.master.coupling.advisor import fastest_contact
+from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
-from touchdown.master.coupling.system import System
 from touchdown.master.scene import schemes
 from touchdown.master.scene.scene import Scene
 
@@ -167,9 +168,7 @@ def attempted(case: Case, scheme: str, step: float, right: Right) -> Attempt:
         for figure, value, exact in zip(case.figures, values, right.values, strict=False)
     ]
     error = float(np.max(errors)) if values else math.inf  # not a number stays it
-    return Attempt(
-        step, values, error, outcome.residual, outcome.warned_at is not None, outcome.stopped_because
-    )
+    return Attempt(step, values, error, outcome.residual, outcome.warned_at is not None, outcome.reason)
 
 
 def reference(case: Case) -> Right:
@@ -178,8 +177,8 @@ def reference(case: Case) -> Right:
     if right is None:
         bounds = Bounds(case.journals)
         outcome, values = _run(case, schemes.DEFAULT, REFERENCE_STEP, bounds)
-        if outcome.stopped_because:
-            raise TouchdownError(f"the reference of case {case.name} stopped: {outcome.stopped_because}")
+        if outcome.ended is not Ended.COMPLETED:
+            raise TouchdownError(f"the reference of case {case.name} stopped: {outcome.reason}")
         right = Right(values, bounds.fastest, bounds.farthest)
     return replace(right, rate=_contact_rate(case))
 
@@ -190,8 +189,8 @@ def _contact_rate(case: Case) -> float:
         return fastest_contact(system)[1]
 
 
-class Bounds:
-    """Notes how fast and how far journals get, and breaks a run off where they get beyond what is given."""
+class Bounds(Observer):
+    """Notes how fast and how far journals get, and ends a run where they get beyond what is given."""
 
     def __init__(
         self, journals: Sequence[str], speed: float = math.inf, distance: float = math.inf
@@ -199,17 +198,17 @@ class Bounds:
         self.fastest = 0.0  # m/s
         self.farthest = 0.0  # m
         self._speed, self._distance = speed, distance
-        self._names = [(*journal.split(".", 1), axis) for journal in journals for axis in "xy"]
+        self._directions = [(journal, axis) for journal in journals for axis in POSITION]
 
-    def __call__(self, time: float, system: System) -> None:
-        at, signals = system.position, system.signals
-        for body, port, axis in self._names:
-            distance = abs(float(signals[at[body, f"{port}.{axis}"]]))
-            speed = abs(float(signals[at[body, f"{port}.v{axis}"]]))
+    def stepped(self, now: Moment) -> None:
+        for journal, axis in self._directions:
+            distance = abs(now.system.signal(f"{journal}.{axis}"))
+            speed = abs(now.system.signal(f"{journal}.v{axis}"))
             if not (speed <= self._speed and distance <= self._distance):
-                raise TouchdownError(
-                    f"{body}.{port} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {time:.6g} s"
+                now.stop(
+                    f"{journal} is {distance:.2g} m off and {speed:.2g} m/s fast at t = {now.time:.6g} s"
                 )
+                return
             self.fastest = max(self.fastest, speed)
             self.farthest = max(self.farthest, distance)
 
@@ -220,9 +219,8 @@ def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome,
         {"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": NEVER}
     )
     with opened(scene, in_process=True) as system:
-        outcome = simulate(scene, system, watch=bounds)
-        if outcome.stopped_because == INTERRUPTED:
-            raise TouchdownError(INTERRUPTED)
-        if outcome.stopped_because:
+        outcome = simulate(scene, system, observers=[bounds])
+        outcome.raise_if_interrupted()
+        if outcome.ended is not Ended.COMPLETED:
             return outcome, ()
         return outcome, tuple(sum(map(system.value, figure.variables)) for figure in case.figures)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.studies.sweep.variation import number_and_unit
 
@@ -29,6 +30,7 @@ class Member:
     settings: Mapping[str, object]
     summary: Mapping[str, object]
     failed: str = ""  # why, or ""
+    ended: Ended = Ended.COMPLETED
 
 
 def keys(members: Sequence[Member]) -> list[str]:

@@ -20,6 +20,8 @@ from touchdown.master.studies.sweep.report import Member, write_csv
 class Task:
     """One run of a sweep, as it is handed to its process."""
 
+    number: int  # from 1
+    settings: Mapping[str, object]
     scene: Scene
     folder: Path
     in_process: bool
@@ -40,7 +42,7 @@ def sweep(
     Writes `folder`/sweep.csv with all figures of all members, and summary.json of each into 001, 002 and
     so on; their recordings too if `keep`. Runs `jobs` at a time; done() after each. Raises TouchdownError
     where a setting cannot be; a member that fails says so and the others go on. After Ctrl-C those that
-    have not run are "interrupted". A script that calls it needs `if __name__ == "__main__":`, as all do
+    have not run are INTERRUPTED. A script that calls it needs `if __name__ == "__main__":`, as all do
     that start processes.
     """
     check(scene, variations)
@@ -52,13 +54,13 @@ def sweep(
     ]
     width = max(3, len(str(len(settings))))
     tasks = [
-        Task(scene.with_settings(given), folder / f"{number:0{width}}", in_process, keep)
+        Task(number, given, scene.with_settings(given), folder / f"{number:0{width}}", in_process, keep)
         for number, given in enumerate(settings, start=1)
     ]
-    members = []
-    for number, ended in enumerate(run_all(_run_task, tasks, jobs, done), start=1):
-        summary, stopped_because = ended.value or ({}, ended.failed)
-        members.append(Member(number, settings[number - 1], summary, stopped_because))
+    members = [
+        outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
+        for task, outcome in zip(tasks, run_all(_run_task, tasks, jobs, done), strict=True)
+    ]
     write_csv(members, folder / "sweep.csv")
     return members
 
@@ -76,12 +78,12 @@ def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:
             open_system(first.with_setting(name, value), in_process=True).close()
 
 
-def _run_task(task: Task) -> tuple[dict[str, object], str]:
-    """Summary, and why the run stopped or nothing."""
+def _run_task(task: Task) -> Member:
+    """Run a member; whether it completed or not, it has a summary."""
     result = run_scene(task.scene, task.folder, in_process=task.in_process, pictures=False)
     if not task.keep:
         (task.folder / "result.h5").unlink(missing_ok=True)
-    return result.summary, result.stopped_because
+    return Member(task.number, task.settings, result.summary, result.stopped_because, result.ended)
 
 
 def size(variations: Mapping[str, Sequence[object]]) -> int:

@@ -26,7 +26,6 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.common.processes import INTERRUPTED
     from touchdown.master.studies.stability.cases import chosen
     from touchdown.master.studies.stability.report import lines
     from touchdown.master.studies.stability.study import size, study
@@ -39,7 +38,7 @@ def execute(options: argparse.Namespace) -> int:
         found = study(cases, schemes, folder, jobs, bar.update)
     print("\n".join(lines(found)))
     print(f"results in {folder}")
-    if INTERRUPTED in found.failed.values():
+    if found.interrupted:
         return broken_off()
     if found.failed:
         complain(f"{len(found.failed)} searches failed, see the end of the table")

@@ -49,7 +49,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.common.processes import INTERRUPTED
+    from touchdown.master.common.ended import Ended
     from touchdown.master.interop.scenes import load
     from touchdown.master.studies.sweep.report import picked, table, verdict_lines
     from touchdown.master.studies.sweep.sweep import size, sweep
@@ -67,7 +67,7 @@ def execute(options: argparse.Namespace) -> int:
     print("\n".join([table(members, figures), *verdict_lines(members)]))
     print(f"results in {folder}")
     failed = [m for m in members if m.failed]
-    if any(m.failed == INTERRUPTED for m in failed):
+    if any(m.ended is Ended.INTERRUPTED for m in failed):
         return broken_off()
     warn(complaints)
     if failed:

@@ -39,7 +39,7 @@ def landed(bearing: str, **settings: object) -> System:
     housing = {"mass": 5.0, "outer_ring": 0.02}
     scene = rotor_on(bearing, rotor, settings, housing, duration=6e-4, macro_step=2e-5)
     system = open_system(scene, in_process=True)
-    assert not simulate(scene, system).stopped_because
+    assert not simulate(scene, system).reason
     return system
 
 

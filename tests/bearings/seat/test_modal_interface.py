@@ -30,7 +30,7 @@ def ended(scene: Scene, step: float, scheme: str = "interface") -> tuple[np.ndar
     system = open_system(scene, in_process=True)
     try:
         outcome = simulate(scene, system)
-        assert not outcome.stopped_because
+        assert not outcome.reason
         found = np.array([system.value(name) for name in JOURNALS])
         return found, outcome, [system.value(f"bearing_{end}.contact.peak_force") for end in "AB"]
     finally:

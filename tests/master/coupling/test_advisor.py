@@ -44,7 +44,7 @@ def test_a_scheme_bears_what_is_advised(scheme: str) -> None:
         )
         system = open_system(scene, in_process=True)
         outcome = simulate(scene, system)
-        assert not outcome.stopped_because
+        assert not outcome.reason
         return system.value("bearing.contact.peak_force")
 
     step = advise(load("disk-caged-simplified"), [scheme])[scheme].macro_step

@@ -72,7 +72,7 @@ def error(clearance: float | None, scheme: str, step: float) -> float:
     setting = scene(clearance, scheme, step)
     system = open_system(setting, in_process=True)
     outcome = simulate(setting, system)
-    assert not outcome.stopped_because
+    assert not outcome.reason
     found = np.array([system.value(name) for name in MOTION])
     return float(np.linalg.norm((found - exact(clearance)) * WEIGHT))
 
@@ -120,7 +120,7 @@ def test_spin_is_repeated_as_displacement_is() -> None:
             tolerance=1e-16,
         )
         system = open_system(found, in_process=True)
-        assert not simulate(found, system).stopped_because
+        assert not simulate(found, system).reason
         return system.value("rotor.A.omega")
 
     exact = spin("interface", 1e-6)
@@ -135,7 +135,7 @@ def test_halving_errs_as_its_tolerance_says() -> None:
         given = scene(None, "halving", 1e-4)
         given = replace(given, run=replace(given.run, tolerance=tolerance))
         system = open_system(given, in_process=True)
-        assert not simulate(given, system).stopped_because
+        assert not simulate(given, system).reason
         found = np.array([system.value(name) for name in MOTION])
         errors.append(float(np.linalg.norm((found - exact(None)) * WEIGHT)))
     assert errors[0] < 1e-8

@@ -7,6 +7,7 @@ import pytest
 from systems import history, rotor_on
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, energy_scale, open_system, simulate
 from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
@@ -72,7 +73,7 @@ def final_signals(scene: Scene, in_process: bool) -> np.ndarray:
     system = open_system(scene, in_process)
     try:
         outcome = simulate(scene, system)
-        assert not outcome.stopped_because
+        assert not outcome.reason
         assert system.value("bearing.contact.peak_force") > 300.0
         return system.signals.copy()
     finally:
@@ -141,7 +142,8 @@ def residual(name: str, step: float) -> tuple[float, float]:
         return sum(parts) - system.value("amb.supplied")
 
     before: list[float] = []
-    outcome = simulate(scene, system, watch=lambda *_: before.append(total()) if not before else None)
+    first = EveryStep(lambda _: before.append(total()) if not before else None)
+    outcome = simulate(scene, system, observers=[first])
     return outcome.residual, abs(total() - before[0]) / energy_scale(scene, system)
 
 
@@ -165,11 +167,11 @@ def test_a_step_that_is_too_long_stops_and_names_one_that_holds(name: str, step:
         load("disk-caged-simplified").with_setting("run.duration", 0.05).with_setting("run.scheme", name)
     )
     outcome = simulated(scene.with_setting("run.macro_step", step))
-    assert "bearing.journal on rotor.A" in outcome.stopped_because
-    suggested = float(outcome.stopped_because.rpartition(" ")[2])
+    assert "bearing.journal on rotor.A" in outcome.reason
+    suggested = float(outcome.reason.rpartition(" ")[2])
     assert suggested < step
     again = simulated(scene.with_setting("run.macro_step", suggested))
-    assert not again.stopped_because
+    assert not again.reason
 
 
 def simulated(scene: Scene) -> Outcome:

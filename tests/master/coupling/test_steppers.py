@@ -144,7 +144,7 @@ def test_a_step_that_does_not_converge_is_divided(monkeypatch: pytest.MonkeyPatc
     """The shorter the step, the nearer the motion of the last one."""
     monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MOST", 3)
     _, force, outcome = ended(disk("iterated", 5e-5, tolerance=1e-16))
-    assert not outcome.stopped_because
+    assert not outcome.reason
     assert outcome.coupling["smallest_step_us"] < 50.0
     assert force == pytest.approx(peak, rel=1e-3)
 
@@ -152,9 +152,9 @@ def test_a_step_that_does_not_converge_is_divided(monkeypatch: pytest.MonkeyPatc
 def test_a_step_that_never_converges_stops_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MOST", 1)
     _, _, outcome = ended(disk("iterated", 5e-5, tolerance=1e-18))
-    assert "does not converge" in outcome.stopped_because
-    assert "smaller macro step" in outcome.stopped_because
-    assert "\n" not in outcome.stopped_because
+    assert "does not converge" in outcome.reason
+    assert "smaller macro step" in outcome.reason
+    assert "\n" not in outcome.reason
 
 
 # -- halving -----------------------------------------------------------------------------------------
@@ -176,7 +176,7 @@ def test_halving_follows_its_tolerance() -> None:
         )
         system = open_system(scene, in_process=True)
         outcome = simulate(scene, system)
-        assert not outcome.stopped_because
+        assert not outcome.reason
         errors.append(1e-6 * outcome.coupling["largest_step_error_um"] / tolerance)
         smallest.append(outcome.coupling["smallest_step_us"])
     assert max(errors) <= 1.0

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from touchdown.master.cli import main
+from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
@@ -117,7 +118,7 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
 
     def simulated(run: Scene, system: System, **options: Any) -> Outcome:
         if run.run.scheme.name == "hold":
-            return Outcome(stopped_because="it broke")
+            return Outcome(ended=Ended.STOPPED, reason="it broke")
         return simulate(run, system, **options)
 
     monkeypatch.setattr(work_precision, "simulate", simulated)
