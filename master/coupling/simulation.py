@@ -84,7 +84,7 @@ def simulate(
         ledger = Ledger(system, energy_scale(scene, system))
         recorder = None
         if record_to is not None:
-            recorder = Recorder(record_to, system.components, scene.run.record_arrays, scene.run.record)
+            recorder = Recorder(record_to, scene, system.components)
         try:
             if recorder is not None:
                 recorder.append(-outcome.zero)

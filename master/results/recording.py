@@ -16,9 +16,10 @@ class NotRecordedError(TouchdownError):
 
 
 class Recording:
-    """A recorded run, read back."""
+    """A recorded run, read back from the file at `path`; `owner` is kept for as long as it is read."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, owner: object = None) -> None:
+        self._owner = owner
         self._file = h5py.File(path, "r")
         sizes: list[int] = []
         self._file.visititems(
@@ -49,7 +50,7 @@ class Recording:
         found: list[tuple[str, str]] = []
         for component, group in self._file.items():
             if isinstance(group, h5py.Group) and component != END:
-                found += [(f"{component}.{name}", str(d.attrs["unit"])) for name, d in group.items()]
+                found += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
         return found
 
     @staticmethod
