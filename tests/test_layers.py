@@ -22,12 +22,13 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",
-        *("fmpy", "h5py", "matplotlib", "tqdm", "numpy", "scipy", "fmu_manipulation_toolbox"),
-    },
+        *("fmpy", "h5py", "matplotlib", "tqdm", "pandas", "xarray", "fmu_manipulation_toolbox"),
+    }
+    | SCIENCE,
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
     "master": (
-        *("cli", "verbs", "studies", "interop", "results"),
+        *("cli", "verbs", "api", "studies", "interop", "results"),
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
@@ -37,7 +38,10 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     "rotor": ("portrait", "flexible", "rigid", "rotor_file", "statics", "modal", "beams", "drag"),
     "modelkit": ("model", "body", "integrators", "kernel"),
 }
-REPORTED = {"touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"}
+REPORTED = {
+    *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
+    *("touchdown.master.api.rotor", "touchdown.master.api.rotor_text"),
+}
 """What describes rotor files may read them; nothing of it is co-simulation."""
 MOST = 12  # entries of a folder
 

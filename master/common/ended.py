@@ -6,7 +6,12 @@ from enum import Enum
 
 
 class Ended(Enum):
-    """How it ended; the values are for people."""
+    """How it ended; the values are for people.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
+    >>> touchdown.run(scene.set({"run.stop_residual": 1e-12}), in_process=True).ended
+    <Ended.STOPPED: 'stopped'>
+    """
 
     COMPLETED = "completed"
     AS_WANTED = "as wanted"  # earlier, since what watched it had seen enough

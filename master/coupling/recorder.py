@@ -40,9 +40,7 @@ class Recorder:
         self.kept_at_end: dict[str, list[str]] = {}
         for name, component in components.items():
             given = [
-                v.name
-                for v in component.variables.values()
-                if v.causality in RECORDED and v.kind in KINDS
+                v.name for v in component.variables.values() if v.causality in RECORDED and v.kind in KINDS
             ]
             chosen = [v for v in given if _begins(f"{name}.{v}", run.record)]
             self.names[name] = [v for v in chosen if run.record_arrays or "[" not in v]

@@ -167,14 +167,6 @@ class System:
                 self.scales[name] = [Scaling(*np.array([c.scale or (1.0, 0.0) for c in mine]).T)]
 
 
-def housing_port(system: System, a: Attachment) -> str | None:
-    """COMPONENT.PORT that the bearing's outer ring moves with; None where it stands in the ground."""
-    for c in system.connections:
-        if (c.target, c.input) == (a.bearing, "housing.x"):
-            return f"{c.source}.{c.output.rpartition('.')[0]}"
-    return None
-
-
 def assemble(scene: Scene, scheme: Scheme, load: Callable[[str, str], Component]) -> System:
     """Load a scene's components with load(name, fmu), and wire them up."""
     components: dict[str, Component] = {}

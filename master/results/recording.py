@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.recorder import END
+from touchdown.master.coupling.recorder import END, TIME
 
 
 class NotRecordedError(TouchdownError):
@@ -26,7 +26,7 @@ class Recording:
             lambda _, item: sizes.append(len(item)) if isinstance(item, h5py.Dataset) else None
         )
         self._rows = min(sizes)  # a disk that ran full leaves columns of unequal length
-        self.time = np.asarray(self._file["time"])[: self._rows]
+        self.time = np.asarray(self._file[TIME])[: self._rows]
 
     def __contains__(self, name: str) -> bool:
         return self._key(name) in self._file
@@ -53,14 +53,28 @@ class Recording:
                 found += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
         return found
 
+    def about(self) -> dict[str, object]:
+        """What was run: title, scene, version, scheme, macro_step_s."""
+        return {key: _plain(value) for key, value in self._file.attrs.items()}
+
+    def about_column(self, name: str) -> dict[str, object]:
+        """Of `time` or COMPONENT.VARIABLE: units and long_name."""
+        given = self._file[self._key(name)].attrs
+        return {key: _plain(given[key]) for key in ("units", "long_name")}
+
     @staticmethod
     def _key(name: str) -> str:
-        component, _, variable = name.partition(".")
-        return f"{component}/{variable}"
+        component, dot, variable = name.partition(".")
+        return f"{component}/{variable}" if dot else component
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _plain(value: object) -> object:
+    """An attribute as Python's own text or number."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def write_csv(recording: Recording, path: Path) -> None:

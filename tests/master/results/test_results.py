@@ -9,8 +9,10 @@ import h5py
 import numpy as np
 import pytest
 
-from touchdown.master.results.recording import BLOCK, Recording
-from touchdown.master.results.run import Result, run_scene
+from touchdown.master.coupling.recorder import BLOCK
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.result import Result
+from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import dominant_frequency
 from touchdown.master.scene.file import load
 
