@@ -29,10 +29,10 @@ def run(
     Raises TouchdownError where the run cannot start. One that stops part-way returns what it recorded, and
     `ended` says so.
 
-    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
     >>> result = touchdown.run(scene, in_process=True)
     >>> round(1e3 * result.summary["first_contact_time_s"], 1)  # ms after the shutdown
-    7.1
+    7.9
     """
     return run_scene(
         as_scene(scene), None if folder is None else Path(folder), in_process, csv, pictures, progress

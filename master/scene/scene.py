@@ -45,8 +45,8 @@ class Scene:
     >>> scene.set({"rotor.speed": "12000 rpm", "run.duration": "10 ms"}).swap(bearing="simplified_cageless")
     <Scene disk-caged-simplified: Rigid disk dropped on a simplified caged bearing
       rotor: rigid_rotor
-      bearing: simplified_cageless
       amb: amb
+      bearing: simplified_cageless
       housing: housing
       run: 0.01 s by macro steps of 2e-05 s, scheme interface>
     """
