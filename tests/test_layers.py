@@ -23,12 +23,12 @@ LAYERS = {  # package: what it may import beside itself and the standard library
         "touchdown.modelkit",
         "touchdown.fmus",
         *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
-        *("numpy", "scipy"),
+        *("numpy", "scipy", "pandas", "xarray"),
     },
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
     "master": (
-        *("cli", "verbs", "studies", "interop", "results"),
+        *("cli", "verbs", "api", "studies", "interop", "results"),
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
@@ -38,7 +38,10 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     "rotor": ("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),
     "modelkit": ("instance", "body", "model", "integrators", "kernel"),
 }
-REPORTED = {"touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"}
+REPORTED = {
+    *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
+    "touchdown.master.api.rotor",
+}
 """What describes rotor files may read them; nothing of it is co-simulation."""
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 MOST = 12  # entries of a folder

@@ -6,7 +6,13 @@ from enum import Enum
 
 
 class Ended(Enum):
-    """How it ended; the values are for people."""
+    """How it ended; the values are for people.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> strict = scene.set({"run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
+    >>> touchdown.run(strict, in_process=True).ended
+    <Ended.STOPPED: 'stopped'>
+    """
 
     COMPLETED = "completed"
     AS_WANTED = "as wanted"  # earlier, since what watched it had seen enough

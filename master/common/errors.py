@@ -10,7 +10,14 @@ STOPPED = 3  # exit status: it began, and stopped on the way
 
 
 class TouchdownError(Exception):
-    """Something the user asked for cannot be done; the message says what, which value, and what to do."""
+    """Something the user asked for cannot be done; the message says what, which value, and what to do.
+
+    >>> try:
+    ...     touchdown.load("rotor1-9001")
+    ... except touchdown.TouchdownError as error:
+    ...     print(error)
+    unknown scene rotor1-9001; did you mean rotor1-9000 or ...
+    """
 
 
 def one_of(name: str, known: Iterable[str]) -> str:

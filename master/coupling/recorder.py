@@ -1,70 +1,73 @@
 """Recording to HDF5, streamed: memory stays flat, and what was recorded survives a run that stops.
 
-One group per component, one dataset per variable (attributes unit and description), and `time` in
-seconds from the scene's zero. Of elements of arrays (``ball[3].x``) only the last values are kept, in the
-attributes of the group `@end`, unless a run asks for all.
+The file is netCDF-4 as well: any reader of either opens it. One group per component holds one dataset
+per variable, with the attributes `units` and `long_name`; `time`, in seconds from the scene's zero, is the
+one dimension of all of them. Of elements of arrays (``ball[3].x``) only the last values are kept, as
+attributes of the group `at_end/COMPONENT`, unless a run asks for all. The attributes of the root say what
+was run: title, scene, version, scheme, macro_step_s.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.metadata import version
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import Component, Variable
+from touchdown.master.scene.scene import Scene
 
 BLOCK = 4096  # rows held before they are written
-END = "@end"  # group of the values that are kept of the end only; no component is called so
+TIME = "time"
+END = "at_end"  # group of the values that are kept of the end only
+RECORDED = ("output", "local")  # causalities
+KINDS = ("Real", "Integer")
 
 
 class Recorder:
-    """Rows of all recorded variables of a system."""
+    """Rows of all recorded variables of a scene's components."""
 
-    def __init__(
-        self,
-        path: Path,
-        components: dict[str, Component],
-        arrays: bool = False,
-        beginnings: Sequence[str] = (),
-    ) -> None:
+    def __init__(self, path: Path, scene: Scene, components: Mapping[str, Component]) -> None:
         self.path = path
         self._components = components
+        run = scene.run
+        _refuse_taken(components)
+        _refuse_unused(run.record, components)
         self.names: dict[str, list[str]] = {}
         self.kept_at_end: dict[str, list[str]] = {}
         for name, component in components.items():
             given = [
-                v.name
-                for v in component.variables.values()
-                if v.causality in ("output", "local") and v.kind in ("Real", "Integer")
+                v.name for v in component.variables.values() if v.causality in RECORDED and v.kind in KINDS
             ]
-            chosen = [v for v in given if _begins(f"{name}.{v}", beginnings)]
-            self.names[name] = [v for v in chosen if arrays or "[" not in v]
+            chosen = [v for v in given if _begins(f"{name}.{v}", run.record)]
+            self.names[name] = [v for v in chosen if run.record_arrays or "[" not in v]
             self.kept_at_end[name] = [v for v in given if v not in self.names[name]]
-        _refuse_unused(beginnings, components)
-        try:
-            self._file = h5py.File(path, "w", libver="latest")
-        except OSError as error:
-            raise TouchdownError(f"cannot write {path}: {error}; choose another folder with -o") from None
-        self._time = self._dataset("time", "s", "time from the scene's zero")
-        self._datasets = {
-            (name, variable): self._dataset(
-                f"{name}/{variable}",
-                components[name].variable(variable).unit or "1",
-                components[name].variable(variable).description,
-            )
+        self._file = _created(path)
+        self._file.attrs.update(_heading(scene))
+        self._time = self._dataset(TIME, "s", "time from the scene's zero")
+        self._time.make_scale(TIME)
+        self._datasets = [
+            self._column(name, components[name].variable(variable))
             for name, variables in self.names.items()
             for variable in variables
-        }
+        ]
         self._readers = {name: components[name].reader(variables) for name, variables in self.names.items()}
         self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
         self._block = np.zeros((BLOCK, 1 + len(self._datasets)))
         self._filled = 0
         self.rows = 0
 
-    def _dataset(self, name: str, unit: str, description: str) -> h5py.Dataset:
+    def _column(self, component: str, variable: Variable) -> h5py.Dataset:
+        """The dataset of a component's variable."""
+        unit, meaning = variable.unit or "1", variable.description
+        dataset = self._dataset(f"{component}/{variable.name}", unit, meaning)
+        dataset.dims[0].attach_scale(self._time)
+        return dataset
+
+    def _dataset(self, name: str, unit: str, meaning: str) -> h5py.Dataset:
         dataset = self._file.create_dataset(
             name,
             (0,),
@@ -74,8 +77,8 @@ class Recorder:
             compression="gzip",
             compression_opts=1,
         )
-        dataset.attrs["unit"] = unit
-        dataset.attrs["description"] = description
+        dataset.attrs["units"] = unit
+        dataset.attrs["long_name"] = meaning
         return dataset
 
     def append(self, time: float) -> None:
@@ -103,7 +106,7 @@ class Recorder:
     def _write(self) -> None:
         n = self._filled
         if n:
-            for column, dataset in enumerate((self._time, *self._datasets.values())):
+            for column, dataset in enumerate((self._time, *self._datasets)):
                 dataset.resize((self.rows + n,))
                 dataset[self.rows :] = self._block[:n, column]
             self.rows += n
@@ -131,13 +134,40 @@ class Recorder:
         return problem
 
 
+def _created(path: Path) -> h5py.File:
+    """A new file at `path`; who reads an older one there goes on reading that."""
+    try:
+        path.unlink(missing_ok=True)
+        return h5py.File(path, "w", libver="latest")
+    except OSError as error:
+        raise TouchdownError(f"cannot write {path}: {error}; choose another folder with -o") from None
+
+
+def _heading(scene: Scene) -> dict[str, object]:
+    """What was run: attributes of the root."""
+    return {
+        "title": scene.title,
+        "scene": scene.name,
+        "version": version("touchdown-cosim"),
+        "scheme": scene.run.scheme.name,
+        "macro_step_s": scene.run.macro_step,
+    }
+
+
 def _begins(name: str, beginnings: Sequence[str]) -> bool:
     """Whether COMPONENT.VARIABLE is one of those, or in the component or group of one."""
     return not beginnings or any(f"{name}.".startswith(f"{b}.") for b in beginnings)
 
 
-def _refuse_unused(beginnings: Sequence[str], components: dict[str, Component]) -> None:
+def _refuse_unused(beginnings: Sequence[str], components: Mapping[str, Component]) -> None:
     every = [f"{name}.{v}" for name, component in components.items() for v in component.variables]
     for b in beginnings:
         if not any(_begins(name, [b]) for name in every):
             raise TouchdownError(f"run.record: there is nothing called {b}; {one_of(b, every)}")
+
+
+def _refuse_taken(components: Iterable[str]) -> None:
+    """Raise TouchdownError where a component's group would have a name that the file has already."""
+    for name in components:
+        if name in (TIME, END):
+            raise TouchdownError(f"a component cannot be called {name} and be recorded; rename it")

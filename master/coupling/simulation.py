@@ -171,7 +171,7 @@ def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[O
         yield []
         return
     run = scene.run
-    recorder = Recorder(path, now.system.components, run.record_arrays, run.record)
+    recorder = Recorder(path, scene, now.system.components)
     try:
         recorder.append(-now.zero)
         yield [_Recording(recorder, run.record_every)]

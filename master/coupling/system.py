@@ -9,10 +9,8 @@ import numpy as np
 
 from touchdown.master.common.units import scaled
 from touchdown.master.components.component import Component
-from touchdown.master.coupling.connections import Attachment, Connection, full, split, used_modes
+from touchdown.master.coupling.connections import Attachment, Connection, split, used_modes
 from touchdown.master.coupling.layout import Intake, lay_out
-
-HOUSING = "housing.x"  # what a bearing knows of the housing it moves with
 
 
 @dataclass
@@ -123,11 +121,3 @@ class System:
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
         found = lay_out(self.components, self._live(), attachments)
         self.signals, self.position, self.intakes = found.signals, found.position, found.intakes
-
-
-def housing_port(system: System, a: Attachment) -> str | None:
-    """COMPONENT.PORT that the bearing's outer ring moves with; None where it stands in the ground."""
-    for c in system.connections:
-        if c.target_name == full(a.bearing, HOUSING):
-            return c.source_name.rpartition(".")[0]
-    return None

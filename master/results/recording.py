@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.recorder import END
+from touchdown.master.coupling.recorder import END, TIME
 
 
 class NotRecordedError(TouchdownError):
@@ -16,16 +16,17 @@ class NotRecordedError(TouchdownError):
 
 
 class Recording:
-    """A recorded run, read back."""
+    """A recorded run, read back from the file at `path`; `owner` is kept for as long as it is read."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, owner: object = None) -> None:
+        self._owner = owner
         self._file = h5py.File(path, "r")
         sizes: list[int] = []
         self._file.visititems(
             lambda _, item: sizes.append(len(item)) if isinstance(item, h5py.Dataset) else None
         )
         self._rows = min(sizes)  # a disk that ran full leaves columns of unequal length
-        self.time = np.asarray(self._file["time"])[: self._rows]
+        self.time = np.asarray(self._file[TIME])[: self._rows]
 
     def __contains__(self, name: str) -> bool:
         return self._key(name) in self._file
@@ -49,17 +50,31 @@ class Recording:
         found: list[tuple[str, str]] = []
         for component, group in self._file.items():
             if isinstance(group, h5py.Group) and component != END:
-                found += [(f"{component}.{name}", str(d.attrs["unit"])) for name, d in group.items()]
+                found += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
         return found
+
+    def about(self) -> dict[str, object]:
+        """What was run: title, scene, version, scheme, macro_step_s."""
+        return {key: _plain(value) for key, value in self._file.attrs.items()}
+
+    def about_column(self, name: str) -> dict[str, object]:
+        """Of `time` or COMPONENT.VARIABLE: units and long_name."""
+        given = self._file[self._key(name)].attrs
+        return {key: _plain(given[key]) for key in ("units", "long_name")}
 
     @staticmethod
     def _key(name: str) -> str:
-        component, _, variable = name.partition(".")
-        return f"{component}/{variable}"
+        component, dot, variable = name.partition(".")
+        return f"{component}/{variable}" if dot else component
 
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _plain(value: object) -> object:
+    """An attribute as Python's own text or number."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def write_csv(recording: Recording, path: Path) -> None:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from tqdm import tqdm
+from tqdm.auto import tqdm
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
@@ -15,65 +14,65 @@ from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.recording import Recording, write_csv
+from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
 from touchdown.master.scene.scene import Scene
 
 
-@dataclass(frozen=True)
-class Result:
-    """What a run left behind."""
-
-    folder: Path
-    summary: dict[str, object]
-    ended: Ended = Ended.COMPLETED
-    stopped_because: str = ""
-    warnings: list[str] = field(default_factory=list)
-    pictures: list[Path] = field(default_factory=list)
-
-
 def run_scene(
     scene: Scene,
-    folder: Path,
+    folder: Path | None,
     in_process: bool = False,
     csv: bool = False,
     pictures: bool = True,
     progress: bool = False,
 ) -> Result:
-    """Run `scene` and write its results into `folder`.
+    """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
     These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
     """
+    scratch = None
+    if folder is None:
+        scratch = Scratch()
+        folder = scratch.path
     make_writable(folder)
     with interrupts_noted():
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:
-                outcome = simulate(scene, system, folder / "result.h5", show)
+                outcome = simulate(scene, system, folder / RECORDING, show)
             summary, drawn = _write_results(scene, system, outcome, folder, csv, pictures)
+            told = ending(system)
         except OSError as error:
             raise TouchdownError(
                 f"cannot write to {folder}: {error}; choose another folder with -o"
             ) from None
         finally:
             system.close()
-    warnings = []
-    if outcome.warned_at is not None and outcome.ended is Ended.COMPLETED:
-        warnings.append(
-            f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
-            f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
-        )
-    return Result(folder, summary, outcome.ended, outcome.reason, warnings, drawn)
+    warnings = _warnings(scene, outcome)
+    return Result(scene, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn, scratch)
+
+
+def _warnings(scene: Scene, outcome: Outcome) -> list[str]:
+    """What is to be said of a run that went to its end."""
+    if outcome.warned_at is None or outcome.ended is not Ended.COMPLETED:
+        return []
+    return [
+        f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
+        f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
+    ]
 
 
 def _write_results(
     scene: Scene, system: System, outcome: Outcome, folder: Path, csv: bool, pictures: bool
 ) -> tuple[dict[str, object], list[Path]]:
     """summary.json, and on request result.csv and pictures; returns the figures and the pictures."""
-    recording = Recording(folder / "result.h5")
+    recording = Recording(folder / RECORDING)
     try:
         summary = summarise(scene, system, outcome, recording)
         resolved = json.dumps(scene.resolved(), indent=2, default=str)
@@ -85,7 +84,7 @@ def _write_results(
             return summary, []
         from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
 
-        return summary, draw_all(scene, system, recording, folder)
+        return summary, draw_all(Finished(scene, system, recording), folder)
     finally:
         recording.close()
 
@@ -113,6 +112,9 @@ class _Bar:
         )
 
     def __enter__(self) -> Callable[[float, float], None]:
+        if self._bar.disable:
+            return lambda time, residual: None
+
         def show(time: float, residual: float) -> None:
             if time > self._bar.n:
                 speed = self._bar.format_dict["elapsed"] / time

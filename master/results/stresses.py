@@ -8,21 +8,20 @@ from __future__ import annotations
 
 import re
 
-from touchdown.master.components.component import Component
 from touchdown.master.coupling.simulation import Outcome
-from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Readable, Teller
 
 MPA = 1e-6
 KINDS = ("bending", "shear")
 SIGN = "stress.peak_bending"  # a component with this variable reports stresses
 
 
-def stressed(system: System) -> list[str]:
+def stressed(system: Readable) -> list[str]:
     """Names of the components that report stresses."""
     return [name for name, component in system.components.items() if SIGN in component.variables]
 
 
-def kept_instant(component: Component) -> float | None:
+def kept_instant(component: Teller) -> float | None:
     """When the stresses along the rotor were kept (s from the run's start); None where they never were."""
     if "stress.kept_time" not in component.variables:
         return None
@@ -30,7 +29,7 @@ def kept_instant(component: Component) -> float | None:
     return time if time > 0.0 else None
 
 
-def along(component: Component, variable: str) -> tuple[list[int], list[float]]:
+def along(component: Teller, variable: str) -> tuple[list[int], list[float]]:
     """Nodes, and the values there of one of their variables (SI)."""
     pattern = re.compile(rf"node\[(\d+)\]\.{re.escape(variable)}")
     found = {int(m[1]): m[0] for m in map(pattern.fullmatch, component.variables) if m}
@@ -38,7 +37,7 @@ def along(component: Component, variable: str) -> tuple[list[int], list[float]]:
     return nodes, component.read([found[node] for node in nodes]) if nodes else []
 
 
-def stress_figures(system: System, outcome: Outcome) -> dict[str, object]:
+def stress_figures(system: Readable, outcome: Outcome) -> dict[str, object]:
     """Figures of all components that report stresses; None where there was no stress."""
     names = stressed(system)
     found: dict[str, object] = {}
@@ -50,7 +49,7 @@ def stress_figures(system: System, outcome: Outcome) -> dict[str, object]:
     return found
 
 
-def _peaks(component: Component, zero: float) -> dict[str, object]:
+def _peaks(component: Teller, zero: float) -> dict[str, object]:
     found: dict[str, object] = {}
     for kind in KINDS:
         names = [f"stress.peak_{kind}{tail}" for tail in ("", "_node", "_time")]
@@ -64,7 +63,7 @@ def _peaks(component: Component, zero: float) -> dict[str, object]:
     return found
 
 
-def _kept(component: Component, zero: float) -> dict[str, object]:
+def _kept(component: Teller, zero: float) -> dict[str, object]:
     time = kept_instant(component)
     found: dict[str, object] = {"kept_stress_time_s": None if time is None else time - zero}
     for kind in KINDS:

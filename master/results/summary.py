@@ -12,7 +12,8 @@ from scipy.signal import get_window
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, energy_scale
-from touchdown.master.coupling.system import System, housing_port
+from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.stresses import stress_figures
 from touchdown.master.results.whirl import Whirl, classify
@@ -61,7 +62,7 @@ ENERGIES = (
 )
 
 
-def touchdown_seats(system: System) -> list[Attachment]:
+def touchdown_seats(system: Readable) -> list[Attachment]:
     """Attachments at which a journal can touch down, with the name of the bearing's report."""
     return [
         a
@@ -102,7 +103,7 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
     return found
 
 
-def _bearing_figures(system: System, a: Attachment, outcome: Outcome) -> dict[str, object]:
+def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
     component = system.components[a.bearing]
     found: dict[str, object] = {}
     touched = component.read(["contact.first_time"])[0] != -1.0
@@ -120,7 +121,7 @@ def _bearing_figures(system: System, a: Attachment, outcome: Outcome) -> dict[st
 
 
 def _orbit_figures(
-    system: System, a: Attachment, outcome: Outcome, recording: Recording
+    system: Readable, a: Attachment, outcome: Outcome, recording: Recording
 ) -> dict[str, object]:
     x = recording[a.motion("x")]
     y = recording[a.motion("y")]
@@ -144,14 +145,14 @@ def _orbit_figures(
     return found if loaded is None else {"loaded_balls_mean": loaded} | found
 
 
-def relative_orbit(system: System, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+def relative_orbit(system: Readable, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
     """Journal's position relative to the housing's, the bearing's centre (m)."""
     port = housing_port(system, a)
     x, y = (recording[a.motion(axis)] - (recording[f"{port}.{axis}"] if port else 0.0) for axis in "xy")
     return x, y
 
 
-def whirl_at(system: System, a: Attachment, recording: Recording) -> Whirl | None:
+def whirl_at(system: Readable, a: Attachment, recording: Recording) -> Whirl | None:
     """The verdict on the journal's orbit; None where the bearing states no clearance."""
     if "clearance" not in system.components[a.bearing].variables:
         return None
@@ -160,7 +161,7 @@ def whirl_at(system: System, a: Attachment, recording: Recording) -> Whirl | Non
     return classify(recording.time, *relative_orbit(system, a, recording), clearance, spin)
 
 
-def _whirl_figures(system: System, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
+def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
     """The verdict in words, and the longest whirl; without a clearance nothing can be told."""
     key = f"whirl_{seat}"
     tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N")
@@ -216,7 +217,7 @@ def dominant_frequency(
     return float(frequency[peak] + 0.5 * (a - c) / (a - 2.0 * b + c) * frequency[1])
 
 
-def energy_total(system: System, recording: Recording) -> np.ndarray | None:
+def energy_total(system: Readable, recording: Recording) -> np.ndarray | None:
     """Sum of all energies minus what was supplied (J); None where a component does not state its own."""
     attached = {name for a in system.attachments for name in (a.bearing, a.body)}
     stated = ("energy.kinetic", "supplied")

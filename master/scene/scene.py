@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -35,9 +36,19 @@ class Wire(NamedTuple):
     scale: Scale | None = None  # factor and offset; None: as it is, in equal units
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
-    """Everything a run needs."""
+    """Everything a run needs. It never changes: `set` and `swap` make copies.
+
+    >>> scene = touchdown.load("disk-caged-simplified")
+    >>> scene.set({"rotor.speed": "12000 rpm", "run.duration": "10 ms"}).swap(bearing="simplified_cageless")
+    <Scene disk-caged-simplified: Rigid disk dropped on a simplified caged bearing
+      rotor: rigid_rotor
+      amb: amb
+      bearing: simplified_cageless
+      housing: housing
+      run: 0.01 s by macro steps of 2e-05 s, scheme interface>
+    """
 
     name: str
     title: str
@@ -51,8 +62,20 @@ class Scene:
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
 
-    def with_setting(self, name: str, value: object) -> Scene:
-        """A copy with run.KEY or COMPONENT.VARIABLE set to `value`."""
+    def set(self, settings: Mapping[str, object]) -> Scene:
+        """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
+
+        Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
+        catalogue, COMPONENT.every how many macro steps a component takes in one. Raises TouchdownError
+        where there is no such component, key or preset; a component's variables are looked up when a run
+        begins.
+        """
+        scene = self
+        for name, value in settings.items():
+            scene = scene._with_setting(name, value)
+        return scene
+
+    def _with_setting(self, name: str, value: object) -> Scene:
         head, _, tail = name.partition(".")
         if not tail:
             raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
@@ -67,34 +90,49 @@ class Scene:
             changed = replace(spec, set={**spec.set, tail: value})
         return replace(self, components={**self.components, head: changed})
 
-    def with_settings(self, settings: Mapping[str, object]) -> Scene:
-        """A copy with all of them set, as by `with_setting`, in their order."""
+    def swap(self, **fmus: str | os.PathLike[str]) -> Scene:
+        """A copy with components made of other FMUs: swap(bearing="detailed_caged").
+
+        An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor. It
+        starts from its own defaults and takes over what the scene sets, as far as it has it. Names that the
+        scene gives belong to the FMU that goes; `with_names` gives the new one's. Raises TouchdownError
+        where there is no such component.
+        """
         scene = self
-        for name, value in settings.items():
-            scene = scene.with_setting(name, value)
+        for name, fmu in fmus.items():
+            before = scene._component(name)
+            after = ComponentSpec(
+                _source(os.fspath(fmu)), every=before.every, inherited={**before.inherited, **before.set}
+            )
+            scene = replace(scene, components={**scene.components, name: after})
         return scene
 
-    def with_swap(self, name: str, fmu: str) -> Scene:
-        """A copy with component `name` made of another FMU.
+    def with_setting(self, name: str, value: object) -> Scene:
+        return self.set({name: value})
 
-        It starts from its own defaults and takes over what the scene sets, as far as it has it. Names
-        that the scene gives belong to the FMU that goes; `with_names` gives the new one's.
-        """
-        before = self._component(name)
-        if fmu.endswith(".fmu"):
-            fmu = str(Path(fmu).absolute())
-        return replace(
-            self,
-            components={
-                **self.components,
-                name: ComponentSpec(fmu, every=before.every, inherited={**before.inherited, **before.set}),
-            },
-        )
+    def with_settings(self, settings: Mapping[str, object]) -> Scene:
+        return self.set(settings)
+
+    def with_swap(self, name: str, fmu: str) -> Scene:
+        return self.swap(**{name: fmu})
 
     def with_names(self, name: str, names: Mapping[str, str]) -> Scene:
         """A copy in which the FMU of component `name` calls the contract's variables as `names` says."""
         spec = replace(self._component(name), names=names)
         return replace(self, components={**self.components, name: spec})
+
+    def __repr__(self) -> str:
+        made = [
+            f"  {name}: {spec.fmu}{f' ({spec.preset})' if spec.preset else ''}"
+            for name, spec in self.components.items()
+        ]
+        run = f"{self.run.duration:g} s by macro steps of {self.run.macro_step:g} s"
+        lines = [
+            f"<Scene {self.name}: {self.title}",
+            *made,
+            f"  run: {run}, scheme {self.run.scheme.name}>",
+        ]
+        return "\n".join(lines)
 
     def _component(self, name: str) -> ComponentSpec:
         try:
@@ -109,6 +147,13 @@ class Scene:
         found = asdict(self)
         found["run"]["scheme"] = self.run.scheme.name
         return found
+
+
+def _source(fmu: str) -> str:
+    """Where an FMU comes from, told from wherever a scene lies: files of the user's by their whole path."""
+    path = Path(fmu)
+    there = path.suffix == ".fmu" or (path.suffix == ".toml" and path.is_file())
+    return str(path.absolute()) if there else fmu
 
 
 def checked_preset(name: object, where: str) -> str | None:

@@ -15,7 +15,9 @@ flexible rotor are carried, and in which sequence the components are stepped (`c
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
@@ -23,7 +25,11 @@ from touchdown.modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
 
 @dataclass(frozen=True)
 class Scheme:
-    """One way of coupling."""
+    """One way of coupling.
+
+    >>> touchdown.load("rotor1-9000").run.scheme.title
+    'bodies carried with their modes, mean and slope'
+    """
 
     name: str
     title: str
@@ -36,11 +42,7 @@ class Scheme:
     lead: bool = False  # whether bearings hand over the load of the step to come
 
 
-def _table(*rows: Scheme) -> dict[str, Scheme]:
-    return {row.name: row for row in rows}
-
-
-SCHEMES = _table(
+_OWN = (
     Scheme("hold", "motion held, mean load", HOLD, False, False, 1, 0.01),
     Scheme("velocity", "velocity extrapolated, mean load", VELOCITY, False, False, 2, 0.08),
     Scheme("acceleration", "acceleration extrapolated, mean and slope", ACCELERATION, True, False, 3, 0.2),
@@ -54,7 +56,23 @@ SCHEMES = _table(
     Scheme("jacobi-lead", "all at once, bearings lead", MODEL, True, True, 3, 1.0, "jacobi", lead=True),
 )
 
+_schemes = {scheme.name: scheme for scheme in _OWN}
+SCHEMES: Mapping[str, Scheme] = MappingProxyType(_schemes)
+"""All there are, by name: the project's own, then those that were registered."""
+
 DEFAULT = "interface"
+
+
+def register(scheme: Scheme) -> None:
+    """Let scenes name `scheme`. Raises TouchdownError where its name is taken, or a value cannot be."""
+    if scheme.name in SCHEMES:
+        raise TouchdownError(f"there is a scheme {scheme.name} already; give this one another name")
+    orders = (HOLD, VELOCITY, ACCELERATION, MODEL)
+    if scheme.order not in orders:
+        raise TouchdownError(f"scheme {scheme.name}: order = {scheme.order} must be one of {orders}")
+    if not scheme.bears > 0.0:
+        raise TouchdownError(f"scheme {scheme.name}: bears = {scheme.bears} must be above 0")
+    _schemes[scheme.name] = scheme
 
 
 def scheme(name: str) -> Scheme:

@@ -46,6 +46,12 @@ class Element:
     inertia. It adds stiffness by its modulus: to EI, and to kGA with the shear factor and the Poisson's
     ratio of the core; a modulus of 0 means laminations, which carry nothing. Lengths and diameters in m,
     moduli in Pa, densities in kg/m3.
+
+    >>> steel = touchdown.Element(
+    ...     length=0.1, outer_diameter=0.04, modulus=207e9, density=7830.0, poisson=0.3
+    ... )
+    >>> round(steel.mass, 3)  # kg
+    0.984
     """
 
     length: float
@@ -135,7 +141,11 @@ class Element:
 
 @dataclass(frozen=True)
 class PointMass:
-    """A rigid body fixed to the section at a node: kg, kg m2 about the axis and about a diameter."""
+    """A rigid body fixed to the section at a node: kg, kg m2 about the axis and about a diameter.
+
+    >>> touchdown.PointMass(node=5, mass=1.2, polar_inertia=2e-3, diametral_inertia=1e-3).mass
+    1.2
+    """
 
     node: int
     mass: float
@@ -152,7 +162,11 @@ def disc(node: int, outer: float, inner: float, width: float, density: float) ->
 
 @dataclass(frozen=True)
 class Unbalance:
-    """A heavy spot: mass times radius (kg m) at an angle counter-clockwise from x (rad)."""
+    """A heavy spot: mass times radius (kg m) at an angle counter-clockwise from x (rad).
+
+    >>> touchdown.Unbalance(node=5, moment=3e-6)
+    Unbalance(node=5, moment=3e-06, angle=0.0)
+    """
 
     node: int
     moment: float
@@ -161,7 +175,11 @@ class Unbalance:
 
 @dataclass(frozen=True)
 class Station:
-    """A node with a name: a place where the rotor takes loads, or one that a sensor looks at."""
+    """A node with a name: a place where the rotor takes loads, or one that a sensor looks at.
+
+    >>> [s.node for s in touchdown.Rotor.load("rotor_I").stations if s.name == "A"]
+    [3]
+    """
 
     name: str
     node: int

@@ -9,7 +9,28 @@ from touchdown.master.scene.run_spec import RunSpec
 
 
 class Stepper(ABC):
-    """Steps an initialised system."""
+    """Steps an initialised system: a sequence of calls to its components.
+
+    One of your own is a subclass of this, or of one of the project's; `register_scheme` gives it a name.
+
+    >>> from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
+    >>> class Counting(GaussSeidel):
+    ...     count = 0
+    ...     def step(self, number, time, step):
+    ...         super().step(number, time, step)
+    ...         self.count += 1
+    ...     @property
+    ...     def figures(self):
+    ...         return {"steps_counted": self.count}
+    >>> scheme = touchdown.Scheme(
+    ...     name="counting", title="interface, steps counted", order=3, slopes=True, modes=True,
+    ...     error_order=3, bears=1.0, sequence="counting",
+    ... )
+    >>> touchdown.register_scheme(scheme, Counting)
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
+    >>> touchdown.run(scene.set({"run.scheme": "counting"}), in_process=True).summary["steps_counted"]
+    300
+    """
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.system = system

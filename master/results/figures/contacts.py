@@ -6,15 +6,14 @@ import math
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.system import System, housing_port
-from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet
+from touchdown.master.results.ending import Finished, Readable, housing_port
+from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sized
 from touchdown.master.results.recording import Recording
-from touchdown.master.scene.scene import Scene
 
 MM = 1e3
 SHOWN = 0.05  # of the pitch radius: about how large the largest displacement is drawn
@@ -51,20 +50,24 @@ class Scale:
         return MM * self.factor * at[0], MM * self.factor * at[1]
 
 
-def has_contacts(system: System, a: Attachment) -> bool:
+def has_contacts(system: Readable, a: Attachment) -> bool:
     """Whether the bearing tells of each of its balls."""
     return all(name in system.components[a.bearing].variables for name in NEEDED)
 
 
-def contacts(scene: Scene, system: System, recording: Recording, a: Attachment) -> Figure:
+def contacts(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Balls between the races at the end of the run."""
+    return [draw_contacts(sized(figure, 8.2, 8.5).subplots(), run, a)]
+
+
+def draw_contacts(axes: Axes, run: Finished, a: Attachment) -> Axes:
     """Balls between the races at the end of the run, sizes to scale, displacements not (Fig 27)."""
+    system, recording = run.system, run.recording
     balls = _balls(system, recording, a)
     ring = _from_outer_ring(system, recording, a, f"{a.bearing}.ring")
     caged = f"{a.bearing}.cage.x" in recording
     cage = _from_outer_ring(system, recording, a, f"{a.bearing}.cage") if caged else None
     scale = _scale(system, a, balls, [ring] if cage is None else [ring, cage])
-    figure = sheet(8.2, 8.5)
-    axes = figure.subplots()
     _draw_rings(axes, scale, ring, cage)
     for ball in balls:
         _draw_ball(axes, scale, ball)
@@ -76,14 +79,14 @@ def contacts(scene: Scene, system: System, recording: Recording, a: Attachment) 
     axes.set_ylabel("y [mm]")
     axes.legend(handles=_key(caged), loc="center")
     pressed = sum(ball.by_races for ball in balls)
-    figure.suptitle(
-        f"{scene.title}\n{recording.time[-1]:g} s after the shutdown both rings press {pressed} of "
+    axes.set_title(
+        f"{run.scene.title}\n{recording.time[-1]:g} s after the shutdown both rings press {pressed} of "
         f"{len(balls)} balls (displacements {scale.factor:g} times as large)"
     )
-    return figure
+    return axes
 
 
-def _balls(system: System, recording: Recording, a: Attachment) -> list[Ball]:
+def _balls(system: Readable, recording: Recording, a: Attachment) -> list[Ball]:
     count = int(system.value(f"{a.bearing}.balls.count"))
     names = [f"{a.bearing}.ball[{number}]" for number in range(1, count + 1)]
     inner, outer, side = (
@@ -95,7 +98,9 @@ def _balls(system: System, recording: Recording, a: Attachment) -> list[Ball]:
     return [Ball(b + 1, *places[b], inner[b] and outer[b], side[b]) for b in range(count)]
 
 
-def _from_outer_ring(system: System, recording: Recording, a: Attachment, port: str) -> tuple[float, float]:
+def _from_outer_ring(
+    system: Readable, recording: Recording, a: Attachment, port: str
+) -> tuple[float, float]:
     """Last position of COMPONENT.PORT from the middle of the outer ring (m)."""
     x, y = (recording.at_end(f"{port}.{axis}") for axis in "xy")
     housing = housing_port(system, a)
@@ -104,7 +109,7 @@ def _from_outer_ring(system: System, recording: Recording, a: Attachment, port: 
     return x - recording.at_end(f"{housing}.x"), y - recording.at_end(f"{housing}.y")
 
 
-def _scale(system: System, a: Attachment, balls: list[Ball], moved: list[tuple[float, float]]) -> Scale:
+def _scale(system: Readable, a: Attachment, balls: list[Ball], moved: list[tuple[float, float]]) -> Scale:
     pitch, ball = (0.5 * system.value(f"{a.bearing}.balls.{d}") for d in ("pitch_diameter", "diameter"))
     off = [abs(math.hypot(b.x, b.y) - pitch) for b in balls] + [math.hypot(*at) for at in moved]
     return Scale(pitch, ball, _round_down(SHOWN * pitch / max(*off, 1e-9)))

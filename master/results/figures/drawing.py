@@ -7,72 +7,66 @@ from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
 from matplotlib.figure import Figure
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.contacts import contacts, has_contacts
 from touchdown.master.results.figures.energy import energy
 from touchdown.master.results.figures.forces import forces
-from touchdown.master.results.figures.motion import orbit, speeds
+from touchdown.master.results.figures.motion import paths, speeds
 from touchdown.master.results.figures.orbits import orbits
 from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
 from touchdown.master.results.figures.stress import has_stress, stress
+from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
-from touchdown.master.results.recording import NotRecordedError, Recording
+from touchdown.master.results.recording import NotRecordedError
 from touchdown.master.results.stresses import stressed
 from touchdown.master.results.summary import energy_total, touchdown_seats
-from touchdown.master.scene.scene import Scene
+
+Picture = tuple[str, Callable[[Figure], object]]  # name of the file, and what draws it on an empty figure
 
 
-def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -> list[Path]:
+def draw_all(run: Finished, folder: Path) -> list[Path]:
     """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files."""
     made: list[Path] = []
-    for name, draw in _pictures(scene, system, recording):
+    for name, draw in _pictures(run):
         with suppress(NotRecordedError):
-            made.append(_save(draw(), folder / f"{name}.png"))
+            figure = sheet()
+            draw(figure)
+            path = folder / f"{name}.png"
+            figure.savefig(path, dpi=110)
+            made.append(path)
     return made
 
 
-Picture = tuple[str, Callable[[], Figure]]  # name of the file, and how it is drawn
-
-
-def _pictures(scene: Scene, system: System, recording: Recording) -> Iterator[Picture]:
-    seats = touchdown_seats(system)
+def _pictures(run: Finished) -> Iterator[Picture]:
+    seats = touchdown_seats(run.system)
     for a in seats:
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
-        for name, draw in _of_bearing(scene, system, recording, a):
+        for name, draw in _of_bearing(run, a):
             yield f"{name}{tail}", draw
     if len(seats) > 1:
-        yield "orbits", partial(orbits, scene, system, recording, seats)
-    rotors = stressed(system)
+        yield "orbits", partial(orbits, run=run, seats=seats)
+    rotors = stressed(run.system)
     for name in rotors:
         tail = f"-{name}" if len(rotors) > 1 else ""
-        if has_stress(system, name):
-            yield f"stress{tail}", partial(stress, scene, system, recording, name)
-    if energy_total(system, recording) is not None:
-        yield "energy", partial(energy, scene, system, recording)
+        if has_stress(run.system, name):
+            yield f"stress{tail}", partial(stress, run=run, name=name)
+    if energy_total(run.system, run.recording) is not None:
+        yield "energy", partial(energy, run=run)
 
 
-def _of_bearing(scene: Scene, system: System, recording: Recording, a: Attachment) -> Iterator[Picture]:
+def _of_bearing(run: Finished, a: Attachment) -> Iterator[Picture]:
     """Of one touchdown bearing."""
-    yield "orbit", partial(orbit, scene, system, recording, a)
-    if f"{a.bearing}.contact.force" in recording:
-        yield "force", partial(forces, scene, system, recording, a)
-    if f"{a.bearing}.speed.ring" in recording:
-        yield "speeds", partial(speeds, scene, system, recording, a)
-    if has_contacts(system, a):
-        yield "contacts", partial(contacts, scene, system, recording, a)
-    if has_spectrum(recording, a):
-        yield "spectrum", partial(spectrum, scene, recording, a)
-    if has_waterfall(recording, a):
-        yield "waterfall", partial(motion_waterfall, scene, recording, a)
-
-
-def _save(figure: Figure, path: Path) -> Path:
-    figure.savefig(path, dpi=110)
-    return path
+    yield "orbit", partial(paths, run=run, a=a)
+    if f"{a.bearing}.contact.force" in run.recording:
+        yield "force", partial(forces, run=run, a=a)
+    if f"{a.bearing}.speed.ring" in run.recording:
+        yield "speeds", partial(speeds, run=run, a=a)
+    if has_contacts(run.system, a):
+        yield "contacts", partial(contacts, run=run, a=a)
+    if has_spectrum(run.recording, a):
+        yield "spectrum", partial(spectrum, run=run, a=a)
+    if has_waterfall(run.recording, a):
+        yield "waterfall", partial(motion_waterfall, run=run, a=a)

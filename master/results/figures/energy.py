@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
 
-from touchdown.master.coupling.system import System
-from touchdown.master.results.figures.style import BLUE, COLOURS, TIME, line, sheet
-from touchdown.master.results.recording import Recording
+from touchdown.master.results.ending import Finished
+from touchdown.master.results.figures.style import BLUE, COLOURS, TIME, line, sized
 from touchdown.master.results.summary import energy_total
-from touchdown.master.scene.scene import Scene
 
 STYLES = ("-", "--", ":", "-.")  # one per component
 
 
-def energy(scene: Scene, system: System, recording: Recording) -> Figure:
+def energy(figure: FigureBase, run: Finished) -> list[Axes]:
     """Where the energy is: what fell, what went into rings and balls, what became heat; and the balance."""
-    figure = sheet(13, 5)
-    flows, check = figure.subplots(1, 2)
+    system, recording = run.system, run.recording
+    flows, check = sized(figure, 13, 5).subplots(1, 2)
     time = recording.time
     for name, style in zip(system.components, STYLES * 4, strict=False):
         variables = ("energy.kinetic", "energy.potential", "energy.dissipated")
@@ -37,5 +36,5 @@ def energy(scene: Scene, system: System, recording: Recording) -> Figure:
     check.set_title("sum of all energies: zero where nothing is lost or made")
     for axes in (flows, check):
         axes.set_xlabel(TIME)
-    figure.suptitle(scene.title)
-    return figure
+    figure.suptitle(run.scene.title)
+    return [flows, check]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.style import (
     BLUE,
     GREEN,
@@ -18,12 +18,11 @@ from touchdown.master.results.figures.style import (
     beginning,
     line,
     present,
-    sheet,
+    sized,
     within,
     zooms,
 )
 from touchdown.master.results.recording import Recording
-from touchdown.master.scene.scene import Scene
 
 FIRST = 0.5  # s, the first zoom
 HARDEST = "hardest.ball"
@@ -43,13 +42,14 @@ LOADED = Row("most loaded ball", (Curve("balls.force", "normal", NORMAL),))
 NEIGHBOURS = Row("ball on next ball", (Curve("neighbours.force", "normal, largest", NORMAL),))
 
 
-def forces(scene: Scene, system: System, recording: Recording, a: Attachment) -> Figure:
+def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Forces of the rotor, and of the ball hit hardest where it is known (Figs 30-33)."""
+    recording = run.recording
     chosen = _rows(recording, a)
     rows = [(r.label, c) for r in chosen if (c := present(recording, a.bearing, r.curves))]
     time = recording.time
     spans = zooms(time, FIRST)
-    figure = sheet(max(9.0, 1.0 + 5.5 * len(spans)), 1.0 + 2.5 * len(rows))
+    sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 1.0 + 2.5 * len(rows))
     grid = figure.subplots(len(rows), len(spans), squeeze=False, sharex="col")
     for row, (label, curves) in zip(grid, rows, strict=True):
         values = [recording[f"{a.bearing}.{c.variable}"] for c in curves]
@@ -63,9 +63,9 @@ def forces(scene: Scene, system: System, recording: Recording, a: Attachment) ->
         if len(curves) > 1:
             row[0].legend(loc="upper right", fontsize="small")
     _label_columns(grid[0], grid[-1], spans, (beginning(time), float(time[-1])))
-    peak = system.value(f"{a.bearing}.contact.peak_force")
-    figure.suptitle(f"{scene.title}\nlargest contact force {peak:.1f} N{_which(recording, a)}")
-    return figure
+    peak = run.system.value(f"{a.bearing}.contact.peak_force")
+    figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{_which(recording, a)}")
+    return list(grid.flat)
 
 
 def _rows(recording: Recording, a: Attachment) -> list[Row]:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.system import System, housing_port
+from touchdown.master.results.ending import Finished, Readable, housing_port
 from touchdown.master.results.figures.style import (
     BLACK,
     BLUE,
@@ -22,12 +22,11 @@ from touchdown.master.results.figures.style import (
     beginning,
     line,
     present,
-    sheet,
+    sized,
     within,
     zooms,
 )
 from touchdown.master.results.recording import Recording
-from touchdown.master.scene.scene import Scene
 
 UM = 1e6
 SPEEDS = (  # in the order they are drawn: what varies most first
@@ -51,37 +50,40 @@ class Track:
     y: np.ndarray
 
 
-def orbit(scene: Scene, system: System, recording: Recording, a: Attachment) -> Figure:
+def paths(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Rotor in the clearance circle, its contact from near, and the orbits of rings and cage [µm]."""
+    system, recording = run.system, run.recording
     cage, rings = _cage(recording, a), _rings(system, recording, a)
     panels = [("rings", rings)] if rings else []
     panels += [("cage in front of the rings", [*rings, *cage])] if cage else []
     rows, columns = (1, 2 + len(panels)) if len(panels) < 2 else (2, 2)
-    figure = sheet(5.2 * columns, 0.4 + 5.0 * rows)
+    sized(figure, 5.2 * columns, 0.4 + 5.0 * rows)
     whole, near, *others = figure.subplots(rows, columns).flat
-    _draw_rotor(whole, near, system, recording, a)
+    draw_orbit(whole, run, a)
+    _draw_landing(near, run, a)
     for axes, (title, tracks) in zip(others, panels, strict=True):
         for track in tracks:
             axes.plot(track.x, track.y, color=track.colour, lw=0.5, label=track.label)
         axes.set_title(title)
         axes.set_aspect("equal", adjustable="datalim")
         axes.legend(loc="upper right")
-    for axes in (whole, near, *others):
+    for axes in others:
         axes.set_xlabel("x [µm]")
         axes.set_ylabel("y [µm]")
-    figure.suptitle(scene.title)
-    return figure
+    figure.suptitle(run.scene.title)
+    return [whole, near, *others]
 
 
-def speeds(scene: Scene, system: System, recording: Recording, a: Attachment) -> Figure:
+def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Circumferential speeds while the ring is spun up, from then on, and at last (Figs 25, 26)."""
+    recording = run.recording
     time = recording.time
-    spun_up = SPUN_UP * _sync(scene, system, recording, a)
+    spun_up = SPUN_UP * _sync(run, a)
     spans = zooms(time, spun_up)
     curves = present(recording, a.bearing, SPEEDS)
     values = {c.label: recording[f"{a.bearing}.{c.variable}"] for c in curves}
     settled = time >= spun_up
-    figure = sheet(max(9.0, 1.0 + 5.5 * len(spans)), 5.6)
+    sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 5.6)
     row = list(figure.subplots(1, len(spans), squeeze=False)[0])
     for axes, span in zip(row, spans, strict=True):
         part = within(time, span)
@@ -99,29 +101,37 @@ def speeds(scene: Scene, system: System, recording: Recording, a: Attachment) ->
     handles, labels = row[0].get_legend_handles_labels()
     columns = min(len(curves), 3 * len(spans))
     figure.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=columns)
-    figure.suptitle(scene.title)
-    return figure
+    figure.suptitle(run.scene.title)
+    return row
 
 
-def _draw_rotor(whole: Axes, near: Axes, system: System, recording: Recording, a: Attachment) -> None:
-    x, y = (UM * recording[a.motion(axis)] for axis in "xy")
-    for axes in (whole, near):
-        if "clearance" in system.components[a.bearing].variables:
-            radius = UM * system.value(f"{a.bearing}.clearance")
-            angle = np.linspace(0.0, 2.0 * np.pi, 721)
-            circle = radius * np.cos(angle), radius * np.sin(angle)
-            axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
-        axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
-        axes.set_aspect("equal", adjustable="box")
-    whole.set_title("rotor")
-    whole.legend(loc="upper right")
-    lowest = float(np.min(y))
-    near.set_xlim(-100, 100)
-    near.set_ylim(lowest - 20, lowest + 180)
-    near.set_title("rotor, where it lands")
+def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
+    """The rotor in its clearance circle [µm]."""
+    if "clearance" in run.system.components[a.bearing].variables:
+        radius = UM * run.system.value(f"{a.bearing}.clearance")
+        angle = np.linspace(0.0, 2.0 * np.pi, 721)
+        circle = radius * np.cos(angle), radius * np.sin(angle)
+        axes.plot(*circle, "--", color=GREY, lw=1, label="clearance")
+    x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
+    axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlabel("x [µm]")
+    axes.set_ylabel("y [µm]")
+    axes.set_title("rotor")
+    axes.legend(loc="upper right")
+    return axes
 
 
-def _rings(system: System, recording: Recording, a: Attachment) -> list[Track]:
+def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
+    """The rotor from near, where it is lowest."""
+    draw_orbit(axes, run, a).get_legend().remove()
+    lowest = UM * float(np.min(run.recording[a.motion("y")]))
+    axes.set_xlim(-100, 100)
+    axes.set_ylim(lowest - 20, lowest + 180)
+    axes.set_title("rotor, where it lands")
+
+
+def _rings(system: Readable, recording: Recording, a: Attachment) -> list[Track]:
     found: list[Track] = []
     if f"{a.bearing}.ring.x" in recording:
         x, y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
@@ -140,11 +150,11 @@ def _cage(recording: Recording, a: Attachment) -> list[Track]:
     return [Track("cage", PURPLE, x, y)]
 
 
-def _sync(scene: Scene, system: System, recording: Recording, a: Attachment) -> float:
+def _sync(run: Finished, a: Attachment) -> float:
     """When the ring first turned with the rotor (s from the zero); the run's end where it did not."""
-    zero = system.value(scene.zero) if scene.zero else 0.0
-    found = system.value(f"{a.bearing}.ring.sync_time") - zero
-    return found if found > 0.0 else float(recording.time[-1])
+    zero = run.system.value(run.scene.zero) if run.scene.zero else 0.0
+    found = run.system.value(f"{a.bearing}.ring.sync_time") - zero
+    return found if found > 0.0 else float(run.recording.time[-1])
 
 
 def _zoom(axes: Axes, values: list[np.ndarray]) -> None:

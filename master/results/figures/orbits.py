@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.system import System, housing_port
-from touchdown.master.results.figures.style import BLACK, BLUE, GREY, ORANGE, sheet
-from touchdown.master.results.recording import Recording
+from touchdown.master.results.ending import Finished, housing_port
+from touchdown.master.results.figures.style import BLACK, BLUE, GREY, ORANGE, sized
 from touchdown.master.results.summary import relative_orbit, seat_name, whirl_at
-from touchdown.master.scene.scene import Scene
 
 UM = 1e6
 COLUMNS = 4  # at most
 MARGIN = 1.06  # of the largest distance drawn
 
 
-def orbits(scene: Scene, system: System, recording: Recording, seats: list[Attachment]) -> Figure:
+def orbits(figure: FigureBase, run: Finished, seats: list[Attachment]) -> list[Axes]:
     """Journal at each of `seats` in its clearance circle [µm], all to the same scale.
 
     The origin is the axis of the magnetic bearings. The circle stands where the housing is at the start,
@@ -26,12 +24,9 @@ def orbits(scene: Scene, system: System, recording: Recording, seats: list[Attac
     """
     columns = min(len(seats), COLUMNS)
     rows = -(-len(seats) // columns)
-    figure = sheet(5.6 * columns, 0.5 + 6.0 * rows)
+    sized(figure, 5.6 * columns, 0.5 + 6.0 * rows)
     panels = list(figure.subplots(rows, columns, squeeze=False).flat)
-    reach = max(
-        _draw(axes, system, recording, a, seat_name(a, seats))
-        for axes, a in zip(panels, seats, strict=False)
-    )
+    reach = max(_draw(axes, run, a, seat_name(a, seats)) for axes, a in zip(panels, seats, strict=False))
     for axes in panels[: len(seats)]:
         axes.set_xlim(-MARGIN * reach, MARGIN * reach)
         axes.set_ylim(-MARGIN * reach, MARGIN * reach)
@@ -39,12 +34,13 @@ def orbits(scene: Scene, system: System, recording: Recording, seats: list[Attac
         axes.set_visible(False)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-    figure.suptitle(scene.title)
-    return figure
+    figure.suptitle(run.scene.title)
+    return panels[: len(seats)]
 
 
-def _draw(axes: Axes, system: System, recording: Recording, a: Attachment, seat: str) -> float:
+def _draw(axes: Axes, run: Finished, a: Attachment, seat: str) -> float:
     """One seat; returns how far from the origin anything lies (µm)."""
+    system, recording = run.system, run.recording
     port = housing_port(system, a)
     centre = [UM * float(recording[f"{port}.{axis}"][0]) if port else 0.0 for axis in "xy"]
     x, y = (
@@ -63,15 +59,15 @@ def _draw(axes: Axes, system: System, recording: Recording, a: Attachment, seat:
     axes.plot(0.0, 0.0, "x", color=BLACK, ms=6, label="axis of the magnetic bearings")
     axes.plot(x[-1], y[-1], "o", color=ORANGE, ms=5, label="rotor at the end")
     axes.set_aspect("equal", adjustable="box")
-    axes.set_title(f"{seat} ({a.bearing}): {_verdict(system, recording, a)}")
+    axes.set_title(f"{seat} ({a.bearing}): {_verdict(run, a)}")
     axes.set_xlabel("x [µm]")
     axes.set_ylabel("y [µm]")
     return reach
 
 
-def _verdict(system: System, recording: Recording, a: Attachment) -> str:
+def _verdict(run: Finished, a: Attachment) -> str:
     """Whirl in words, with its length and frequency."""
-    whirl = whirl_at(system, a, recording)
+    whirl = whirl_at(run.system, a, run.recording)
     if whirl is None:
         return "no clearance, no verdict"
     if whirl.frequency is None:

@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.results.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, sheet
+from touchdown.master.results.ending import Finished
+from touchdown.master.results.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.spectra import (
     BEGIN,
@@ -21,7 +22,6 @@ from touchdown.master.results.spectra import (
     windows,
 )
 from touchdown.master.results.summary import dominant_frequency
-from touchdown.master.scene.scene import Scene
 
 LOW, HIGH = 700.0, 4000.0  # Hz, the panels' ends
 BLOCKS = 1000  # to which a panel's line is reduced
@@ -38,13 +38,13 @@ def has_spectrum(recording: Recording, a: Attachment) -> bool:
     return f"{a.bearing}.ring.x" in recording and bool(windows(recording.time))
 
 
-def spectrum(scene: Scene, recording: Recording, a: Attachment) -> Figure:
+def spectrum(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Amplitude of the ring's horizontal velocity for each window, with its rotor speed (Figs 28, 29)."""
+    recording = run.recording
     time = recording.time
     found = _spectra(recording, a)
     pendulum = _pendulum(recording, a)
-    figure = sheet(13, 9.5)
-    panels = figure.subplots(2, 1)
+    panels = sized(figure, 13, 9.5).subplots(2, 1)
     for axes, limit in zip(panels, (LOW, HIGH), strict=True):
         end = min(limit, 0.5 / interval(time))
         _draw(axes, found, end)
@@ -56,11 +56,11 @@ def spectrum(scene: Scene, recording: Recording, a: Attachment) -> Figure:
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
     rate, count = 1.0 / interval(time), samples(time, LENGTH)
     figure.suptitle(
-        f"{scene.title}: horizontal velocity of the inner ring\n"
+        f"{run.scene.title}: horizontal velocity of the inner ring\n"
         f"sampled at {rate / 1e3:g} kHz, windows of {LENGTH:g} s ({count} values), Hann, "
         f"padded with zeros to {max(POINTS, count)}"
     )
-    return figure
+    return list(panels)
 
 
 def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:

@@ -4,47 +4,43 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 
-from touchdown.master.components.component import Component
-from touchdown.master.coupling.system import System
-from touchdown.master.results.figures.style import BLUE, GREY, ORANGE, PURPLE, TIME, beginning, line, sheet
-from touchdown.master.results.recording import Recording
+from touchdown.master.results.ending import Finished, Readable, Teller
+from touchdown.master.results.figures.style import BLUE, GREY, ORANGE, PURPLE, TIME, beginning, line, sized
 from touchdown.master.results.stresses import KINDS, MPA, along, kept_instant
-from touchdown.master.scene.scene import Scene
 
 PLANES = (("x", "horizontal (x)", BLUE), ("y", "vertical (y)", ORANGE))
 
 
-def has_stress(system: System, name: str) -> bool:
+def has_stress(system: Readable, name: str) -> bool:
     """Whether component `name` tells where along its axis it had any stress."""
     component = system.components[name]
     return bool(along(component, "position")[0]) and component.read(["stress.peak_bending"])[0] > 0.0
 
 
-def stress(scene: Scene, system: System, recording: Recording, name: str) -> Figure:
+def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     """Bending and shear stress of rotor `name` [MPa] over its axis [mm] and over time [s].
 
     Along the axis: both planes at the kept instant, in front of each node's largest resultant of the
     whole run. Over time: the largest resultant anywhere, and the instant that was kept.
     """
-    component = system.components[name]
-    zero = system.value(scene.zero) if scene.zero else 0.0
+    component = run.system.components[name]
+    zero = run.system.value(run.scene.zero) if run.scene.zero else 0.0
     kept = kept_instant(component)
-    figure = sheet(13, 8.4)
-    grid = figure.subplots(2, len(KINDS), sharex="row")
+    grid = sized(figure, 13, 8.4).subplots(2, len(KINDS), sharex="row")
     for kind, axial, timed in zip(KINDS, *grid, strict=True):
         _draw_along(axial, component, kind, kept is not None)
-        _draw_history(timed, component, recording, name, kind, zero)
+        _draw_history(timed, run, name, kind, zero)
         if kept is not None:
             timed.axvline(kept - zero, color=GREY, ls="--", lw=1.0, label="instant shown above")
         timed.legend(loc="upper right", fontsize="small")
     when = "" if kept is None else f": along the rotor at t = {1e3 * (kept - zero):.2f} ms, and over time"
-    figure.suptitle(f"{scene.title}\nstresses of {name}{when}")
-    return figure
+    figure.suptitle(f"{run.scene.title}\nstresses of {name}{when}")
+    return list(grid.flat)
 
 
-def _draw_along(axes: Axes, component: Component, kind: str, kept: bool) -> None:
+def _draw_along(axes: Axes, component: Teller, kind: str, kept: bool) -> None:
     position = 1e3 * np.array(along(component, "position")[1])
     envelope = MPA * np.array(along(component, f"peak_{kind}")[1])
     if len(envelope) == len(position):
@@ -61,10 +57,9 @@ def _draw_along(axes: Axes, component: Component, kind: str, kept: bool) -> None
     axes.legend(loc="best", fontsize="small")
 
 
-def _draw_history(
-    axes: Axes, component: Component, recording: Recording, name: str, kind: str, zero: float
-) -> None:
+def _draw_history(axes: Axes, run: Finished, name: str, kind: str, zero: float) -> None:
     """Largest stress along the rotor; the peak may lie between two recorded values."""
+    component, recording = run.system.components[name], run.recording
     time = recording.time
     if f"{name}.stress.{kind}" in recording:
         shown = time >= beginning(time)

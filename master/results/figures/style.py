@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from touchdown.master.results.recording import Recording
@@ -61,10 +61,30 @@ def line(
     axes.plot(x, y, style, color=colour, lw=width, label=label)
 
 
-def sheet(width: float, height: float) -> Figure:
-    """An empty figure (inch) whose panels make room for their labels."""
-    layout = ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=0.5 * MARGIN)
-    return Figure(figsize=(width, height), layout=layout)
+def roomy() -> ConstrainedLayoutEngine:
+    """The layout of all figures: panels make room for their labels."""
+    return ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=0.5 * MARGIN)
+
+
+def sheet(width: float = 6.4, height: float = 4.8) -> Figure:
+    """An empty figure (inch) for a file: no window shows it."""
+    return Figure(figsize=(width, height), layout=roomy())
+
+
+def drawable(figure: FigureBase | None) -> FigureBase:
+    """`figure`, or a new one of pyplot's, which a notebook or a window shows."""
+    if figure is not None:
+        return figure
+    from matplotlib import pyplot  # looks for a display: only where one may be wanted
+
+    return pyplot.figure(layout=roomy())
+
+
+def sized(figure: FigureBase, width: float, height: float) -> FigureBase:
+    """`figure` made as large as its panels want it (inch); part of another one, it stays as it is."""
+    if isinstance(figure, Figure):
+        figure.set_size_inches(width, height)
+    return figure
 
 
 def within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 
-from touchdown.master.coupling.system import Attachment
-from touchdown.master.results.figures.style import BLUE, ORANGE, sheet
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.results.ending import Finished
+from touchdown.master.results.figures.style import BLUE, ORANGE, sized
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.spectra import interval, on_grid, waterfall
-from touchdown.master.scene.scene import Scene
 
 SHORTEST = 8.0  # s after the shutdown
 COARSEST = 10e3  # Hz
@@ -37,15 +37,15 @@ def has_waterfall(recording: Recording, a: Attachment) -> bool:
     return a.motion("vx") in recording and a.motion("omega") in recording
 
 
-def motion_waterfall(scene: Scene, recording: Recording, a: Attachment) -> Figure:
+def motion_waterfall(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Amplitude of the rotor's horizontal velocity and displacement at a seat over frequency and rotor
     speed, for the parts of the run (Fig 15)."""
+    recording = run.recording
     rows = on_grid(recording.time) & (recording.time >= -1e-9)
     time, omega = recording.time[rows], recording[a.motion("omega")][rows]
     rate = 1.0 / interval(time)
     points = min(POINTS, 2 ** int(math.log2(len(time) // SPECTRA)))
-    figure = sheet(13, 11)
-    panels = figure.subplots(2, len(BANDS), squeeze=False)
+    panels = sized(figure, 13, 11).subplots(2, len(BANDS), squeeze=False)
     shown = (("a) velocity", "vx", 1e3, "mm/s", BLUE), ("b) displacement", "x", 1e6, "µm", ORANGE))
     for row, (title, variable, factor, unit, colour) in zip(panels, shown, strict=True):
         values = factor * recording[a.motion(variable)][rows]
@@ -60,11 +60,11 @@ def motion_waterfall(scene: Scene, recording: Recording, a: Attachment) -> Figur
             axes.set_xlabel("frequency [Hz]")
             axes.set_ylabel("rotor speed, middle of each part [rpm]")
     figure.suptitle(
-        f"{scene.title}: horizontal motion of the rotor at {a.body_end.title}\n"
+        f"{run.scene.title}: horizontal motion of the rotor at {a.body_end.title}\n"
         f"{SPECTRA} parts of {len(time) / rate / SPECTRA:.3g} s, from each {points} values at "
         f"{rate / 1e3:g} kHz, Hann; each line stands on its own axis, {STEP:g} decades above the last"
     )
-    return figure
+    return list(panels.flat)
 
 
 def _draw(axes: Axes, frequency: np.ndarray, amplitude: np.ndarray, unit: str, colour: str) -> None:

@@ -6,21 +6,16 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import FigureBase
 from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike
 
-from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet
+from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
-from touchdown.rotor.statics import Rest
 
 RPM = 60.0 / (2.0 * math.pi)
 MM = 1e3
@@ -37,23 +32,25 @@ SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 def draw(found: Portrait, folder: Path) -> list[Path]:
     """campbell.png, modes.png and, where the rotor has two seats, rest.png in `folder`."""
-    figures = {"campbell": campbell(found), "modes": modes(found)}
+    pictures = {"campbell": campbell, "modes": modes}
     if found.rest is not None:
-        figures["rest"] = rest(found.shaft, found.rest)
-    made = [folder / f"{name}.png" for name in figures]
-    for path, figure in zip(made, figures.values(), strict=True):
-        figure.savefig(path, dpi=110)
+        pictures["rest"] = rest
+    made: list[Path] = []
+    for name, picture in pictures.items():
+        figure = sheet()
+        picture(figure, found)
+        made.append(folder / f"{name}.png")
+        figure.savefig(made[-1], dpi=110)
     return made
 
 
-def campbell(found: Portrait) -> Figure:
+def campbell(figure: FigureBase, found: Portrait) -> list[Axes]:
     """Whirl frequencies of the free rotor [Hz] over speed [rpm], with the line where both are equal.
 
     The first of the portrait's speeds is the one asked for, the others make the lines.
     """
     asked, speeds = RPM * found.speeds[0], RPM * found.speeds[1:]
-    figure = sheet(9.0, 6.5)
-    axes = figure.subplots()
+    axes = sized(figure, 9.0, 6.5).subplots()
     drawn = range(1, min(len(found.kinds), MOST))
     for k in drawn:
         axes.plot(
@@ -70,13 +67,13 @@ def campbell(found: Portrait) -> Figure:
     axes.set_ylabel("whirl frequency of the free rotor [Hz]")
     figure.legend(loc="outside right upper", fontsize="small")
     figure.suptitle(f"{found.shaft.title}: Campbell diagram")
-    return figure
+    return [axes]
 
 
-def modes(found: Portrait) -> Figure:
+def modes(figure: FigureBase, found: Portrait) -> list[Axes]:
     """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
     shaft, count = found.shaft, min(len(found.kinds), MOST)
-    figure, panels = _stack(shaft, count)
+    panels = _stack(figure, shaft, count)
     height = SHAPE * _window(shaft).reach
 
     def to_shape(values: ArrayLike) -> np.ndarray:
@@ -97,14 +94,19 @@ def modes(found: Portrait) -> Figure:
         axes.set_title(f"{found.kinds[k]}, {what}", fontsize="medium", pad=14 if k == 0 else 4)
     panels[-1].set_xlabel(AXIS)
     figure.suptitle(f"{shaft.title}: modes of the free rotor at rest")
-    return figure
+    return panels
 
 
-def rest(shaft: Shaft, lying: Rest) -> Figure:
-    """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats."""
+def rest(figure: FigureBase, found: Portrait) -> list[Axes]:
+    """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats.
+
+    Only for a portrait with `rest`.
+    """
+    shaft, lying = found.shaft, found.rest
+    assert lying is not None
     position = MM * shaft.positions()
     view_height = _window(shaft).height
-    figure = sheet(WIDTH, 7.0 + view_height)
+    sized(figure, WIDTH, 7.0 + view_height)
     ratios = (view_height, 2.8, 2.8)
     view, deflection, bending = figure.subplots(3, 1, sharex=True, height_ratios=ratios)
     _side_view(view, shaft, named=True)
@@ -122,7 +124,7 @@ def rest(shaft: Shaft, lying: Rest) -> Figure:
     figure.suptitle(
         f"{shaft.title} at rest on its touchdown seats, rigidly held; sagging is positive stress"
     )
-    return figure
+    return [view, deflection, bending]
 
 
 @dataclass(frozen=True)
@@ -147,10 +149,10 @@ def _window(shaft: Shaft) -> _Window:
     return _Window(0.5 * length - half, 0.5 * length + half, reach)
 
 
-def _stack(shaft: Shaft, count: int) -> tuple[Figure, list[Axes]]:
+def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
     """Side views under each other."""
-    figure = sheet(WIDTH, 1.2 + count * (0.4 + _window(shaft).height))
-    return figure, list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+    sized(figure, WIDTH, 1.2 + count * (0.4 + _window(shaft).height))
+    return list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
 
 
 def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:

@@ -42,19 +42,24 @@ def report(name: str, folder: Path, speed: float = SPEED, modes: int = MODES) ->
     speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0: all).
     Raises TouchdownError where there is no such rotor, or its file has a mistake.
     """
-    shaft = _rotor(name)
-    end = BEYOND * abs(speed) or BEYOND * SPEED
-    try:
-        found = portrait(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
-    except ModelError as error:
-        raise TouchdownError(str(error)) from None
+    found = described(find_rotor(name), speed, modes)
     make_writable(folder)
     from touchdown.master.studies.rotor.figure import draw  # matplotlib is slow to import
 
     return Report(table(found), draw(found, folder))
 
 
-def _rotor(name: str) -> Shaft:
+def described(shaft: Shaft, speed: float, modes: int) -> Portrait:
+    """The portrait of `shaft` at `speed` (rad/s), then over speeds for its Campbell diagram."""
+    end = BEYOND * abs(speed) or BEYOND * SPEED
+    try:
+        return portrait(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
+    except ModelError as error:
+        raise TouchdownError(str(error)) from None
+
+
+def find_rotor(name: str) -> Shaft:
+    """The rotor of that name, or in the .toml at that path. Raises TouchdownError."""
     try:
         return find(name)
     except ModelError as error:

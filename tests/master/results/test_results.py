@@ -9,8 +9,10 @@ import h5py
 import numpy as np
 import pytest
 
-from touchdown.master.results.recording import BLOCK, Recording
-from touchdown.master.results.run import Result, run_scene
+from touchdown.master.coupling.recorder import BLOCK
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.result import Result
+from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import dominant_frequency
 from touchdown.master.scene.file import load
 
@@ -49,7 +51,7 @@ def test_the_recording_has_every_column_with_its_unit(result: Result) -> None:
         assert time[-1] == pytest.approx(0.2)
         np.testing.assert_allclose(np.diff(time), 4e-5, rtol=1e-9)
         force = file["bearing/contact.force"]
-        assert force.attrs["unit"] == "N"
+        assert force.attrs["units"] == "N"
         assert len(force) == len(time)
         assert np.max(force) == pytest.approx(result.summary["peak_contact_force_N"], rel=1e-2)
         assert "rotor/A.x" in file

@@ -11,9 +11,11 @@ import pytest
 
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.drawing import draw_all
 from touchdown.master.results.figures.orbits import orbits
 from touchdown.master.results.figures.stress import stress
+from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.stresses import along
@@ -45,6 +47,11 @@ class Drop(NamedTuple):
     system: System
     recording: Recording
     summary: dict[str, object]
+
+    @property
+    def finished(self) -> Finished:
+        """For pictures."""
+        return Finished(self.scene, self.system, self.recording)
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +112,8 @@ def test_a_rigid_rotor_has_no_stresses(tmp_path: Path) -> None:
 
 
 def test_the_pictures_of_stress_are_labelled(drop: Drop) -> None:
-    figure = stress(drop.scene, drop.system, drop.recording, "rotor")
+    figure = sheet()
+    stress(figure, drop.finished, "rotor")
     assert len(figure.axes) == 4
     assert [axes.get_ylabel() for axes in figure.axes] == 2 * ["bending stress [MPa]", "shear stress [MPa]"]
     assert [axes.get_xlabel() for axes in figure.axes] == (
@@ -122,7 +130,8 @@ def test_the_pictures_of_stress_are_labelled(drop: Drop) -> None:
 
 def test_the_orbits_stand_side_by_side(drop: Drop) -> None:
     seats = touchdown_seats(drop.system)
-    figure = orbits(drop.scene, drop.system, drop.recording, seats)
+    figure = sheet()
+    orbits(figure, drop.finished, seats)
     assert len(figure.axes) == 2
     first, second = figure.axes
     assert first.get_xlim() == second.get_xlim() == first.get_ylim() == second.get_ylim()
@@ -137,7 +146,8 @@ def test_a_misalignment_moves_the_circle(tmp_path: Path) -> None:
     system = open_system(scene, in_process=True)
     simulate(scene, system, tmp_path / "result.h5")
     recording = Recording(tmp_path / "result.h5")
-    figure = orbits(scene, system, recording, touchdown_seats(system))
+    figure = sheet()
+    orbits(figure, Finished(scene, system, recording), touchdown_seats(system))
     for axes, middle in zip(figure.axes, (-100.0, 100.0), strict=True):
         circle = axes.lines[0].get_xdata()
         assert np.mean([np.min(circle), np.max(circle)]) == pytest.approx(middle, abs=0.1)
@@ -148,6 +158,6 @@ def test_a_misalignment_moves_the_circle(tmp_path: Path) -> None:
 
 
 def test_a_run_with_two_seats_has_all_its_pictures(drop: Drop, tmp_path: Path) -> None:
-    made = {p.name for p in draw_all(drop.scene, drop.system, drop.recording, tmp_path)}
+    made = {p.name for p in draw_all(drop.finished, tmp_path)}
     own = {f"{name}-bearing_{seat}.png" for name in ("orbit", "force", "speeds") for seat in "AB"}
     assert made == own | {"orbits.png", "stress.png", "energy.png"}

@@ -11,6 +11,7 @@ import pytest
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor.figure import campbell, modes, rest
 from touchdown.master.studies.rotor.report import NO_REST, report, table
 from touchdown.rotor.file import find, shipped
@@ -92,7 +93,7 @@ def test_the_table_tells_all(found: Portrait) -> None:
 
 
 def test_the_campbell_diagram_is_labelled(found: Portrait) -> None:
-    axes = campbell(found).axes[0]
+    (axes,) = campbell(sheet(), found)
     assert axes.get_xlabel() == "rotor speed [rpm]"
     assert axes.get_ylabel() == "whirl frequency of the free rotor [Hz]"
     lines = {line.get_label(): line for line in axes.lines}
@@ -104,7 +105,8 @@ def test_the_campbell_diagram_is_labelled(found: Portrait) -> None:
 
 
 def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
-    figure = modes(found)
+    figure = sheet()
+    modes(figure, found)
     figure.draw_without_rendering()
     assert len(figure.axes) == 5
     shaft = found.shaft
@@ -122,7 +124,7 @@ def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
 
 def test_the_rotor_at_rest_is_labelled(found: Portrait) -> None:
     assert found.rest is not None
-    view, deflection, bending = rest(found.shaft, found.rest).axes
+    view, deflection, bending = rest(sheet(), found)
     assert view.get_ylabel() == "radius [mm]"
     assert deflection.get_ylabel() == "deflection, upwards [µm]"
     assert bending.get_ylabel() == "bending stress [MPa]"

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from touchdown.master.coupling.system import Attachment
-from touchdown.master.results.figures.style import LAST, zooms
+from touchdown.master.results.ending import Ending, Finished
+from touchdown.master.results.figures.style import LAST, sheet, zooms
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
@@ -192,7 +193,8 @@ def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: boo
     seat = Attachment("bearing", "journal", "rotor", "A")
     assert has_waterfall(recording, seat) is there
     if there:
-        figure = motion_waterfall(scene, recording, seat)
+        figure = sheet()
+        motion_waterfall(figure, Finished(scene, Ending({}, [], []), recording), seat)
         figure.savefig(tmp_path / "waterfall.png")
         assert len(figure.axes) == 4
         speeds = [float(label.get_text()) for label in figure.axes[0].get_yticklabels()]
