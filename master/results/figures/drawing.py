@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -28,6 +29,36 @@ from touchdown.master.results.stresses import stressed
 from touchdown.master.results.summary import energy_total, touchdown_seats
 from touchdown.master.scene.scene import Scene
 
+Picture = tuple[str, Callable[[], Figure]]  # name of the file, and how it is drawn
+
+
+@dataclass(frozen=True)
+class OfBearing:
+    """A picture of one touchdown bearing."""
+
+    name: str  # of its file
+    draw: Callable[[Scene, System, Recording, Attachment], Figure]
+    there: Callable[[System, Recording, Attachment], bool] = lambda system, recording, a: True
+    """Whether the run has what it shows."""
+
+
+OF_BEARING = [
+    OfBearing("orbit", orbit),
+    OfBearing("force", forces, lambda _, recording, a: f"{a.bearing}.contact.force" in recording),
+    OfBearing("speeds", speeds, lambda _, recording, a: f"{a.bearing}.speed.ring" in recording),
+    OfBearing("contacts", contacts, lambda system, _, a: has_contacts(system, a)),
+    OfBearing(
+        "spectrum",
+        lambda scene, _, recording, a: spectrum(scene, recording, a),
+        lambda _, recording, a: has_spectrum(recording, a),
+    ),
+    OfBearing(
+        "waterfall",
+        lambda scene, _, recording, a: motion_waterfall(scene, recording, a),
+        lambda _, recording, a: has_waterfall(recording, a),
+    ),
+]
+
 
 def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -> list[Path]:
     """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files."""
@@ -38,15 +69,13 @@ def draw_all(scene: Scene, system: System, recording: Recording, folder: Path) -
     return made
 
 
-Picture = tuple[str, Callable[[], Figure]]  # name of the file, and how it is drawn
-
-
 def _pictures(scene: Scene, system: System, recording: Recording) -> Iterator[Picture]:
     seats = touchdown_seats(system)
     for a in seats:
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
-        for name, draw in _of_bearing(scene, system, recording, a):
-            yield f"{name}{tail}", draw
+        for picture in OF_BEARING:
+            if picture.there(system, recording, a):
+                yield f"{picture.name}{tail}", partial(picture.draw, scene, system, recording, a)
     if len(seats) > 1:
         yield "orbits", partial(orbits, scene, system, recording, seats)
     rotors = stressed(system)
@@ -56,21 +85,6 @@ def _pictures(scene: Scene, system: System, recording: Recording) -> Iterator[Pi
             yield f"stress{tail}", partial(stress, scene, system, recording, name)
     if energy_total(system, recording) is not None:
         yield "energy", partial(energy, scene, system, recording)
-
-
-def _of_bearing(scene: Scene, system: System, recording: Recording, a: Attachment) -> Iterator[Picture]:
-    """Of one touchdown bearing."""
-    yield "orbit", partial(orbit, scene, system, recording, a)
-    if f"{a.bearing}.contact.force" in recording:
-        yield "force", partial(forces, scene, system, recording, a)
-    if f"{a.bearing}.speed.ring" in recording:
-        yield "speeds", partial(speeds, scene, system, recording, a)
-    if has_contacts(system, a):
-        yield "contacts", partial(contacts, scene, system, recording, a)
-    if has_spectrum(recording, a):
-        yield "spectrum", partial(spectrum, scene, recording, a)
-    if has_waterfall(recording, a):
-        yield "waterfall", partial(motion_waterfall, scene, recording, a)
 
 
 def _save(figure: Figure, path: Path) -> Path:
