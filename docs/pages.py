@@ -17,6 +17,7 @@ import re
 import shutil
 import sys
 from collections.abc import Iterable, Iterator
+from enum import EnumType
 from html import unescape
 from pathlib import Path
 
@@ -128,14 +129,22 @@ def api() -> str:
 
 def directives() -> Iterator[str]:
     """What Sphinx puts the docstrings of the public names into, in their order."""
-    yield inspect.cleandoc(touchdown.__doc__ or "") + "\n"
+    yield directive("automodule", "touchdown")
     for name in getattr(touchdown, "__all__", ()):
         value = getattr(touchdown, name)
         if name.startswith("_"):
             continue
         kind = "autoclass" if inspect.isclass(value) else "autofunction" if callable(value) else "autodata"
-        members = "   :members:\n" if kind == "autoclass" else ""
-        yield f"```{{eval-rst}}\n.. {kind}:: touchdown.{name}\n{members}```\n"
+        options = ("members",) if kind == "autoclass" else ()
+        if isinstance(value, EnumType):
+            options = ("members", "undoc-members")  # their values tell what they mean
+        yield directive(kind, f"touchdown.{name}", *options)
+
+
+def directive(kind: str, name: str, *options: str) -> str:
+    """One of autodoc's directives, in Markdown."""
+    lines = "".join(f"   :{option}:\n" for option in options)
+    return f"```{{eval-rst}}\n.. {kind}:: {name}\n{lines}```\n"
 
 
 if __name__ == "__main__":
