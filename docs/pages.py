@@ -5,8 +5,8 @@
 
 Pages are gathered in build/docs-source and handed to Sphinx. Those of the models are made of the
 docstrings and the declared variables, as the documentation inside the FMUs is; those of the public names
-of their docstrings. A link to a file of the repository that is no page takes the file along; one to a
-file that is not there is an error.
+of their docstrings. A link to a file of the repository that is no page takes the file along. A link or a
+path in `code` to what is not there is an error, and so is a picture of the layers that is out of date.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ import re
 import shutil
 import sys
 from collections.abc import Iterable, Iterator
+from enum import EnumType
 from html import unescape
 from pathlib import Path
 
+from pictures import layers
 from sphinx.cmd.build import main as sphinx
 
 import touchdown
@@ -32,6 +34,9 @@ SOURCE = ROOT / "build" / "docs-source"
 OUTPUT = ROOT / "build" / "docs"
 TOP = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
 FLEXIBLE = "rotor_I"  # any rotor file: their models are one
+PATH = re.compile(
+    r"`((?:modelkit|rotor|bearings|fmus|master|src|docs|tests|benchmarks|examples)/[\w./-]*)`"
+)
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
     "Use": ("systems", "elsewhere", "rotors", "coupling", "api"),
@@ -47,6 +52,8 @@ def main() -> int:
         shutil.rmtree(folder, ignore_errors=True)
     for path in [*(ROOT / name for name in TOP), *sorted((ROOT / "docs").glob("*.md"))]:
         write(page_of(path), with_links(path))
+    if layers.picture() != (ROOT / "docs" / "pictures" / "layers.svg").read_text(encoding="utf-8"):
+        sys.exit("docs/pictures/layers.svg is out of date; run docs/pictures/layers.py")
     models = {f"theory-{name}": recipe(name) for name in scripts()}
     models["theory-flexible_rotor"] = recipe(FLEXIBLE)
     for name, model in models.items():
@@ -88,7 +95,11 @@ def with_links(path: Path) -> str:
         shutil.copyfile(file, SOURCE / along)
         return f"{label}({along.as_posix()})"
 
-    return LINK.sub(turned, path.read_text(encoding="utf-8"))
+    text = path.read_text(encoding="utf-8")
+    for named in PATH.findall(text):
+        if not (ROOT / named).exists():
+            sys.exit(f"{path.relative_to(ROOT)}: there is no {named}")
+    return LINK.sub(turned, text)
 
 
 def contents(models: Iterable[str]) -> str:
@@ -118,14 +129,22 @@ def api() -> str:
 
 def directives() -> Iterator[str]:
     """What Sphinx puts the docstrings of the public names into, in their order."""
-    yield inspect.cleandoc(touchdown.__doc__ or "") + "\n"
+    yield directive("automodule", "touchdown")
     for name in getattr(touchdown, "__all__", ()):
         value = getattr(touchdown, name)
         if name.startswith("_"):
             continue
         kind = "autoclass" if inspect.isclass(value) else "autofunction" if callable(value) else "autodata"
-        members = "   :members:\n" if kind == "autoclass" else ""
-        yield f"```{{eval-rst}}\n.. {kind}:: touchdown.{name}\n{members}```\n"
+        options = ("members",) if kind == "autoclass" else ()
+        if isinstance(value, EnumType):
+            options = ("members", "undoc-members")  # their values tell what they mean
+        yield directive(kind, f"touchdown.{name}", *options)
+
+
+def directive(kind: str, name: str, *options: str) -> str:
+    """One of autodoc's directives, in Markdown."""
+    lines = "".join(f"   :{option}:\n" for option in options)
+    return f"```{{eval-rst}}\n.. {kind}:: {name}\n{lines}```\n"
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ ROOMS = (  # of master/, each importing only from those below it
     ("scene", "what to run: files, settings, schemes"),
     ("common", "errors, units, files, processes"),
 )
+MASTER = Path(__file__).resolve().parents[2] / "master"
 WIDTH, HEIGHT = 900, 636
 PITCH = 468 // len(ROOMS)  # from room to room
 LINE = "#8a8a8a"
@@ -105,7 +106,10 @@ def door() -> list[str]:
 
 
 def picture() -> str:
-    """The SVG."""
+    """The SVG. Raises ValueError where master/ has other rooms than it shows."""
+    entries = {path.stem for path in MASTER.iterdir() if not path.name.startswith(("_", "."))}
+    if entries != {room for room, _ in ROOMS}:
+        raise ValueError(f"master/ has the rooms {sorted(entries)}")
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
         'aria-label="Layers: arrows are imports and point one way">'

@@ -14,12 +14,22 @@ from touchdown.master.verbs.studies import (
     stability,
     sweep,
 )
+from touchdown.master.verbs.verb import Verb
 
-ALL = tuple(
-    module.VERB
-    for module in (
-        *(scenes, run, advise, sweep, rotor),
-        *(compare, compare_bearings, compare_rotors, compare_modes, stability),
-        *(build, ssp, container, check, doctor),
-    )
+ALL: tuple[Verb, ...] = (
+    scenes.VERB,
+    run.VERB,
+    advise.VERB,
+    sweep.VERB,
+    rotor.VERB,
+    compare.VERB,
+    compare_bearings.VERB,
+    compare_rotors.VERB,
+    compare_modes.VERB,
+    stability.VERB,
+    build.VERB,
+    ssp.VERB,
+    container.VERB,
+    check.VERB,
+    doctor.VERB,
 )
