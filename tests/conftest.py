@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from fmpy import extract
 from places import ROOT, SUPPORT
+from warm_up import warm_up
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
@@ -39,6 +40,14 @@ def loaded_from_project():
     packages = [{root!r} + "/" + name + "/" for name in ("src", *PROJECT)]
     return [f for f in files if any(f.startswith(package) for package in packages)]
 """
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """A session of all tests begins with every model compiled; one of chosen tests compiles as it goes."""
+    config = session.config
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
+    if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
+        warm_up()
 
 
 @pytest.fixture(scope="session")

@@ -65,7 +65,10 @@ def test_second_order_without_friction() -> None:
 
 
 def test_energy_comes_back_every_period() -> None:
-    """A thousand periods of ten steps each: no drift, where a Runge-Kutta method would lose all of it."""
+    """A thousand periods of ten steps each: no drift, where a Runge-Kutta method would lose all of it.
+
+    The energy of ten steps a period swings by (w h)^2 / 4, a tenth, at most; rounding adds 1e-12.
+    """
     y, _ = advanced(1000.0 * 2.0 * math.pi, 2.0 * math.pi / 10.0, 1.0)
     assert 0.5 * y[1] ** 2 + 0.5 * y[0] ** 2 == pytest.approx(0.5, rel=0.15)
 

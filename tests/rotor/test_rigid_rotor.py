@@ -17,7 +17,7 @@ from touchdown.rotor.rigid import MODEL
 )
 def test_free_fall_takes_its_time(gap: float, time: float, speed: float) -> None:
     exact = math.sqrt(2.0 * gap / GRAVITY)
-    assert exact == pytest.approx(time, abs=5e-7)
+    assert exact == pytest.approx(time, abs=5e-7)  # digits printed, in closed form
     scene = rotor_on(None, {}, duration=exact, macro_step=exact / 400)
     _, motion, _ = history(scene, ["rotor.A.y", "rotor.A.vy"])
     assert motion["rotor.A.y"][-1] == pytest.approx(-gap, rel=1e-6)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
+from fmpy.model_description import ModelDescription
 
 STEP = 2e-5  # s
 TOUCHING = {
@@ -29,11 +31,17 @@ TOUCHING = {
 }  # inputs of a bearing of 0.3 mm clearance with its journal 10 um inside
 
 
+@cache
+def description_in(folder: str) -> ModelDescription:
+    """Of an unpacked FMU; checked and read once, however many instances there are."""
+    return read_model_description(folder)
+
+
 class Slave:
     """One instance of an unpacked FMU; what it logs is kept in `messages`."""
 
     def __init__(self, folder: str | Path, name: str = "slave") -> None:
-        description = read_model_description(str(folder))
+        description = description_in(str(folder))
         self.variables = {v.name: v for v in description.modelVariables}
         self.messages: list[str] = []
         self._callbacks = self._make_callbacks()
@@ -74,13 +82,15 @@ class Slave:
                 call([variable.valueReference], [value])
 
     def get(self, names: Iterable[str]) -> dict[str, float]:
-        """Values of variables by name."""
+        """Values of variables by name, asked for by one call for each type."""
+        chosen = [self.variables[name] for name in names]
         found: dict[str, float] = {}
-        for name in names:
-            variable = self.variables[name]
-            call = self.fmu.getReal if variable.type == "Real" else self.fmu.getInteger
-            found[name] = call([variable.valueReference])[0]
-        return found
+        for real, call in ((True, self.fmu.getReal), (False, self.fmu.getInteger)):
+            of_type = [variable for variable in chosen if (variable.type == "Real") == real]
+            if of_type:
+                values = call([variable.valueReference for variable in of_type])
+                found |= {variable.name: value for variable, value in zip(of_type, values, strict=True)}
+        return {variable.name: found[variable.name] for variable in chosen}
 
     def outputs(self) -> dict[str, float]:
         """Everything it computes."""

@@ -188,7 +188,7 @@ def test_moving_along_the_normal(side, radius, profile):
 def test_rate_is_that_of_the_indentation(side, radius, profile):
     """The indentation's rate from both bodies' velocities is what the search finds a moment later."""
     rng = np.random.default_rng(5)
-    step = 1e-6  # s
+    step = 3e-7  # s; waves pass by, so the difference leaves out 6e-6 of the rate
     for _ in range(20):
         ring = random_ring(rng, side, radius, profile)
         ball = Motion(*across(rng, ring), *rng.normal(0.0, 0.1, 2), rng.normal(0.0, 900.0))
@@ -388,7 +388,7 @@ def test_curvature(side, radius, profile):
     """Curvature is the change of the curve's direction per length, by differences."""
     ring = Ring(side, radius, profile)
     s = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
-    h = 2e-5
+    h = 5e-5  # between rounding, which grows with 1/h^2, and what is left out, with h^2: 3e-7 in all
     (xa, ya), (x, y), (xb, yb) = (ring.point(s + d) for d in (-h, 0.0, h))
     tx, ty, cx, cy = (xb - xa) / 2, (yb - ya) / 2, xb - 2 * x + xa, yb - 2 * y + ya
     expected = (tx * cy - ty * cx) / np.hypot(tx, ty) ** 3
