@@ -1,1 +1,1 @@
-"""TODO."""
+"""Contacts: where surfaces meet, how hard they press, how they rub."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""Parts of rolling bearings: balls, rings, cage, their contacts and their resistance."""

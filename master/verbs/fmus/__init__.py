@@ -1,1 +1,1 @@
-"""TODO."""
+"""Verbs that make FMUs and packages of them, and look whether they work."""
