@@ -102,18 +102,18 @@ def layout(kind: type) -> np.dtype:
 
 def flatten(instance: Any, prefix: str = "") -> list[Variable]:
     """The scalars of a declaration in memory order, with dotted names; arrays are left out."""
-    found: list[Variable] = []
+    scalars: list[Variable] = []
     for f in fields(instance):
         value = getattr(instance, f.name)
         name = f"{prefix}{f.name}"
         if "group" in f.metadata:
-            found += flatten(value, f"{name}.")
+            scalars += flatten(value, f"{name}.")
         elif "groups" in f.metadata:
             for i, member in enumerate(value):
-                found += flatten(member, f"{name}[{i + 1}].")
+                scalars += flatten(member, f"{name}[{i + 1}].")
         elif "spec" in f.metadata:
-            found.append(Variable(name, f.metadata["spec"], value))
-    return found
+            scalars.append(Variable(name, f.metadata["spec"], value))
+    return scalars
 
 
 def as_tuple(instance: Any) -> tuple:

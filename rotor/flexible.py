@@ -191,25 +191,25 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
     turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
     loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz")]
     accelerations = (*basis, "gravity", *turning, *loads)
-    found = {
+    causes = {
         "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle"),
         "energy.potential": tuple(dict.fromkeys(("y", "gravity", *sag))),
     }
     for place in (*shaft.stations, *shaft.sensors):
-        found |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
-        found[f"{place.name}.y"] = ("y", *sag)
+        causes |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
+        causes[f"{place.name}.y"] = ("y", *sag)
     for s in shaft.stations:
-        found |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
-        found |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
+        causes |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
+        causes |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
         if s.name in shaft.levitated_at:
-            found[f"{s.name}.static_fy"] = ("gravity",)
+            causes[f"{s.name}.static_fy"] = ("gravity",)
         for k in range(1, MODES + 1):
             mode = f"{s.name}.mode[{k}]"
-            found[f"{mode}.y"] = sag
-            found |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
-            found |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
-            found[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
-    return found
+            causes[f"{mode}.y"] = sag
+            causes |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
+            causes |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
+            causes[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
+    return causes
 
 
 _GENERAL = Model(

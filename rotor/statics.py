@@ -31,7 +31,8 @@ class Rest:
 def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float = 9.81) -> Rest:
     """The rotor on `supports`: (node counted from 1, stiffness in N/m; math.inf for a rigid one).
 
-    Stresses follow from the equilibrium of each element, exact under the weight along it.
+    gravity in m/s2. Stresses follow from the equilibrium of each element, exact under the weight along it.
+    Raises ModelError where there are less than two supports, or one that is not there or not held.
     """
     nodes = [node for node, _ in supports]
     if len(set(nodes)) < 2 or len(set(nodes)) != len(nodes):

@@ -1,1 +1,1 @@
-"""TODO."""
+"""What every room of the master may lean on: errors, units, files, archives, processes."""

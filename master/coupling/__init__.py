@@ -1,1 +1,1 @@
-"""TODO."""
+"""Components connected and stepped together: system, steppers, loop, ledger and recorder."""

@@ -25,7 +25,7 @@ def whirl_frequencies(
         rows.append(np.sqrt(stiffness) * basis.deflections([node]))
     _, upper = np.linalg.qr(np.vstack(rows))
     B = upper.T
-    found = np.empty((len(speeds), 2 * n))
+    whirl = np.empty((len(speeds), 2 * n))
     for i, speed in enumerate(speeds):
-        found[i] = np.linalg.eigvalsh(np.block([[speed * basis.gyroscopic, B], [B.T, np.zeros((n, n))]]))
-    return found
+        whirl[i] = np.linalg.eigvalsh(np.block([[speed * basis.gyroscopic, B], [B.T, np.zeros((n, n))]]))
+    return whirl

@@ -104,8 +104,6 @@ def prepare(
     shape = kept.deflections([s.node for s in shaft.stations])
     stiffness = kept.omega**2
     static = static_forces(shaft, gravity)
-    sag = np.zeros(len(stiffness))
-    sag[RIGID:] = (shape[:, RIGID:].T @ static) / stiffness[RIGID:]
     weight = np.zeros(len(stiffness))
     weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
     slots, slot = _slots(shape)
@@ -121,7 +119,7 @@ def prepare(
         stiffness=_room(stiffness, MOST_MODES),
         damping=_room(2.0 * damping_ratio * kept.omega, MOST_MODES),
         weight=_room(weight, MOST_MODES),
-        sag=_room(sag, MOST_MODES),
+        sag=_room(_sag(shape, stiffness, static), MOST_MODES),
         shape=_room(shape, MOST_STATIONS, MOST_MODES),
         sensor_shape=_room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
         inv_m=_room(np.sum(shape**2, axis=1), MOST_STATIONS),
@@ -133,6 +131,13 @@ def prepare(
         unbalance=_unbalance(shaft, kept),
         stress=_stress_rows(shaft, kept, 1.0 if acceleration else 0.0),
     )
+
+
+def _sag(shape: np.ndarray, stiffness: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Modal coordinates (n,) at rest under vertical forces (S,); the rigid ones are zero."""
+    sag = np.zeros(len(stiffness))
+    sag[RIGID:] = (shape[:, RIGID:].T @ forces) / stiffness[RIGID:]
+    return sag
 
 
 def _gyroscopic(kept: Basis) -> Gyroscopic:

@@ -53,7 +53,8 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
     """The lowest `modes` modes of one plane, the two rigid ones included (0: all), and residual vectors.
 
     `residual_at` are nodes (1-based) for whose forces the static flexibility shall be exact; what the
-    modes leave nothing of, or what another node has brought already, is not added.
+    modes leave nothing of, or what another node has brought already, is not added. Raises ModelError where
+    there are not so many modes, or the elements are too unlike each other.
     """
     most = 2 * shaft.nodes
     if modes != 0 and not RIGID <= modes <= most:
@@ -112,12 +113,12 @@ def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarra
     rigid = rigid_modes(shaft)
     if count == RIGID:
         return rigid, np.zeros(RIGID)
-    square, found = linalg.eigh(matrices.stiffness, matrices.mass)
+    square, bending = linalg.eigh(matrices.stiffness, matrices.mass)
     if square[RIGID] < DROWNED * square[-1]:
         raise ModelError(TOO_UNLIKE)
-    found = found[:, RIGID:count]
-    found = found - rigid @ (rigid.T @ (matrices.mass @ found))
-    elastic, omega = _ritz(matrices, found)
+    bending = bending[:, RIGID:count]
+    bending = bending - rigid @ (rigid.T @ (matrices.mass @ bending))
+    elastic, omega = _ritz(matrices, bending)
     return np.hstack((rigid, elastic)), np.concatenate((np.zeros(RIGID), omega))
 
 
@@ -127,16 +128,16 @@ def _residual_vectors(
     """Vectors (2N, k), k <= len(nodes), orthonormal to `shapes` and each other, and frequencies (k,)."""
     deflection = flexibility(shaft, nodes)
     modal = Basis(shapes, omega, np.zeros((0, 0)), len(omega))
-    found = residual_flexibility(shaft, modal, nodes)
-    found = found - shapes @ (shapes.T @ (matrices.mass @ found))
-    size = np.sqrt(np.sum(found * (matrices.mass @ found), axis=0))
+    vectors = residual_flexibility(shaft, modal, nodes)
+    vectors = vectors - shapes @ (shapes.T @ (matrices.mass @ vectors))
+    size = np.sqrt(np.sum(vectors * (matrices.mass @ vectors), axis=0))
     full = np.sqrt(np.sum(deflection * (matrices.mass @ deflection), axis=0))
     there = size > NOTHING * full
     if not there.any():
         return np.zeros((len(shapes), 0)), np.zeros(0)
-    found = found[:, there] / size[there]
-    gram, turns = np.linalg.eigh(found.T @ matrices.mass @ found)
-    return _ritz(matrices, found @ turns[:, gram > PARALLEL])
+    vectors = vectors[:, there] / size[there]
+    gram, turns = np.linalg.eigh(vectors.T @ matrices.mass @ vectors)
+    return _ritz(matrices, vectors @ turns[:, gram > PARALLEL])
 
 
 def _ritz(matrices: Matrices, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

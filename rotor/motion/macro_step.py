@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.rotor.drag import drag
 from touchdown.rotor.motion.equations import accelerate
 from touchdown.rotor.motion.exchange import account
@@ -38,8 +38,8 @@ def advance(q, m, step, longest, work):
     modal_force_rates(m, load.dfx, load.dfy)
     # i alpha G p is all but constant over a macro step
     add_spin_up(q, m, spin_up(m, 0.0, tail[SPIN]), load.fx, load.fy)
-    start.x[:], start.y[:] = now.px, now.py
-    area.x[:], area.y[:] = 0.0, 0.0
+    for k in range(m.d.modes):  # assigned by slices, this takes numba seconds to compile
+        start.x[k], start.y[k], area.x[k], area.y[k] = now.px[k], now.py[k], 0.0, 0.0
     angle, swept = tail[ANGLE], 0.0
     reaction = 0.0  # spin acceleration by the unbalance's reaction, as it was in the stride before
     if m.d.unbalance.present:
@@ -51,7 +51,7 @@ def advance(q, m, step, longest, work):
     account(q, m, step, start, area, tail[ANGLE] - angle, swept)
 
 
-@kernel
+@inlined
 def _stride(q, m, since_middle, h, load, reaction, area, spare):
     """One stride of h (s) about `since_middle` (s) under a `LinearLoad`; area, spare: `Planar`.
 

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.variables import integer, real
 from touchdown.rotor.motion.state import modal
 
@@ -83,7 +83,7 @@ def report(q, m, time):
         keep(q, m)
 
 
-@kernel
+@inlined
 def _largest(q, m):
     """Largest bending and shear along the rotor (`Peak` each), and the stress that decides what is kept.
 
@@ -141,7 +141,7 @@ def keep(q, m):
         o.shear_x, o.shear_y = _larger(o.shear_x, shear_x), _larger(o.shear_y, shear_y)
 
 
-@kernel
+@inlined
 def _larger(before, stress):
     """The one of larger size, with its sign (Pa)."""
     return stress if abs(stress) > abs(before) else before

@@ -13,15 +13,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.integrators.dopri import (
-    MOST_STEPS,
-    OK,
-    STEP_UNDERFLOW,
-    TOO_MANY_STEPS,
-    integrate,
-    scratch,
-)
+from touchdown.modelkit.integrators.control import MOST_STEPS
+from touchdown.modelkit.integrators.dopri import integrate, scratch
 from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 A = np.array([
     [0, 0, 0, 0, 0, 0, 0],
@@ -61,7 +56,7 @@ CALLS, ACCEPTED, LAST_TIME, DISORDER, COMPONENT, POISON_TIME = range(6)
 
 
 @kernel
-def observe(t, y, m):
+def observe(t, q, m):
     """Count accepted steps, and those whose time does not come after the one before."""
     m[ACCEPTED] += 1.0
     if not t > m[LAST_TIME]:
@@ -70,75 +65,75 @@ def observe(t, y, m):
 
 
 @kernel
-def swinging(t, y, dy, m):
-    """Driven pendulum, smooth and nonlinear; y[2] is its clock, so that it may be cut into spans."""
+def swinging(t, q, dq, m):
+    """Driven pendulum, smooth and nonlinear; q[2] is its clock, so that it may be cut into spans."""
     m[CALLS] += 1.0
-    dy[0] = y[1]
-    dy[1] = -math.sin(y[0]) + 0.3 * math.cos(2.0 * y[2])
-    dy[2] = 1.0
+    dq[0] = q[1]
+    dq[1] = -math.sin(q[0]) + 0.3 * math.cos(2.0 * q[2])
+    dq[2] = 1.0
 
 
 @kernel
-def powers(t, y, dy, m):
-    """Slopes that are powers of the time within the span: y[i] = t^(i+1)."""
+def powers(t, q, dq, m):
+    """Slopes that are powers of the time within the span: q[i] = t^(i+1)."""
     m[CALLS] += 1.0
-    for i in range(len(y)):
-        dy[i] = (i + 1.0) * t**i
+    for i in range(len(q)):
+        dq[i] = (i + 1.0) * t**i
 
 
 @kernel
-def two_paces(t, y, dy, m):
+def two_paces(t, q, dq, m):
     """A slow decay, and beside it a fast swing that does not act on it."""
     m[CALLS] += 1.0
-    dy[0] = -y[0]
-    dy[1] = 1000.0 * math.cos(1000.0 * t)
+    dq[0] = -q[0]
+    dq[1] = 1000.0 * math.cos(1000.0 * t)
 
 
 @kernel
-def poisoned(t, y, dy, m):
+def poisoned(t, q, dq, m):
     """Unit slopes, but one component has none (NaN) from a certain time on."""
     m[CALLS] += 1.0
     for i in range(3):
-        dy[i] = 1.0
+        dq[i] = 1.0
     if t > m[POISON_TIME]:
-        dy[int(m[COMPONENT])] = math.nan
+        dq[int(m[COMPONENT])] = math.nan
 
 
 @kernel
-def exploding(t, y, dy, m):
-    """y' = y^2, from 1: 1/(1 - t)."""
+def exploding(t, q, dq, m):
+    """q' = q^2, from 1: 1/(1 - t)."""
     m[CALLS] += 1.0
-    dy[0] = y[0] * y[0]
+    dq[0] = q[0] * q[0]
 
 
 @kernel
-def run_swinging(m, y, n, weight, k, span, h, tolerance):
+def run_swinging(m, q, n, weight, work, span, h, tolerance):
     """One span of `swinging`."""
-    return integrate(swinging, observe, m, y, n, weight, k, span, h, tolerance)
+    return integrate(swinging, observe, m, q, n, weight, work, span, h, tolerance)
 
 
 @kernel
-def run_powers(m, y, n, weight, k, span, h, tolerance):
+def run_powers(m, q, n, weight, work, span, h, tolerance):
     """One span of `powers`."""
-    return integrate(powers, observe, m, y, n, weight, k, span, h, tolerance)
+    return integrate(powers, observe, m, q, n, weight, work, span, h, tolerance)
 
 
 @kernel
-def run_two_paces(m, y, n, weight, k, span, h, tolerance):
+def run_two_paces(m, q, n, weight, work, span, h, tolerance):
     """One span of `two_paces`."""
-    return integrate(two_paces, observe, m, y, n, weight, k, span, h, tolerance)
+    return integrate(two_paces, observe, m, q, n, weight, work, span, h, tolerance)
 
 
 @kernel
-def run_poisoned(m, y, n, weight, k, span, h, tolerance):
+def run_poisoned(m, q, n, weight, work, span, h, tolerance):
     """One span of `poisoned`."""
-    return integrate(poisoned, observe, m, y, n, weight, k, span, h, tolerance)
+    return integrate(poisoned, observe, m, q, n, weight, work, span, h, tolerance)
 
 
 @kernel
-def run_exploding(m, y, n, weight, k, span, h, tolerance):
+def run_exploding(m, q, n, weight, work, span, h, tolerance):
     """One span of `exploding`."""
-    return integrate(exploding, observe, m, y, n, weight, k, span, h, tolerance)
+    return integrate(exploding, observe, m, q, n, weight, work, span, h, tolerance)
 
 
 class Outcome(NamedTuple):
@@ -150,12 +145,12 @@ class Outcome(NamedTuple):
     diary: np.ndarray
 
 
-def advance(run, y, span, h, tolerance, weight=None, poison=(0, math.inf)) -> Outcome:
-    """Advance `y` in place over `span` by the kernel `run`; the rest as `integrate` takes it."""
+def advance(run, q, span, h, tolerance, weight=None, poison=(0, math.inf)) -> Outcome:
+    """Advance `q` in place over `span` by the kernel `run`; the rest as `integrate` takes it."""
     diary = np.zeros(6)
     diary[COMPONENT], diary[POISON_TIME] = poison
-    weights = np.ones(len(y)) if weight is None else np.array(weight)
-    result = run(diary, y, len(y), weights, scratch(len(y)), span, h, tolerance)
+    weights = np.ones(len(q)) if weight is None else np.array(weight)
+    result = run(diary, q, len(q), weights, scratch(len(q)), span, h, tolerance)
     return Outcome(*result, diary)
 
 
@@ -193,8 +188,8 @@ SWING_START = (1.0, 0.0, 0.0)
 def swung(span: float) -> np.ndarray:
     """The driven pendulum after `span`, by another method and as exactly as doubles allow."""
 
-    def rhs(t, y):
-        return [y[1], -math.sin(y[0]) + 0.3 * math.cos(2.0 * t)]
+    def rhs(t, q):
+        return [q[1], -math.sin(q[0]) + 0.3 * math.cos(2.0 * t)]
 
     run = solve_ivp(rhs, (0.0, span), SWING_START[:2], method="DOP853", rtol=2.5e-14, atol=1e-15)
     return run.y[:, -1]
@@ -202,11 +197,11 @@ def swung(span: float) -> np.ndarray:
 
 def error_of_equal_steps(steps: int, span: float) -> float:
     """Error after `span` in equal steps: each is a span of its own, and no error is too large."""
-    y = np.array(SWING_START)
+    q = np.array(SWING_START)
     for _ in range(steps):
-        done = advance(run_swinging, y, span / steps, 1.0, 1e9)
+        done = advance(run_swinging, q, span / steps, 1.0, 1e9)
         assert (done.status, done.evaluations) == (OK, 7)
-    return float(np.linalg.norm(y[:2] - swung(span)))
+    return float(np.linalg.norm(q[:2] - swung(span)))
 
 
 def test_order_on_a_smooth_problem():
@@ -220,11 +215,11 @@ def test_order_on_a_smooth_problem():
 
 def test_powers_of_time_are_integrated_exactly():
     """Nodes at the right times: slopes up to t^4 are exact in one step of any length, t^5 is not."""
-    y = np.zeros(6)
-    assert advance(run_powers, y, 1.5, 2.0, 1e9).evaluations == 7
+    q = np.zeros(6)
+    assert advance(run_powers, q, 1.5, 2.0, 1e9).evaluations == 7
     exact = 1.5 ** np.arange(1, 7)
-    np.testing.assert_allclose(y[:5], exact[:5], rtol=1e-14)
-    assert abs(y[5] - exact[5]) > 1e-4
+    np.testing.assert_allclose(q[:5], exact[:5], rtol=1e-14)
+    assert abs(q[5] - exact[5]) > 1e-4
 
 
 def test_error_follows_the_tolerance():
@@ -232,10 +227,10 @@ def test_error_follows_the_tolerance():
     tolerances = 10.0 ** -np.arange(8.0, 13.0)
     work = []
     for tolerance in tolerances:
-        y = np.array(SWING_START)
-        done = advance(run_swinging, y, 20.0, 0.1, tolerance)
+        q = np.array(SWING_START)
+        done = advance(run_swinging, q, 20.0, 0.1, tolerance)
         assert done.status == OK
-        error = np.linalg.norm(y[:2] - swung(20.0))
+        error = np.linalg.norm(q[:2] - swung(20.0))
         assert 1.0 * tolerance < error < 20.0 * tolerance
         work.append(done.evaluations)
     slope = np.polyfit(np.log(tolerances), np.log(work), 1)[0]
@@ -303,12 +298,12 @@ def test_a_short_span_does_not_shorten_the_next_step():
 
 def test_components_beyond_n_are_left_alone():
     """A state may be larger than what is integrated."""
-    y = np.array([*SWING_START, 7.0, math.nan])
-    _, status, _ = run_swinging(np.zeros(6), y, 3, np.ones(5), scratch(5), 4.0, 0.1, 1e-10)
+    q = np.array([*SWING_START, 7.0, math.nan])
+    _, status, _ = run_swinging(np.zeros(6), q, 3, np.ones(5), scratch(5), 4.0, 0.1, 1e-10)
     assert status == OK
-    np.testing.assert_allclose(y[:2], swung(4.0), atol=1e-8)
-    assert y[3] == 7.0
-    assert math.isnan(y[4])
+    np.testing.assert_allclose(q[:2], swung(4.0), atol=1e-8)
+    assert q[3] == 7.0
+    assert math.isnan(q[4])
 
 
 @pytest.mark.parametrize("weight", [1.0, 0.0], ids=["weighed", "left out"])
@@ -316,32 +311,32 @@ def test_components_beyond_n_are_left_alone():
 @pytest.mark.parametrize("component", [0, 1, 2])
 def test_nan_ends_in_underflow(component, when, weight):
     """Whichever slope is not a number, the step is refused until it underflows; the state stays clean."""
-    y = np.zeros(3)
+    q = np.zeros(3)
     weights = np.ones(3)
     weights[component] = weight
-    done = advance(run_poisoned, y, 1.0, 0.1, 1e-6, weight=weights, poison=(component, when))
+    done = advance(run_poisoned, q, 1.0, 0.1, 1e-6, weight=weights, poison=(component, when))
     assert done.status == STEP_UNDERFLOW
-    assert np.all(np.isfinite(y))
+    assert np.all(np.isfinite(q))
     assert done.diary[LAST_TIME] <= max(when, 0.0)
-    np.testing.assert_allclose(y, max(when, 0.0), atol=1e-9)
+    np.testing.assert_allclose(q, max(when, 0.0), atol=1e-9)
     assert done.evaluations < 10_000
     assert done.evaluations == done.diary[CALLS]
 
 
 def test_no_nan_no_underflow():
     """The poisoned problem itself is harmless before its time."""
-    y = np.zeros(3)
-    assert advance(run_poisoned, y, 1.0, 0.1, 1e-6, poison=(1, 1.0)).status == OK
-    np.testing.assert_allclose(y, 1.0, rtol=1e-14)
+    q = np.zeros(3)
+    assert advance(run_poisoned, q, 1.0, 0.1, 1e-6, poison=(1, 1.0)).status == OK
+    np.testing.assert_allclose(q, 1.0, rtol=1e-14)
 
 
 def test_a_singularity_ends_in_underflow():
     """1/(1 - t) is followed close to its pole and not across it."""
-    y = np.array([1.0])
-    done = advance(run_exploding, y, 2.0, 0.1, 1e-6)
+    q = np.array([1.0])
+    done = advance(run_exploding, q, 2.0, 0.1, 1e-6)
     assert done.status == STEP_UNDERFLOW
     assert done.diary[LAST_TIME] == pytest.approx(1.0, abs=1e-6)
-    assert y[0] > 1e6
+    assert q[0] > 1e6
     ahead = np.array([1.0])
     assert advance(run_exploding, ahead, 0.9, 0.1, 1e-8).status == OK
     assert ahead[0] == pytest.approx(10.0, abs=1e-4)

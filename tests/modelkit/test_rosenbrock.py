@@ -24,14 +24,14 @@ def test_the_table_is_of_order_three_with_any_matrix() -> None:
 
 
 @numba.njit
-def _rhs(t, y, dy, m):
-    dy[0] = y[1]
-    dy[1] = -y[0] - m[0] * math.tanh(y[1])
-    dy[2] = math.cos(t)
+def _rhs(t, q, dq, m):
+    dq[0] = q[1]
+    dq[1] = -q[0] - m[0] * math.tanh(q[1])
+    dq[2] = math.cos(t)
 
 
 @numba.njit
-def _linearise(y, j, m):
+def _linearise(q, j, m):
     j[1] = -m[1]
 
 
@@ -43,21 +43,21 @@ def _solve(j, s, r, m):
 
 
 @numba.njit
-def _ignore(t, y, m):
+def _ignore(t, q, m):
     pass
 
 
 @numba.njit
-def _run(y, m, weight, work, span, h, tolerance):
-    return row.integrate(_rhs, _linearise, _solve, _ignore, m, y, 3, weight, work, span, h, tolerance)
+def _run(q, m, weight, work, span, h, tolerance):
+    return row.integrate(_rhs, _linearise, _solve, _ignore, m, q, 3, weight, work, span, h, tolerance)
 
 
 def end(steps: int, assumed: float) -> np.ndarray:
     """State after one second in equal steps, the matrix holding `assumed` for the friction's slope."""
-    y, work = np.array([1.0, 0.0, 0.0]), np.zeros((8, 3))
+    q, work = np.array([1.0, 0.0, 0.0]), np.zeros((8, 3))
     for _ in range(steps):
-        _run(y, np.array([0.8, assumed]), np.zeros(3), work, 1.0 / steps, 1.0, 1.0)
-    return y[:2].copy()
+        _run(q, np.array([0.8, assumed]), np.zeros(3), work, 1.0 / steps, 1.0, 1.0)
+    return q[:2].copy()
 
 
 @pytest.mark.parametrize("assumed", [0.0, 0.8, 5.0])
@@ -70,9 +70,9 @@ def test_the_order_is_three_whatever_the_matrix(assumed: float) -> None:
 
 def test_a_stiff_rate_does_not_bound_the_step() -> None:
     """1e7 per second in steps of 1e-5 s: an explicit method would need 3e-7 s."""
-    y, work = np.array([0.0, 1.0, 0.0]), np.zeros((8, 3))
+    q, work = np.array([0.0, 1.0, 0.0]), np.zeros((8, 3))
     rate = 1e7
-    _, status, evaluations = _run(y, np.array([rate, rate]), np.ones(3), work, 1e-2, 1e-9, 1e-4)
+    _, status, evaluations = _run(q, np.array([rate, rate]), np.ones(3), work, 1e-2, 1e-9, 1e-4)
     assert status == row.OK
-    assert abs(y[1]) < 1e-4
+    assert abs(q[1]) < 1e-4
     assert evaluations < 4000

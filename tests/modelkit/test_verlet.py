@@ -15,21 +15,21 @@ STIFFNESS, FRICTION, GRIP, FASTEST = range(4)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Mass 1 kg on a spring, braked by no more than stops it in a step; y[2] is a quadrature."""
+def rhs(t, q, dq, m):
+    """Mass 1 kg on a spring, braked by no more than stops it in a step; q[2] is a quadrature."""
     braking = m[FRICTION] if m[GRIP] * m[FRICTION] <= 1.0 else 1.0 / m[GRIP]
-    dy[0] = y[1]
-    dy[1] = -m[STIFFNESS] * y[0] - braking * y[1]
-    dy[2] = -m[STIFFNESS] * y[0] * y[1]
+    dq[0] = q[1]
+    dq[1] = -m[STIFFNESS] * q[0] - braking * q[1]
+    dq[2] = -m[STIFFNESS] * q[0] * q[1]
 
 
 @kernel
-def drift(x, y, v, h, m):
-    x[0] = y[0] + h * v[1]
+def drift(trial, q, v, h, m):
+    trial[0] = q[0] + h * v[1]
 
 
 @kernel
-def forecast(x, dy, h, m):
+def forecast(trial, dq, h, m):
     m[GRIP] = h
 
 
@@ -39,22 +39,22 @@ def fastest(m):
 
 
 @kernel
-def observe(t, y, m):
+def observe(t, q, m):
     pass
 
 
 @kernel
-def run(y, m, k, span, longest):
-    return verlet.integrate(rhs, drift, forecast, fastest, observe, m, y, 3, k, span, longest)
+def run(q, m, work, span, longest):
+    return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, longest)
 
 
 def advanced(span: float, step: float, stiffness: float, friction: float = 0.0, fastest: float = 0.0):
     """(State after `span`, evaluations) from x = 1 m at rest."""
-    y = np.array([1.0, 0.0, 0.0])
+    q = np.array([1.0, 0.0, 0.0])
     m = np.array([stiffness, friction, 0.0, fastest])
-    status, evaluations = run(y, m, np.zeros((8, 3)), span, step)
+    status, evaluations = run(q, m, np.zeros((8, 3)), span, step)
     assert status == 0
-    return y, evaluations
+    return q, evaluations
 
 
 def test_second_order_without_friction() -> None:
@@ -69,15 +69,15 @@ def test_energy_comes_back_every_period() -> None:
 
     The energy of ten steps a period swings by (w h)^2 / 4, a tenth, at most; rounding adds 1e-12.
     """
-    y, _ = advanced(1000.0 * 2.0 * math.pi, 2.0 * math.pi / 10.0, 1.0)
-    assert 0.5 * y[1] ** 2 + 0.5 * y[0] ** 2 == pytest.approx(0.5, rel=0.15)
+    q, _ = advanced(1000.0 * 2.0 * math.pi, 2.0 * math.pi / 10.0, 1.0)
+    assert 0.5 * q[1] ** 2 + 0.5 * q[0] ** 2 == pytest.approx(0.5, rel=0.15)
 
 
 def test_steep_friction_takes_speed_out_without_reversing_it() -> None:
     """1e6 times steeper than the step: the mass creeps, it does not chatter."""
-    y, _ = advanced(1.0, 1e-2, 1.0, friction=1e8)
-    assert -1e-2 < y[1] <= 0.0
-    assert 0.9 < y[0] <= 1.0
+    q, _ = advanced(1.0, 1e-2, 1.0, friction=1e8)
+    assert -1e-2 < q[1] <= 0.0
+    assert 0.9 < q[0] <= 1.0
 
 
 def test_friction_is_the_law_itself_for_short_steps() -> None:
@@ -93,5 +93,5 @@ def test_the_fastest_contact_bounds_the_step() -> None:
 
 
 def test_a_step_too_short_is_said() -> None:
-    y, m = np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, math.inf])
-    assert run(y, m, np.zeros((8, 3)), 1.0, 1e-3)[0] == STEP_UNDERFLOW
+    q, m = np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, math.inf])
+    assert run(q, m, np.zeros((8, 3)), 1.0, 1e-3)[0] == STEP_UNDERFLOW

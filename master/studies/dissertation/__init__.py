@@ -1,1 +1,1 @@
-"""TODO."""
+"""Results beside the tables and figures of the source."""

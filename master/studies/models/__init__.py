@@ -1,1 +1,1 @@
-"""TODO."""
+"""Bearing models beside each other on one scene."""

@@ -1,1 +1,1 @@
-"""TODO."""
+"""How many elastic modes of a rotor a drop needs."""

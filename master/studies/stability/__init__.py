@@ -1,1 +1,1 @@
-"""TODO."""
+"""For which macro steps the coupling of a contact to a body stays stable."""

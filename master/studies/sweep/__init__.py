@@ -1,1 +1,1 @@
-"""TODO."""
+"""One scene at many values of its settings."""
