@@ -40,15 +40,6 @@ class Entry:
     total: float = 0.0  # sum of |r_n|, J
     net: float = 0.0  # sum of r_n, J
 
-    def book(self, by_bearing: float, jumps: float, by_body: float) -> float:
-        """Take what both sides state now; returns |r_n| of the step before (J)."""
-        residual = self.pending + (jumps - self.jumps)
-        self.total += abs(residual)
-        self.net += residual
-        self.pending = (by_bearing - self.by_bearing) - (by_body - self.by_body)
-        self.by_bearing, self.jumps, self.by_body = by_bearing, jumps, by_body
-        return abs(residual)
-
 
 class Ledger(Observer):
     """Accounts of all connections that state work on both sides."""
@@ -78,10 +69,16 @@ class Ledger(Observer):
 
     def stepped(self, now: Moment) -> None:
         """Book the macro step that was just taken."""
-        values = self._signals[self._places].tolist()
-        for n, entry in enumerate(self._live):
-            if now.done % entry.every == 0:
-                self.total += entry.book(*values[3 * n : 3 * n + 3])
+        stated = iter(self._signals[self._places].tolist())
+        for entry, by_bearing, jumps, by_body in zip(self._live, stated, stated, stated, strict=True):
+            if now.done % entry.every:
+                continue
+            residual = entry.pending + (jumps - entry.jumps)
+            entry.total += abs(residual)
+            self.total += abs(residual)
+            entry.net += residual
+            entry.pending = (by_bearing - entry.by_bearing) - (by_body - entry.by_body)
+            entry.by_bearing, entry.jumps, entry.by_body = by_bearing, jumps, by_body
 
     @property
     def residual(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.system import System
@@ -22,6 +23,7 @@ class Moment:
     done: int = 0  # macro steps taken
     time: float = 0.0  # s, on the simulation's clock: the end of the last macro step
     last: bool = False  # whether no macro step is left
+    beat: bool = False  # whether it is one of those at which slow looks are taken
     kept: int = 0  # the last macro step that somebody wants recorded
     ended: Ended | None = None  # None: it goes on
     reason: str = ""
@@ -31,10 +33,12 @@ class Moment:
         """Time from the scene's zero (s)."""
         return self.time - self.zero
 
-    @property
-    def beat(self) -> bool:
-        """Whether it is one of the macro steps at which slow looks are taken."""
-        return self.done % BEAT == 0 or self.last
+    def move(self, done: int, step: float) -> None:
+        """On to the end of macro step `done` (from 1), each of `step` (s)."""
+        self.done = done
+        self.time = done * step
+        self.last = done == self.steps
+        self.beat = self.last or done % BEAT == 0
 
     def keep(self) -> None:
         """Have this moment recorded, whatever the scene's record_every is."""
@@ -54,6 +58,8 @@ class Moment:
 class Observer(ABC):
     """Is told of a run. A TouchdownError from it stops the run; anything else goes on to the caller."""
 
+    at_beats_only: ClassVar[bool] = False  # whether it is told now and then, and at the end, only
+
     @abstractmethod
     def stepped(self, now: Moment) -> None:
         """A macro step was taken; `now.stop(reason)` ends the run here."""
@@ -72,12 +78,7 @@ class EveryStep(Observer):
         self._call(now)
 
 
-class EveryBeat(Observer):
+class EveryBeat(EveryStep):
     """Calls a function now and then, and at the end."""
 
-    def __init__(self, call: Callable[[Moment], object]) -> None:
-        self._call = call
-
-    def stepped(self, now: Moment) -> None:
-        if now.beat:
-            self._call(now)
+    at_beats_only = True

@@ -17,14 +17,14 @@ ACTIVE = "active"  # an output; 0: the component does nothing any more but for t
 class Retirement(Observer):
     """Takes idle components out of the exchange, and tells stepper and observers."""
 
+    at_beats_only = True
+
     def __init__(self, stepper: Stepper, observers: Iterable[Observer]) -> None:
         self._stepper, self._observers = stepper, list(observers)
         components = stepper.system.components
         self._signs = {name: _signs_of_work(c) for name, c in components.items() if _can_rest(c)}
 
     def stepped(self, now: Moment) -> None:
-        if not now.beat:
-            return
         idle = [name for name, signs in self._signs.items() if not signs().any()]
         if not idle:
             return

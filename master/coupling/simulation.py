@@ -130,7 +130,8 @@ def _loop(
 ) -> float:
     """Take macro steps until the end, or until the run is to end; returns the time it took (s)."""
     step = coupling.run.macro_step
-    tell = [observer.stepped for observer in observers]
+    at_beats = [observer.stepped for observer in observers]
+    at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
     began = clock.perf_counter()
     try:
         for number in range(now.steps):
@@ -138,10 +139,8 @@ def _loop(
                 now.stop(Ended.INTERRUPTED.value, Ended.INTERRUPTED)
                 break
             coupling.step(number, number * step, step)
-            now.done = number + 1
-            now.time = now.done * step
-            now.last = now.done == now.steps
-            for stepped in tell:
+            now.move(number + 1, step)
+            for stepped in at_beats if now.beat else at_steps:
                 stepped(now)
             if now.ended is not None:
                 break
@@ -157,7 +156,7 @@ class _Recording(Observer):
         self._recorder, self._every = recorder, every
 
     def stepped(self, now: Moment) -> None:
-        if now.done % self._every == 0 or now.last or now.kept == now.done or now.ended is not None:
+        if now.done % self._every == 0 or now.last or now.kept == now.done or now.ended:
             self._recorder.append(now.since_zero)
 
     def retired(self, names: Sequence[str]) -> None:
