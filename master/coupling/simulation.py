@@ -84,7 +84,7 @@ def simulate(
         ledger = Ledger(system, energy_scale(scene, system))
         recorder = None
         if record_to is not None:
-            recorder = Recorder(record_to, scene, system.components)
+            recorder = Recorder(record_to, scene, system.components, steps + 1)
         try:
             if recorder is not None:
                 recorder.append(-outcome.zero)

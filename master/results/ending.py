@@ -76,6 +76,11 @@ class Ending:
     attachments: Sequence[Attachment]
     connections: Sequence[Connection]
 
+    def __contains__(self, name: str) -> bool:
+        """Whether there is a COMPONENT.VARIABLE of that name."""
+        component, _, variable = name.partition(".")
+        return component in self.components and variable in self.components[component].variables
+
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE."""
         component, _, variable = name.partition(".")

@@ -34,8 +34,10 @@ def run_scene(
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
     """
-    scratch = Scratch() if folder is None else None
-    folder = folder or scratch.path
+    scratch = None
+    if folder is None:
+        scratch = Scratch()
+        folder = scratch.path
     make_writable(folder)
     with interrupts_noted():
         system = open_system(scene, in_process)
