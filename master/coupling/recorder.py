@@ -28,9 +28,9 @@ KINDS = ("Real", "Integer")
 
 
 class Recorder:
-    """Rows of all recorded variables of a scene's components."""
+    """Rows of all recorded variables of a scene's components, `most` of them at the most."""
 
-    def __init__(self, path: Path, scene: Scene, components: Mapping[str, Component]) -> None:
+    def __init__(self, path: Path, scene: Scene, components: Mapping[str, Component], most: int) -> None:
         self.path = path
         self._components = components
         run = scene.run
@@ -47,7 +47,9 @@ class Recorder:
             self.kept_at_end[name] = [v for v in given if v not in self.names[name]]
         self._file = _created(path)
         self._file.attrs.update(_heading(scene))
-        self._time = self._dataset(TIME, "s", "time from the scene's zero")
+        # With a bound, h5netcdf takes the dimension's size from it alone; without, it asks every column for
+        # its length, again for every column.
+        self._time = self._dataset(TIME, "s", "time from the scene's zero", max(most, BLOCK))
         self._time.make_scale(TIME)
         self._datasets = [
             self._column(name, components[name].variable(variable))
@@ -67,11 +69,11 @@ class Recorder:
         dataset.dims[0].attach_scale(self._time)
         return dataset
 
-    def _dataset(self, name: str, unit: str, meaning: str) -> h5py.Dataset:
+    def _dataset(self, name: str, unit: str, meaning: str, most: int | None = None) -> h5py.Dataset:
         dataset = self._file.create_dataset(
             name,
             (0,),
-            maxshape=(None,),
+            maxshape=(most,),
             chunks=(BLOCK,),
             dtype="f8",
             compression="gzip",

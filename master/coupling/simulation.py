@@ -169,11 +169,10 @@ def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[O
     if path is None:
         yield []
         return
-    run = scene.run
-    recorder = Recorder(path, scene, now.system.components)
+    recorder = Recorder(path, scene, now.system.components, now.steps + 1)
     try:
         recorder.append(-now.zero)
-        yield [_Recording(recorder, run.record_every)]
+        yield [_Recording(recorder, scene.run.record_every)]
     finally:
         problem = recorder.close()
         if problem:

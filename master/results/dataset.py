@@ -21,9 +21,8 @@ def dataset(recording: Recording) -> xarray.Dataset:
 
 
 def _column(recording: Recording, name: str) -> xarray.Variable:
-    lazy = indexing.LazilyIndexedArray(_Column(recording, name))
-    cached = indexing.CopyOnWriteArray(indexing.MemoryCachedArray(lazy))
-    return xarray.Variable("time", cached, recording.about_column(name))
+    cached = indexing.MemoryCachedArray(_Column(recording, name))
+    return xarray.Variable("time", indexing.CopyOnWriteArray(cached), recording.about_column(name))
 
 
 class _Column(BackendArray):

@@ -107,6 +107,13 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
 
 def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
     """The rotor in its clearance circle [µm]."""
+    _draw_orbit(axes, run, a)
+    axes.set_title("rotor")
+    axes.legend(loc="upper right")
+    return axes
+
+
+def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> None:
     if "clearance" in run.system.components[a.bearing].variables:
         radius = UM * run.system.value(f"{a.bearing}.clearance")
         angle = np.linspace(0.0, 2.0 * np.pi, 721)
@@ -117,14 +124,11 @@ def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("x [µm]")
     axes.set_ylabel("y [µm]")
-    axes.set_title("rotor")
-    axes.legend(loc="upper right")
-    return axes
 
 
 def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
     """The rotor from near, where it is lowest."""
-    draw_orbit(axes, run, a).get_legend().remove()
+    _draw_orbit(axes, run, a)
     lowest = UM * float(np.min(run.recording[a.motion("y")]))
     axes.set_xlim(-100, 100)
     axes.set_ylim(lowest - 20, lowest + 180)
