@@ -23,7 +23,6 @@ from touchdown.rotor.rotor_file import parse, read, shipped
 
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
-from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.fmus.slave import ModelSlave
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.rotor_file import parse
