@@ -271,7 +271,7 @@ def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
             found.append([system.value(f"bearing.{peak}") for peak in PEAKS])
         medians.append(np.median(found, axis=0))
     assert medians[0][0] == pytest.approx(medians[1][0], rel=0.02)
-    chaos = 0.2 if "stiffer" in case else 0.08  # the stiffer the races, the more the rattle shows
+    chaos = 0.2 if "stiff" in case else 0.08  # the stiffer the contacts, the more the rattle shows
     assert medians[0][1] == pytest.approx(medians[1][1], rel=chaos)
 
 
@@ -304,7 +304,8 @@ def test_a_lobed_race_moves_the_ring(phase: float) -> None:
         system = finished(scene.with_setting("run.duration", 6e-4))
         height.append(system.value("bearing.ring.y"))
     given = 2e-6 * math.cos(2.0 * (-0.5 * math.pi - phase))  # outwards at the bottom
-    assert 0.4 < (height[0] - height[1]) / given < 0.8  # over the arc of loaded balls
+    # over the arc of loaded balls; 0.56 and 0.44, and too soon after first touch for chaos
+    assert 0.4 < (height[0] - height[1]) / given < 0.8
 
 
 @every_model
@@ -333,13 +334,13 @@ def test_weights_and_states_match() -> None:
 def test_adaptive_steps_follow_two_references(name: str) -> None:
     """From first touch: within 1e-6 of 10 um, 0.1 m/s and 1000 rad/s for every body, for most of 1 ms.
 
-    Where DOP853 and Radau themselves part by more, nothing can be compared: soon for good, before that
-    at single points of their dense output.
+    Where DOP853 and Radau themselves part by more, nothing can be compared. DOP853 is asked for 1e-12: at
+    1e-10 its dense output errs by 1e-6 at single points. The steps under test, at 1e-10, are 1e-7 off it.
     """
     scene = touching(name, micro_step=0.0, **{"interface.tolerance": 1e-10})
     scene = scene.with_setting("run.duration", 1e-3).with_setting("run.macro_step", 2e-5)
     times = 2e-5 * np.arange(1, 51)
-    first = Monolith(scene).solve(times, ["rotor.A.y"], 1e-10, "DOP853").states["bearing"]
+    first = Monolith(scene).solve(times, ["rotor.A.y"], 1e-12, "DOP853").states["bearing"]
     second = Monolith(scene).solve(times, ["rotor.A.y"], 1e-8, "Radau").states["bearing"]
     rows: list[np.ndarray] = []
     system = open_system(scene, in_process=True)

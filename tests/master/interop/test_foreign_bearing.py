@@ -14,8 +14,9 @@ from systems import history
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.interop.check import check_fmu
+from touchdown.master.interop.scenes import load
 from touchdown.master.interop.ssp.write import write
-from touchdown.master.scene.file import load, read_names
+from touchdown.master.scene.file import read_names
 
 EXAMPLES = ROOT / "examples"
 NAMES = EXAMPLES / "dry_bushing.toml"
@@ -73,7 +74,7 @@ def test_rotor_1_drops_on_it(folder: Path) -> None:
 
 def test_names_are_given_to_a_swap_and_survive_a_package(folder: Path, tmp_path: Path) -> None:
     scene = load("disk-caged-simplified").with_swap("bearing", str(folder / "DryBushing.fmu"))
-    scene = scene.with_names("bearing", NAMES).with_settings(
+    scene = scene.with_names("bearing", read_names(NAMES)).with_settings(
         {"amb.shutdown_time": 0.0, "run.duration": 0.01, "run.macro_step": 5e-5, "bearing.stiffness": 1e7}
     )
     scene = scene.with_setting("run.record_every", 1)

@@ -17,10 +17,11 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
+from touchdown.master.interop.scenes import load
 from touchdown.master.interop.ssp.names import HEART, NAMESPACES
 from touchdown.master.interop.ssp.write import write
 from touchdown.master.interop.ssp.xml import CHOICES
-from touchdown.master.scene.file import load, parse
+from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
 
 SCHEMAS = Path(fmpy.ssp.__file__).parent / "schema"

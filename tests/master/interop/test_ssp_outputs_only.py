@@ -10,9 +10,9 @@ import pytest
 
 from touchdown.master.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.interop.scenes import load
 from touchdown.master.interop.ssp.names import HEART, NAMESPACES
 from touchdown.master.interop.ssp.write import write
-from touchdown.master.scene.file import load
 from touchdown.master.scene.scene import Scene
 
 CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m"}

@@ -131,7 +131,7 @@ sys.exit(main())
 
 def test_ctrl_c_before_the_first_step(tmp_path: Path):
     """Just after the recording was opened: as in mid-run."""
-    script = PRESSED_AT.format(room="results", module="recording", function="Recorder.__init__")
+    script = PRESSED_AT.format(room="coupling", module="recorder", function="Recorder.__init__")
     check_interrupted(finished(process(tmp_path, sys.executable, "-c", script)), tmp_path)
 
 
