@@ -161,13 +161,21 @@ def whirl_at(system: System, a: Attachment, recording: Recording) -> Whirl | Non
     clearance = system.value(f"{a.bearing}.clearance")
     spin = float(np.median(recording[f"{a.body}.{a.body_port}.omega"]))
     orbit = relative_orbit(system, a, recording)
-    return classify(recording.time, *orbit, clearance, spin, _force_on_journal(a, recording))
+    return classify(recording.time, *orbit, clearance, spin, _force_on_journal(a, orbit, recording))
 
 
-def _force_on_journal(a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:
-    """The bearing's force on the journal (N), x and y; None where it was not recorded."""
+def _force_on_journal(
+    a: Attachment, orbit: tuple[np.ndarray, np.ndarray], recording: Recording
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The bearing's force on the journal (N), x and y, or its normal part alone; None where unknown."""
     x, y = (f"{a.bearing}.{a.bearing_port}.f{axis}" for axis in "xy")
-    return (recording[x], recording[y]) if x in recording and y in recording else None
+    if x in recording and y in recording:
+        return recording[x], recording[y]
+    normal = f"{a.bearing}.contact.force"
+    if normal not in recording:
+        return None
+    angle = np.arctan2(orbit[1], orbit[0])
+    return -recording[normal] * np.cos(angle), -recording[normal] * np.sin(angle)
 
 
 def _whirl_figures(system: System, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:

@@ -38,11 +38,11 @@ class Made:
         normal = STIFFNESS * np.maximum(np.abs(out) - 1.0, 0.0)
         inwards = -out / np.maximum(np.abs(out), 1e-12)
         f = normal * inwards * (1.0 + 1j * FRICTION * np.sign(self.spin))
-        return f.real, f.imag
+        return np.real(f), np.imag(f)
 
     def judged(self, with_force: bool = True) -> Whirl:
         """What the classifier says of it."""
-        x, y = CLEARANCE * self.z.real, CLEARANCE * self.z.imag
+        x, y = CLEARANCE * np.real(self.z), CLEARANCE * np.imag(self.z)
         return classify(self.time, x, y, CLEARANCE, self.spin, self.force if with_force else None)
 
     def noisy(self, size: float, seed: int) -> Made:

@@ -27,8 +27,8 @@ FOLLOWED = TURN / 3.0  # between recorded values; more may as well have been the
 NEAR = 0.9  # of the clearance; a flight beyond it clings to the bore, which gives and has play
 CLINGS = 0.6 * TURN  # most that such a flight turns: the journal touches along 0.4 of a turn or more
 HOPS = TURN * 160.0 / 360.0  # most that a chord spans: a star's 150 degrees, and not the 180 of a bounce
-DEEPER = 0.5  # of the chord's least distance to the centre: least of a hop that gravity bends inwards
-OUTER = 0.25  # of the clearance above the chord's: most of a hop that gravity bends outwards
+BENDS = 0.25  # of the clearance: gravity bends a hop off its chord by so much, inwards or outwards
+DEEPER = 0.5  # of a short chord's distance to the centre: a rebound that lands nearby may come so deep
 
 
 class Orbit(NamedTuple):
@@ -117,4 +117,5 @@ def _is_hop(turn: np.ndarray, least: np.ndarray) -> np.ndarray:
     span = np.abs(turn)
     chord = np.cos(0.5 * span)
     clings = (span <= CLINGS) & (least >= NEAR)
-    return clings | ((span <= HOPS) & (least >= DEEPER * chord) & (least <= chord + OUTER))
+    deepest = np.minimum(DEEPER * chord, chord - BENDS)
+    return clings | ((span <= HOPS) & (least >= deepest) & (least <= chord + BENDS))

@@ -20,7 +20,7 @@ CREEP = 0.25  # of the pendulum's frequency
 
 @dataclass(frozen=True)
 class Turning:
-    """Contacts that march one way by NEARLY or more, without rest, and are no swing."""
+    """Contacts that march one way by NEARLY or more and are no swing; without rest, or they creep."""
 
     march: March
     stretch: Stretch  # indices into the march
@@ -50,6 +50,8 @@ def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
     for i, whole in enumerate(found):
         if abs(whole.turn) < NEARLY or is_swing(time, march.angle, found, i):
             continue
-        for part in without_rests(time, march.angle, whole, pendulum):
-            if abs(part.turn) >= NEARLY:
-                yield Turning(march, part, time, CREEP * period(time, part) > pendulum)
+        parts = [p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= NEARLY]
+        for part in parts:
+            yield Turning(march, part, time, CREEP * period(time, part) > pendulum)
+        if not parts:
+            yield Turning(march, whole, time, creeps=True)

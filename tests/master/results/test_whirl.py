@@ -276,3 +276,17 @@ def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
     assert summary["whirl_A_revolutions"] == 0.0
     assert summary["whirl_A_largest_force_N"] is None
     assert summary["whirl_A_episodes"] == []
+
+
+def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
+    """Rotor I at 18000 rpm, 450 um out of line: a turn takes 4 ms from the first contact on."""
+    scene = load("rotor1-18000-225um").with_setting("run.duration", 0.04)
+    scene = scene.with_setting("run.macro_step", 4e-5)
+    summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
+    assert summary["whirl_A"] == "sustained backward whirl"
+    (episode,) = summary["whirl_A_episodes"]
+    assert episode["direction"] == "backward"
+    assert episode["goes_on"]
+    assert episode["revolutions"] == summary["whirl_A_revolutions"] > 3.0
+    assert episode["largest_force_N"] == pytest.approx(summary["peak_contact_force_N_bearing_A"])
+    assert episode["radius_um"] == pytest.approx(300.0, rel=0.05)

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from orbits import (
     BOTTOM,
+    CLEARANCE,
+    HELD,
     TOUCHING,
     TURN,
     Made,
@@ -69,6 +71,8 @@ def whirls() -> list[Case]:
         for rate in (20e3, 10e3)
     ]
     cases += [
+        *(Case(f"star of {hop:g}, gravity bends it", bent(hop, f), SUSTAINED_BACKWARD)
+          for hop, f in ((90.0, -40.0), (120.0, -60.0), (150.0, -60.0))),
         Case("star of 150 with noise", star(150.0, -50.0, 1.03).noisy(0.005, 3), SUSTAINED_BACKWARD),
         Case("nearly round", ellipse(-80.0, 0.97), SUSTAINED_BACKWARD),
         Case("bore stands off", off_the_centre(0.3), SUSTAINED_FORWARD, alone=False),
@@ -134,10 +138,14 @@ def no_whirls() -> list[Case]:
     ]
     cases += [Case("half a turn", turns(0.5, 50.0), NO_WHIRL)]
     cases += [
-        Case("rest breaks it", after_one_another((0.012, 50.0), (0.1, 0.0), (0.012, 50.0)), NO_WHIRL),
+        Case(
+            "half a turn twice, a rest between",
+            after_one_another((0.012, 50.0), (0.1, 0.0), (0.012, 50.0)),
+            CREEP,
+        ),
         *(
-            Case(f"creeps at {f:g} Hz", along(t := times(2.0), BOTTOM + TURN * f * t), CREEP)
-            for f in (0.8, -2.0, 5.0)
+            Case(f"creeps at {f:g} Hz", along(t := times(4.0, 5e3), BOTTOM + TURN * f * t), CREEP)
+            for f in (0.4, 0.8, -2.0, 5.0)
         ),
         Case("creeps with noise", along(t := times(2.0), BOTTOM + TURN * 1.5 * t).noisy(0.003, 4), CREEP),
         Case("creeps less than a turn", along(t := times(0.5), BOTTOM + TURN * 1.8 * t), NO_WHIRL),
@@ -155,6 +163,15 @@ def off_the_centre(away: float) -> Made:
     """A whirl in a bore whose centre stands off."""
     made = circle(60.0, centre=away)
     return Made(made.time, made.z, bore=away)
+
+
+def bent(hop: float, frequency: float) -> Made:
+    """A star whose flights are the parabolas that gravity makes of them."""
+    made = star(hop, frequency)
+    each = hop / 360.0 / abs(frequency)
+    flown = np.maximum(np.mod(made.time, each) - HELD, 0.0)
+    sag = 0.5 * 9.81 / CLEARANCE * flown * (each - HELD - flown)
+    return Made(made.time, made.z - 1j * sag)
 
 
 def top_to_bottom() -> Made:
