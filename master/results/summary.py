@@ -16,7 +16,7 @@ from touchdown.master.coupling.system import System
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.stresses import stress_figures
-from touchdown.master.results.whirl import Whirl, classify
+from touchdown.master.results.whirl.verdict import Episode, Whirl, classify
 from touchdown.master.scene.scene import Scene
 
 STANDS_OUT = 5.0  # a line over the median of its band
@@ -158,33 +158,60 @@ def whirl_at(system: Readable, a: Attachment, recording: Recording) -> Whirl | N
         return None
     clearance = system.value(f"{a.bearing}.clearance")
     spin = float(np.median(recording[a.motion("omega")]))
-    return classify(recording.time, *relative_orbit(system, a, recording), clearance, spin)
+    orbit = relative_orbit(system, a, recording)
+    return classify(recording.time, *orbit, clearance, spin, _force_on_journal(a, orbit, recording))
+
+
+def _force_on_journal(
+    a: Attachment, orbit: tuple[np.ndarray, np.ndarray], recording: Recording
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The bearing's force on the journal (N), x and y, or its normal part alone; None where unknown."""
+    x, y = (a.load(f"f{axis}") for axis in "xy")
+    if x in recording and y in recording:
+        return recording[x], recording[y]
+    normal = f"{a.bearing}.contact.force"
+    if normal not in recording:
+        return None
+    angle = np.arctan2(orbit[1], orbit[0])
+    return -recording[normal] * np.cos(angle), -recording[normal] * np.sin(angle)
 
 
 def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
-    """The verdict in words, and the longest whirl; without a clearance nothing can be told."""
+    """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
     key = f"whirl_{seat}"
-    tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N")
+    tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N", "_episodes")
     whirl = whirl_at(system, a, recording)
     if whirl is None:
         return {f"{key}{tail}": None for tail in tails}
     radius = None if whirl.radius is None else 1e6 * whirl.radius
-    force = None
-    if whirl.start is not None and whirl.end is not None:
-        force = _largest_force(a, whirl.start, whirl.end, recording)
-    found = (whirl.words, whirl.revolutions, radius, whirl.frequency, force)
+    force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
+    episodes = [_episode_figures(a, episode, recording) for episode in whirl.episodes]
+    found = (whirl.words, whirl.revolutions, radius, whirl.frequency, force, episodes)
     return {f"{key}{tail}": value for tail, value in zip(tails, found, strict=True)}
 
 
-def _largest_force(a: Attachment, start: float, end: float, recording: Recording) -> float | None:
-    """Largest contact force from `start` to `end` (N, s); None where the bearing does not report it.
+def _episode_figures(a: Attachment, episode: Episode, recording: Recording) -> dict[str, object]:
+    return {
+        "direction": episode.direction,
+        "from_s": episode.start,
+        "to_s": episode.end,
+        "revolutions": episode.revolutions,
+        "frequency_Hz": episode.frequency,
+        "radius_um": 1e6 * episode.radius,
+        "largest_force_N": _largest_force(a, episode, recording),
+        "goes_on": episode.goes_on,
+    }
+
+
+def _largest_force(a: Attachment, episode: Episode, recording: Recording) -> float | None:
+    """Largest contact force in a whirl (N); None where the bearing does not report it.
 
     Between recorded values it may be larger: where the run's peak grew meanwhile, it is that.
     """
     now, peak = f"{a.bearing}.contact.force", f"{a.bearing}.contact.peak_force"
     if now not in recording or peak not in recording:
         return None
-    part = (recording.time >= start) & (recording.time <= end)
+    part = (recording.time >= episode.start) & (recording.time <= episode.end)
     peaks = recording[peak][part]
     return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[now][part]))
 
@@ -261,6 +288,8 @@ def table(summary: dict[str, object]) -> str:
     def shown(value: object) -> str:
         if value is None:
             return "-"
+        if isinstance(value, list):
+            return str(len(value))
         return f"{value:.6g}" if isinstance(value, float) else str(value)
 
     return "\n".join(f"  {key:<{width}}  {shown(value)}" for key, value in summary.items())

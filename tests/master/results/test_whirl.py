@@ -12,8 +12,9 @@ import pytest
 from touchdown.master.coupling.simulation import Outcome, open_system
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.summary import summarise
-from touchdown.master.results.whirl import NEAR, Whirl, classify
+from touchdown.master.results.summary import summarise, table
+from touchdown.master.results.whirl.contacts import NEAR
+from touchdown.master.results.whirl.verdict import Whirl, classify
 from touchdown.master.scene.file import load
 
 CLEARANCE = 3e-4  # m
@@ -153,12 +154,15 @@ def test_a_flight_ends_a_whirl(low: float, width: float) -> None:
 
 
 def test_a_reversal_ends_a_whirl() -> None:
-    """The longer one counts; the other is the one that goes on."""
+    """The one that goes on counts, though the other was longer."""
     time = times(1.0)
-    found = judged(time, turning(time, 50.0, end=0.7) + turning(time, -50.0, begin=0.7))
-    assert found.words == "transient forward whirl"
-    assert found.revolutions == pytest.approx(35.0, abs=0.1)
-    assert found.end == pytest.approx(0.7, abs=1e-3)
+    found = judged(time, turning(time, 50.0, end=0.7) + turning(time, -50.0, begin=0.7) - BOTTOM)
+    assert found.words == "sustained backward whirl"
+    assert found.revolutions == pytest.approx(15.0, abs=0.1)
+    assert found.start == pytest.approx(0.7, abs=1e-3)
+    assert [(e.direction, e.goes_on) for e in found.episodes] == [("forward", False), ("backward", True)]
+    assert found.episodes[0].revolutions == pytest.approx(35.0, abs=0.1)
+    assert found.episodes[0].end == pytest.approx(0.7, abs=1e-3)
 
 
 def test_it_may_turn_back_a_little() -> None:
@@ -235,6 +239,8 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
             away = 4e-4 * np.sin(700.0 * time)
             file[f"housing/seat.{axis}"][...] = away
             file[f"rotor/A.{axis}"][...] = away + 1.02 * CLEARANCE * part
+        for axis, part in (("x", np.cos(angle)), ("y", np.sin(angle))):
+            file[f"bearing/journal.f{axis}"][...] = -1e3 * part
         file["bearing/contact.force"][...] = 1e3 * time
         file["bearing/contact.peak_force"][...] = 500.0
     system = open_system(scene, in_process=True)
@@ -247,6 +253,19 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
     assert summary["whirl_A_radius_um"] == pytest.approx(1.02e6 * CLEARANCE)
     assert summary["whirl_A_frequency_Hz"] == pytest.approx(100.0)
     assert summary["whirl_A_largest_force_N"] == pytest.approx(80.0, abs=0.2)
+    assert summary["whirl_A_episodes"] == [
+        {
+            "direction": "backward",
+            "from_s": pytest.approx(0.02, abs=1e-4),
+            "to_s": pytest.approx(0.08, abs=1e-4),
+            "revolutions": summary["whirl_A_revolutions"],
+            "frequency_Hz": summary["whirl_A_frequency_Hz"],
+            "radius_um": summary["whirl_A_radius_um"],
+            "largest_force_N": summary["whirl_A_largest_force_N"],
+            "goes_on": False,
+        }
+    ]
+    assert next(line for line in table(summary).splitlines() if "_episodes" in line).split()[1:] == ["1"]
 
 
 def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
@@ -256,3 +275,18 @@ def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
     assert summary["whirl_A"] == "pendulum"
     assert summary["whirl_A_revolutions"] == 0.0
     assert summary["whirl_A_largest_force_N"] is None
+    assert summary["whirl_A_episodes"] == []
+
+
+def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
+    """Rotor I at 18000 rpm, 450 um out of line: a turn takes 4 ms from the first contact on."""
+    scene = load("rotor1-18000-225um").with_setting("run.duration", 0.04)
+    scene = scene.with_setting("run.macro_step", 4e-5)
+    summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
+    assert summary["whirl_A"] == "sustained backward whirl"
+    (episode,) = summary["whirl_A_episodes"]
+    assert episode["direction"] == "backward"
+    assert episode["goes_on"]
+    assert episode["revolutions"] == summary["whirl_A_revolutions"] > 3.0
+    assert episode["largest_force_N"] == pytest.approx(summary["peak_contact_force_N_bearing_A"])
+    assert episode["radius_um"] == pytest.approx(300.0, rel=0.05)
