@@ -12,6 +12,7 @@ from pathlib import Path
 
 ROOMS = (  # of master/, each importing only from those below it
     ("cli", "the command"),
+    ("api", "the public names of touchdown"),
     ("verbs", "one module a verb: its options, what it prints"),
     ("studies", "many runs: of schemes, models, modes, settings"),
     ("interop", "the contract, SSP, containers, checks, doctor"),

@@ -33,7 +33,7 @@ class OfBearing:
     """A picture of one touchdown bearing."""
 
     name: str  # of its file
-    draw: Callable[[FigureBase, Finished, Attachment], object]
+    draw: Callable[..., object]  # (figure, run: Finished, a: Attachment)
     there: Callable[[Finished, Attachment], bool] = lambda run, a: True
     """Whether the run has what it shows."""
 
