@@ -1,9 +1,9 @@
 """What a journal does in its bearing, told from where it presses on the bore.
 
 A journal that whirls is pressed to the bore by its own centrifugal force, all the way round. Against the
-spin, friction drives it; it rolls when the clearance times the whirl's speed is the journal's radius times
-the spin, tens of times the spin, which no bearing lasts to see. With the spin it slides. To go round at
-all, against gravity, it must be faster than a pendulum: its frequency, sqrt(g / clearance) / (2 pi), is
+spin, friction drives it; it would roll at the journal's radius over the clearance times the spin, tens of
+times the spin, and mostly slides while the ring turns with it. With the spin it slides. To go round at all,
+against gravity, it must be faster than a pendulum: that has a frequency of sqrt(g / clearance) / (2 pi),
 29 Hz at 0.3 mm. So what makes a whirl is that the place of contact marches round the bore one way, by a
 turn or more, without a rest. How closely the orbit follows the bore meanwhile, and about which point, does
 not count: a whirl may hop along chords (`contacts`).
@@ -24,8 +24,9 @@ partial rub             an orbit circles one way, LOOPS or more, and contacts do
                         places, as an ellipse does, or a circle off the centre
 orbits without contact  the same, and never touches
 
-A whirl can be told up to a third of the recording's rate. Which contacts are told apart by the force on
-the journal, and what holds where it was not recorded, is in `contacts`.
+A whirl can be told up to a third of the recording's rate. Thresholds stand with their reasons where they
+are used: what joins contacts in `contacts`, what is a swing in `swings`, a rest in `stretches`, BACK,
+NEARLY and CREEP in `turning`, LOOPS in `remarks`.
 """
 
 from __future__ import annotations
