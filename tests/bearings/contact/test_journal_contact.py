@@ -19,6 +19,7 @@ from touchdown.bearings.contact.journal import (
     ContactMemory,
     ContactReport,
     Touch,
+    Touched,
     hermite,
     touch,
     watch_contact,
@@ -264,7 +265,8 @@ def watch_fall(times, report, memory) -> None:
         journal = fallen(time)
         indentation = -journal.y - CLEARANCE
         normal = normal_force(indentation, -journal.vy, law)
-        watch_contact(time, journal, (normal, indentation, -journal.vy), report, memory)
+        touched = as_record(Touched(normal, indentation, -journal.vy))
+        watch_contact(time, journal, touched, report, memory)
 
 
 @pytest.mark.parametrize("step", [1e-3, 0.37e-3, 5e-3, 10e-3, 1e-5])
@@ -310,7 +312,7 @@ def test_start_in_contact():
     """A journal that starts pressed against the bore has its first contact there and then."""
     report, memory = records()
     journal = Motion(1e-4, -CLEARANCE, 0.02, -0.05, 0.0)
-    watch_contact(0.0, journal, (12.0, 3e-6, 0.05), report, memory)
+    watch_contact(0.0, journal, as_record(Touched(12.0, 3e-6, 0.05)), report, memory)
     assert report["first_time"] == 0.0
     assert (report["first_x"], report["first_y"]) == (journal.x, journal.y)
     assert report["first_speed"] == pytest.approx(math.hypot(0.02, 0.05), rel=1e-14)
