@@ -10,7 +10,7 @@ import numpy as np
 from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.scene.file import load
-from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
 
 DISK = 1.65  # kg
@@ -47,7 +47,7 @@ def rotor_on(
     if housing is not None:
         components["housing"] = ComponentSpec("housing", dict(housing))
         attach.append(("bearing.housing", "housing.seat"))
-    return Scene("test", "test", components, attach=tuple(attach), run=RunSpec(**run))  # type: ignore[arg-type]
+    return Scene("test", "test", components, attach=tuple(attach), run=with_changes(RunSpec(), run))
 
 
 def dropped(modes: int = 5) -> Scene:

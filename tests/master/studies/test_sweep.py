@@ -162,7 +162,7 @@ def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_a_process_that_dies_is_one_failed_member(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """It takes the pool along; the others are run again."""
-    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")
+    monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT / 'src'}")
     (tmp_path / "sitecustomize.py").write_text(DIES)
     scene = load(SCENE).with_setting("run.duration", 2e-3)
     members = sweep(scene, {"rotor.mass": [1.0, 2.0, 3.0]}, tmp_path / "out", in_process=True)
@@ -199,7 +199,7 @@ def test_ctrl_c_ends_a_sweep(tmp_path: Path) -> None:
     arguments = ("sweep", SCENE, "--in-process", "--quiet", "-o", str(tmp_path), "--duration", "500 s")
     running = subprocess.Popen(
         [sys.executable, "-c", script, *arguments, "--vary", "rotor.mass=1:2:6 kg"],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONPATH": str(ROOT / "src")},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
