@@ -294,8 +294,8 @@ def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
     """Default steps against adaptive ones: the first impact's peaks within 2 % and, on one ball, 8 %.
 
     In a cage balls rattle before the impact, chaotically: the last bit of a start moves the force on one
-    by 2 % (standard deviation), by 5 to 13 % in the cases of `RATTLING`. Medians over seven starts, 1e-7 rad
-    apart, differ by two thirds of that, so the bounds are three times it and more.
+    by 2 % (standard deviation), by 5 to 13 % in the cases of `RATTLING`. Medians over seven starts, 1e-7
+    rad apart, differ by two thirds of that, so the bounds are three times it and more.
     """
     settings = HARD[case]
     if any(".cage" in key for key in settings) and name == "detailed_cageless":
