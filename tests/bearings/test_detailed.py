@@ -247,13 +247,21 @@ HARD = {
     "light cage": {"bearing.cage.mass": 1e-5},
 }
 
+RATTLING = {  # share by which the force on one ball may differ where a caged bearing's balls rattle most
+    "1 um in the pockets": 0.2,
+    "stiff pockets": 0.3,
+    "races a hundred times stiffer": 0.3,
+}
+
 
 @every_model
 @pytest.mark.parametrize("case", list(HARD))
 def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
-    """Default steps against adaptive ones: the first impact's peaks within 2 % and, on one ball, 8 or 20 %.
+    """Default steps against adaptive ones: the first impact's peaks within 2 % and, on one ball, 8 %.
 
-    Balls rattle before the impact, chaotically; so medians over starts 1e-7 rad apart are compared.
+    In a cage balls rattle before the impact, chaotically: the last bit of a start moves the force on one
+    by 2 % (standard deviation), by 5 to 13 % in the cases of `RATTLING`. Medians over seven starts, 1e-7
+    rad apart, differ by two thirds of that, so the bounds are three times it and more.
     """
     settings = HARD[case]
     if any(".cage" in key for key in settings) and name == "detailed_cageless":
@@ -263,16 +271,16 @@ def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
     medians = []
     for micro in (2e-6, 0.0):
         found = []
-        for off in (0.0, 1e-7, 2e-7):
-            scene = drop(name, 0.0095, bearing__micro_step=micro, bearing__balls__first_angle=math.pi + off)
+        for start in range(7 if name == "detailed_caged" else 1):
+            angle = math.pi + 1e-7 * start
+            scene = drop(name, 0.0095, bearing__micro_step=micro, bearing__balls__first_angle=angle)
             for key, value in settings.items():
                 scene = scene.with_setting(key, value)
             system = finished(scene)
             found.append([system.value(f"bearing.{peak}") for peak in PEAKS])
         medians.append(np.median(found, axis=0))
     assert medians[0][0] == pytest.approx(medians[1][0], rel=0.02)
-    chaos = 0.2 if "stiff" in case else 0.08  # the stiffer the contacts, the more the rattle shows
-    assert medians[0][1] == pytest.approx(medians[1][1], rel=chaos)
+    assert medians[0][1] == pytest.approx(medians[1][1], rel=RATTLING.get(case, 0.08))
 
 
 @every_model
