@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -27,6 +28,26 @@ from touchdown.master.results.summary import energy_total, touchdown_seats
 Picture = tuple[str, Callable[[Figure], object]]  # name of the file, and what draws it on an empty figure
 
 
+@dataclass(frozen=True)
+class OfBearing:
+    """A picture of one touchdown bearing."""
+
+    name: str  # of its file
+    draw: Callable[[Figure, Finished, Attachment], object]
+    there: Callable[[Finished, Attachment], bool] = lambda run, a: True
+    """Whether the run has what it shows."""
+
+
+OF_BEARING = [
+    OfBearing("orbit", paths),
+    OfBearing("force", forces, lambda run, a: f"{a.bearing}.contact.force" in run.recording),
+    OfBearing("speeds", speeds, lambda run, a: f"{a.bearing}.speed.ring" in run.recording),
+    OfBearing("contacts", contacts, lambda run, a: has_contacts(run.system, a)),
+    OfBearing("spectrum", spectrum, lambda run, a: has_spectrum(run.recording, a)),
+    OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),
+]
+
+
 def draw_all(run: Finished, folder: Path) -> list[Path]:
     """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files."""
     made: list[Path] = []
@@ -44,8 +65,9 @@ def _pictures(run: Finished) -> Iterator[Picture]:
     seats = touchdown_seats(run.system)
     for a in seats:
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
-        for name, draw in _of_bearing(run, a):
-            yield f"{name}{tail}", draw
+        for picture in OF_BEARING:
+            if picture.there(run, a):
+                yield f"{picture.name}{tail}", _of_bearing(picture, run, a)
     if len(seats) > 1:
         yield "orbits", partial(orbits, run=run, seats=seats)
     rotors = stressed(run.system)
@@ -57,16 +79,5 @@ def _pictures(run: Finished) -> Iterator[Picture]:
         yield "energy", partial(energy, run=run)
 
 
-def _of_bearing(run: Finished, a: Attachment) -> Iterator[Picture]:
-    """Of one touchdown bearing."""
-    yield "orbit", partial(paths, run=run, a=a)
-    if f"{a.bearing}.contact.force" in run.recording:
-        yield "force", partial(forces, run=run, a=a)
-    if f"{a.bearing}.speed.ring" in run.recording:
-        yield "speeds", partial(speeds, run=run, a=a)
-    if has_contacts(run.system, a):
-        yield "contacts", partial(contacts, run=run, a=a)
-    if has_spectrum(run.recording, a):
-        yield "spectrum", partial(spectrum, run=run, a=a)
-    if has_waterfall(run.recording, a):
-        yield "waterfall", partial(motion_waterfall, run=run, a=a)
+def _of_bearing(picture: OfBearing, run: Finished, a: Attachment) -> Callable[[Figure], object]:
+    return lambda figure: picture.draw(figure, run, a)
