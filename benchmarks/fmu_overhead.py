@@ -80,10 +80,10 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=0.3, help="s")
     parser.add_argument("--pairs", type=int, default=5)
     options = parser.parse_args()
-    scene = load(options.scene).with_setting("run.duration", options.duration)
-    scene = scene.with_setting("run.stop_residual", 1e9)
+    scene = load(options.scene).set({"run.duration": options.duration})
+    scene = scene.set({"run.stop_residual": 1e9})
     if options.macro_step is not None:
-        scene = scene.with_setting("run.macro_step", options.macro_step)
+        scene = scene.set({"run.macro_step": options.macro_step})
     kernel_times(scene), fmu_times(scene)  # compile and warm up
     runs = [(kernel_times(scene), fmu_times(scene), whole_run(scene)) for _ in range(options.pairs)]
     step = scene.run.macro_step

@@ -27,7 +27,7 @@ FINE = 1e-6  # s
 
 def ended(scene: Scene, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Both journals (m) at the end, and both peak contact forces (N)."""
-    scene = scene.with_setting("run.macro_step", step)
+    scene = scene.set({"run.macro_step": step})
     with opened(scene, in_process=True) as system:
         simulate(scene, system)
         peaks = [system.value(f"bearing_{end}.contact.peak_force") for end in "AB"]

@@ -96,7 +96,7 @@ def ours(fall: Fall) -> Found:
 
 def report(fall: Fall, repeat: int, folder: Path) -> None:
     """Print the fall's table."""
-    exact, _ = Fall(fall.scene.with_setting("run.macro_step", 1e-6), fall.journals, fall.bearings).ours()
+    exact, _ = Fall(fall.scene.set({"run.macro_step": 1e-6}), fall.journals, fall.bearings).ours()
     package = fall.package(LEAD, folder)
     own = kernels(fall.scene, repeat, retire=True)
     parallel = kernels(fall.with_scheme(LEAD), repeat, retire=False)

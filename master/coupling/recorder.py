@@ -10,12 +10,12 @@ was run: title, scene, version, scheme, macro_step_s.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 import h5py
 import numpy as np
 
+from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.components.component import Component, Variable
 from touchdown.master.scene.scene import Scene
@@ -150,7 +150,7 @@ def _heading(scene: Scene) -> dict[str, object]:
     return {
         "title": scene.title,
         "scene": scene.name,
-        "version": version("touchdown-cosim"),
+        "version": VERSION,
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
     }

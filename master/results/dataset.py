@@ -22,7 +22,7 @@ def dataset(recording: Recording) -> xarray.Dataset:
 
 def _column(recording: Recording, name: str) -> xarray.Variable:
     cached = indexing.MemoryCachedArray(_Column(recording, name))
-    return xarray.Variable("time", indexing.CopyOnWriteArray(cached), recording.about_column(name))
+    return xarray.Variable("time", cached, recording.about_column(name))
 
 
 class _Column(BackendArray):

@@ -90,7 +90,7 @@ class Scene:
             changed = replace(spec, set={**spec.set, tail: value})
         return replace(self, components={**self.components, head: changed})
 
-    def swap(self, **fmus: str | os.PathLike[str]) -> Scene:
+    def swap(self, /, **fmus: str | os.PathLike[str]) -> Scene:
         """A copy with components made of other FMUs: swap(bearing="detailed_caged").
 
         An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor. It
@@ -106,15 +106,6 @@ class Scene:
             )
             scene = replace(scene, components={**scene.components, name: after})
         return scene
-
-    def with_setting(self, name: str, value: object) -> Scene:
-        return self.set({name: value})
-
-    def with_settings(self, settings: Mapping[str, object]) -> Scene:
-        return self.set(settings)
-
-    def with_swap(self, name: str, fmu: str) -> Scene:
-        return self.swap(**{name: fmu})
 
     def with_names(self, name: str, names: Mapping[str, str]) -> Scene:
         """A copy in which the FMU of component `name` calls the contract's variables as `names` says."""

@@ -81,21 +81,22 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
 
     chosen = load(options.scene)
     for text in options.swap:
-        chosen = chosen.with_swap(*assignment(text, "--swap"))
+        name, fmu = assignment(text, "--swap")
+        chosen = chosen.swap(**{name: fmu})
     for text in options.names:
         name, file = assignment(text, "--names")
         chosen = chosen.with_names(name, read_names(Path(file)))
-    chosen = chosen.with_settings(settings(options))
+    chosen = chosen.set(settings(options))
     if options.scheme is not None:
-        chosen = chosen.with_setting("run.scheme", options.scheme)
+        chosen = chosen.set({"run.scheme": options.scheme})
     if options.macro_step == "auto":
         from touchdown.master.coupling.advisor import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
-        chosen = chosen.with_setting("run.macro_step", advice.macro_step)
+        chosen = chosen.set({"run.macro_step": advice.macro_step})
     elif options.macro_step is not None:
-        chosen = chosen.with_setting("run.macro_step", options.macro_step)
+        chosen = chosen.set({"run.macro_step": options.macro_step})
     return chosen
 
 

@@ -83,9 +83,9 @@ if os.path.isfile(os.path.join(_top, "pyproject.toml")) and os.path.isdir(os.pat
 def __getattr__(name: str) -> object:
     """A public name, imported when it is first asked for: numpy and numba take their time."""
     if name == "__version__":
-        from importlib.metadata import version
+        from touchdown.fmus.version import VERSION
 
-        value: object = version("touchdown-cosim")
+        value: object = VERSION
     elif name in _HOMES:
         value = getattr(import_module(f"touchdown.{_HOMES[name]}"), name)
     else:

@@ -38,8 +38,8 @@ def test_the_parts_fit_together(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(CATALOGUE))
 def test_a_preset_reaches_the_component(name: str) -> None:
-    scene = load("disk-caged-simplified").with_setting("bearing.preset", name)
-    system = open_system(scene.with_setting("bearing.balls.play", 1e-6), in_process=True)
+    scene = load("disk-caged-simplified").set({"bearing.preset": name})
+    system = open_system(scene.set({"bearing.balls.play": 1e-6}), in_process=True)
     assert system.value("bearing.balls.count") == CATALOGUE[name].balls.count
     assert system.value("bearing.balls.rows") == CATALOGUE[name].balls.rows
     assert system.value("bearing.rolling.static_rating") == CATALOGUE[name].static_rating
@@ -48,4 +48,4 @@ def test_a_preset_reaches_the_component(name: str) -> None:
 
 def test_an_unknown_preset_is_named() -> None:
     with pytest.raises(TouchdownError, match="no preset 6005"):
-        load("disk-caged-simplified").with_setting("bearing.preset", "6005")
+        load("disk-caged-simplified").set({"bearing.preset": "6005"})

@@ -125,9 +125,9 @@ def test_a_turned_frame_turns_the_accelerations(name: str, angle: float) -> None
 
 def drop(name: str, duration: float, **settings: object) -> Scene:
     """The disk's scene of a model, shortened, with settings written `bearing__micro_step`."""
-    scene = load(SCENES[name]).with_setting("run.duration", duration)
+    scene = load(SCENES[name]).set({"run.duration": duration})
     for key, value in settings.items():
-        scene = scene.with_setting(key.replace("__", "."), value)
+        scene = scene.set({key.replace("__", "."): value})
     return scene
 
 
@@ -136,7 +136,7 @@ def drop(name: str, duration: float, **settings: object) -> Scene:
 def test_energy_adds_up_over_many_impacts(name: str) -> None:
     """100 ms at a tight tolerance: the ledger and the sum of all energies close within 1e-5 of m g c."""
     scene = drop(name, 0.1, bearing__micro_step=0.0, bearing__interface__tolerance=1e-8)
-    scene = scene.with_setting("run.macro_step", 2e-5)
+    scene = scene.set({"run.macro_step": 2e-5})
     parts = [
         f"{c}.energy.{k}"
         for c in ("rotor", "bearing", "housing")
@@ -275,7 +275,7 @@ def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
             angle = math.pi + 1e-7 * start
             scene = drop(name, 0.0095, bearing__micro_step=micro, bearing__balls__first_angle=angle)
             for key, value in settings.items():
-                scene = scene.with_setting(key, value)
+                scene = scene.set({key: value})
             system = finished(scene)
             found.append([system.value(f"bearing.{peak}") for peak in PEAKS])
         medians.append(np.median(found, axis=0))
@@ -309,7 +309,7 @@ def test_a_lobed_race_moves_the_ring(phase: float) -> None:
     for amplitude in (0.0, 2e-6):
         profile = {"outer_profile.amplitude": amplitude, "outer_profile.phase": phase, "gravity": 0.0}
         scene = touching("detailed_cageless", micro_step=0.0, **profile)
-        system = finished(scene.with_setting("run.duration", 6e-4))
+        system = finished(scene.set({"run.duration": 6e-4}))
         height.append(system.value("bearing.ring.y"))
     given = 2e-6 * math.cos(2.0 * (-0.5 * math.pi - phase))  # outwards at the bottom
     # over the arc of loaded balls; 0.56 and 0.44, and too soon after first touch for chaos
@@ -346,7 +346,7 @@ def test_adaptive_steps_follow_two_references(name: str) -> None:
     1e-10 its dense output errs by 1e-6 at single points. The steps under test, at 1e-10, are 1e-7 off it.
     """
     scene = touching(name, micro_step=0.0, **{"interface.tolerance": 1e-10})
-    scene = scene.with_setting("run.duration", 1e-3).with_setting("run.macro_step", 2e-5)
+    scene = scene.set({"run.duration": 1e-3, "run.macro_step": 2e-5})
     times = 2e-5 * np.arange(1, 51)
     first = Monolith(scene).solve(times, ["rotor.A.y"], 1e-12, "DOP853").states["bearing"]
     second = Monolith(scene).solve(times, ["rotor.A.y"], 1e-8, "Radau").states["bearing"]

@@ -30,9 +30,9 @@ def finished(scene: Scene) -> System:
 
 def drop(**settings: object) -> System:
     """The disk 9 ms after the shutdown, just past the first impact."""
-    scene = load(SCENE).with_setting("run.duration", 9e-3).with_setting("run.macro_step", 4e-5)
+    scene = load(SCENE).set({"run.duration": 9e-3, "run.macro_step": 4e-5})
     for key, value in settings.items():
-        scene = scene.with_setting(f"bearing.{key.replace('__', '.')}", value)
+        scene = scene.set({f"bearing.{key.replace('__', '.')}": value})
     return finished(scene)
 
 

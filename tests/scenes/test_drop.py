@@ -22,12 +22,12 @@ JOURNAL = ["rotor.A.x", "rotor.A.y"]
 @pytest.fixture(scope="module", params=[CAGED, CAGELESS])
 def first_impact(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict:
     """Summary of the first 30 ms through FMUs."""
-    scene = load(request.param).with_setting("run.duration", 0.03)
+    scene = load(request.param).set({"run.duration": 0.03})
     return run_to_end(scene, tmp_path_factory.mktemp("drop"), in_process=False)
 
 
 def test_the_first_contact_comes_when_the_gap_is_fallen(first_impact: dict, tmp_path: Path) -> None:
-    scene = load(first_impact["scene"]).with_setting("run.duration", 0.01)
+    scene = load(first_impact["scene"]).set({"run.duration": 0.01})
     system = open_system(scene, in_process=True)
     simulate(scene, system)
     gap = -system.value("bearing.contact.first_y")
@@ -49,7 +49,7 @@ def test_table_7(first_impact: dict) -> None:
 def test_force_on_the_worst_ball_doubles_with_the_cage() -> None:
     peaks = []
     for name in (CAGED, CAGELESS):
-        scene = load(name).with_setting("run.duration", 0.012)
+        scene = load(name).set({"run.duration": 0.012})
         system = open_system(scene, in_process=True)
         simulate(scene, system)
         peaks.append(system.value("bearing.balls.peak_force"))
@@ -86,7 +86,7 @@ def sampled(scene: Scene, times: np.ndarray) -> np.ndarray:
 @pytest.fixture(scope="module")
 def reference() -> tuple[np.ndarray, np.ndarray]:
     """The caged drop solved as one system of equations by two solvers that agree."""
-    scene = load(CAGED).with_setting("run.duration", 0.02)
+    scene = load(CAGED).set({"run.duration": 0.02})
     times = np.linspace(1e-3, 20e-3, 20)
     first = Monolith(scene).solve(times, JOURNAL, 1e-9, "DOP853")
     second = Monolith(scene).solve(times, JOURNAL, 1e-8, "Radau")
@@ -101,7 +101,7 @@ def test_large_macro_steps_follow_the_monolithic_solution(
 ) -> None:
     """Within 1e-3 um over the first 20 ms, whatever the macro step."""
     times, exact = reference
-    scene = load(CAGED).with_setting("run.duration", 0.02).with_setting("run.macro_step", step)
+    scene = load(CAGED).set({"run.duration": 0.02, "run.macro_step": step})
     found = sampled(scene, times)
     assert np.max(np.abs(found - exact)) < 1e-9
 
@@ -109,8 +109,8 @@ def test_large_macro_steps_follow_the_monolithic_solution(
 def test_held_motion_errs_a_thousand_times_more(reference: tuple[np.ndarray, np.ndarray]) -> None:
     """The comparison can fail: plain hold at the same step does."""
     times, exact = reference
-    scene = load(CAGED).with_setting("run.duration", 0.02).with_setting("run.macro_step", 1e-5)
-    scene = scene.with_setting("run.scheme", "hold").with_setting("run.stop_residual", 1e9)
+    scene = load(CAGED).set({"run.duration": 0.02, "run.macro_step": 1e-5})
+    scene = scene.set({"run.scheme": "hold", "run.stop_residual": 1e9})
     assert np.max(np.abs(sampled(scene, times) - exact)) > 1e-6
 
 
@@ -137,8 +137,8 @@ def test_what_five_seconds_bring(
 
 def test_the_linearly_implicit_steps_follow_an_explicit_solution() -> None:
     """The cageless bearing, stepped with its stiff friction implicit, against DOP853 on all equations."""
-    scene = load(CAGELESS).with_setting("run.duration", 0.02).with_setting("run.macro_step", 1e-4)
-    scene = scene.with_setting("bearing.micro_step", 0.0)
+    scene = load(CAGELESS).set({"run.duration": 0.02, "run.macro_step": 1e-4})
+    scene = scene.set({"bearing.micro_step": 0.0})
     times = np.linspace(1e-3, 20e-3, 20)
     solution = Monolith(scene).solve(times, JOURNAL, 1e-6, "DOP853")
     exact = np.stack([solution.series[name] for name in JOURNAL], 1)

@@ -84,9 +84,9 @@ def test_a_control_that_is_not_stable_is_found(name: str) -> None:
 
 def levitated(name: str, modes: int = 0, **shutdown: float) -> Scene:
     """The scene with its own macro step, up to 1 ms after the (first) shutdown at A."""
-    scene = load(name).with_setting("rotor.modes", modes).with_setting("run.duration", 1e-3)
+    scene = load(name).set({"rotor.modes": modes, "run.duration": 1e-3})
     for end in ENDS:
-        scene = scene.with_setting(f"amb_{end}.shutdown_time", shutdown.get(end, UP_TO))
+        scene = scene.set({f"amb_{end}.shutdown_time": shutdown.get(end, UP_TO)})
     return scene
 
 
@@ -95,8 +95,8 @@ def levitated(name: str, modes: int = 0, **shutdown: float) -> Scene:
 def test_the_linear_equations_are_the_components(name: str, modes: int, step: float) -> None:
     """A rotor let loose 20 um beside the middle, without unbalance, follows the closed loop above."""
     scene, off = levitated(name, modes, A=4e-3, B=4e-3), 20e-6
-    scene = scene.with_setting("rotor.x", off).with_setting("rotor.unbalance_scale", 0.0)
-    scene = scene.with_setting("run.macro_step", step)
+    scene = scene.set({"rotor.x": off, "rotor.unbalance_scale": 0.0})
+    scene = scene.set({"run.macro_step": step})
     times, motion, _ = history(scene, JOURNALS)
     d = prepare(shaft(name), modes, 1, shaft(name).damping_ratio, GRAVITY, 0)
     n = d.modes
@@ -135,7 +135,7 @@ def test_the_end_that_is_let_go_first_lands_first(name: str, first: str) -> None
     """The other one is held 4 ms longer: the rotor tilts and touches where nothing holds it."""
     last = ENDS.replace(first, "")
     scene = levitated(name, 5, **{first: 2e-3, last: 6e-3})
-    scene = scene.with_setting("run.duration", 14e-3 if first == "B" else 18e-3)  # from the shutdown at A
+    scene = scene.set({"run.duration": 14e-3 if first == "B" else 18e-3})  # from the shutdown at A
     firsts = {end: f"bearing_{end}.contact.first_time" for end in ENDS}
     times, motion, _ = history(scene, [*JOURNALS, *firsts.values(), "amb_A.active", "amb_B.active"])
     landed = {end: motion[firsts[end]][-1] for end in ENDS}

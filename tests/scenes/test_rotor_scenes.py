@@ -176,7 +176,7 @@ def test_a_mistake_in_a_rotor_file_is_one_line(
 )
 def test_settings_that_cannot_be(tmp_path: Path, setting: tuple[str, object], named: str) -> None:
     with pytest.raises(TouchdownError, match=named):
-        run_scene(load("rotor1-9000").with_setting(*setting), tmp_path, in_process=True, pictures=False)
+        run_scene(load("rotor1-9000").set(dict([setting])), tmp_path, in_process=True, pictures=False)
 
 
 @pytest.mark.parametrize(
@@ -237,13 +237,11 @@ def test_a_scene_that_extends_what_it_cannot(tmp_path: Path, base: str, named: s
 
 def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
     """Figures that need more are left out; what is there is what a full recording has."""
-    scene = load("rotor1-9000").with_setting("run.duration", 1e-3)
+    scene = load("rotor1-9000").set({"run.duration": 1e-3})
     for name in ("amb_A", "amb_B"):
-        scene = scene.with_setting(f"{name}.shutdown_time", 4e-3)
+        scene = scene.set({f"{name}.shutdown_time": 4e-3})
     everything = run_scene(scene, tmp_path / "all", in_process=True, pictures=False)
-    little = run_scene(
-        scene.with_setting("run.record", "rotor.A.y,amb_A"), tmp_path / "some", in_process=True
-    )
+    little = run_scene(scene.set({"run.record": "rotor.A.y,amb_A"}), tmp_path / "some", in_process=True)
     assert "whirl_A" in everything.summary
     assert "whirl_A" not in little.summary
     full, part = (Recording(result.folder / "result.h5") for result in (everything, little))
@@ -260,9 +258,9 @@ def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
 
 def test_a_bearing_that_is_done_keeps_its_last_values(tmp_path: Path) -> None:
     """After the shutdown the magnetic bearings are not stepped; their columns go on with what they gave."""
-    scene = load("rotor1-9000").with_setting("run.duration", 8e-3)
+    scene = load("rotor1-9000").set({"run.duration": 8e-3})
     for name in ("amb_A", "amb_B"):
-        scene = scene.with_setting(f"{name}.shutdown_time", 2e-3)
+        scene = scene.set({f"{name}.shutdown_time": 2e-3})
     result = run_scene(scene, tmp_path, in_process=True, pictures=False)
     recording = Recording(result.folder / "result.h5")
     late = recording.time > 5e-3

@@ -54,12 +54,12 @@ def dropped(modes: int = 5) -> Scene:
     """Rotor I from 9000 rpm into two simplified caged bearings, up to just after the first impacts."""
     scene = load("rotor1-9000")
     for end in "AB":
-        scene = scene.with_swap(f"bearing_{end}", "simplified_caged")
+        scene = scene.swap(**{f"bearing_{end}": "simplified_caged"})
         for name, value in CAGED.items():
-            scene = scene.with_setting(f"bearing_{end}.{name}", value)
-        scene = scene.with_setting(f"amb_{end}.shutdown_time", LEVITATED)
-    scene = scene.with_setting("rotor.modes", modes)
-    return scene.with_setting("run.duration", AT).with_setting("run.stop_residual", 1e9)
+            scene = scene.set({f"bearing_{end}.{name}": value})
+        scene = scene.set({f"amb_{end}.shutdown_time": LEVITATED})
+    scene = scene.set({"rotor.modes": modes})
+    return scene.set({"run.duration": AT, "run.stop_residual": 1e9})
 
 
 def history(

@@ -101,7 +101,7 @@ def _with_run(scene: Scene, found: Structure, sides: Mapping[str, Side], where: 
             start = sides[head].variable(own, f"{where}: zero").start
             zero = float(str(scene.components[head].set.get(tail, start or 0.0)))
         settings["run.duration"] = round(found.stop - zero, DIGITS)
-    return scene.with_settings(settings)
+    return scene.set(settings)
 
 
 # -- values ------------------------------------------------------------------------------------------------

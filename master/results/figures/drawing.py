@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from matplotlib.figure import Figure, FigureBase
+from matplotlib.figure import Figure
 
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Finished
@@ -33,7 +33,7 @@ class OfBearing:
     """A picture of one touchdown bearing."""
 
     name: str  # of its file
-    draw: Callable[..., object]  # (figure, run: Finished, a: Attachment)
+    draw: Callable[[Figure, Finished, Attachment], object]
     there: Callable[[Finished, Attachment], bool] = lambda run, a: True
     """Whether the run has what it shows."""
 
@@ -67,7 +67,7 @@ def _pictures(run: Finished) -> Iterator[Picture]:
         tail = f"-{a.bearing}" if len(seats) > 1 else ""
         for picture in OF_BEARING:
             if picture.there(run, a):
-                yield f"{picture.name}{tail}", partial(picture.draw, run=run, a=a)
+                yield f"{picture.name}{tail}", _of_bearing(picture, run, a)
     if len(seats) > 1:
         yield "orbits", partial(orbits, run=run, seats=seats)
     rotors = stressed(run.system)
@@ -77,3 +77,7 @@ def _pictures(run: Finished) -> Iterator[Picture]:
             yield f"stress{tail}", partial(stress, run=run, name=name)
     if energy_total(run.system, run.recording) is not None:
         yield "energy", partial(energy, run=run)
+
+
+def _of_bearing(picture: OfBearing, run: Finished, a: Attachment) -> Callable[[Figure], object]:
+    return lambda figure: picture.draw(figure, run, a)

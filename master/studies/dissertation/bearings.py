@@ -131,11 +131,11 @@ OPTIONS: tuple[tuple[str, str, Mapping[str, object]], ...] = (
 
 def member(model: str, number: int, duration: float, settings: Mapping[str, object] | None = None) -> Scene:
     """One of a model's ensemble."""
-    scene = load(SCENES[model]).with_setting("run.duration", duration)
+    scene = load(SCENES[model]).set({"run.duration": duration})
     angle = float(open_system(scene, in_process=True).value("bearing.balls.first_angle"))
-    scene = scene.with_setting("bearing.balls.first_angle", angle + STEP_APART * number)
+    scene = scene.set({"bearing.balls.first_angle": angle + STEP_APART * number})
     for name, value in (settings or {}).items():
-        scene = scene.with_setting(f"bearing.{name}", value)
+        scene = scene.set({f"bearing.{name}": value})
     return scene
 
 

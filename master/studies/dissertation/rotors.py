@@ -110,7 +110,7 @@ def fig_14(members: int, folder: Path, jobs: int, done: Callable[[], object]) ->
     for rpm in (9000, 18000):
         for offset, source in FIG_14.items():
             name = f"rotor1-{rpm}" + (f"-{offset}um" if offset else "")
-            scene = load(name).with_settings({"run.duration": 0.5, **NO_LIMIT})
+            scene = load(name).set({"run.duration": 0.5, **NO_LIMIT})
             ensemble = sweep(scene, phases(members), folder / name, jobs, in_process=True, done=done)
             turns, force = (
                 spread(ensemble, key) for key in ("whirl_A_revolutions", "peak_contact_force_N_bearing_A")
@@ -131,7 +131,7 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
             numbers = "".join(f"{value:>26.4g}" for value in values)
             lines.append(f"{'case ' + row.case + ', source':<32}{numbers}   {verdict}")
             seen = row.case
-        scene = load(f"rotor2-case{row.case}").with_settings({**row.settings, **NO_LIMIT})
+        scene = load(f"rotor2-case{row.case}").set({**row.settings, **NO_LIMIT})
         name = f"table4-{number}-case{row.case}"
         ensemble = sweep(scene, phases(members), folder / name, jobs, in_process=True, done=done)
         numbers = "".join(f"{spread(ensemble, key):>26}" for key in COLUMNS)

@@ -23,4 +23,4 @@ def shortened(scene: Scene) -> Scene:
     early = min(times.values(), default=0.0) - SHORT
     if early <= 0.0:
         return scene
-    return scene.with_settings({f"{name}.shutdown_time": time - early for name, time in times.items()})
+    return scene.set({f"{name}.shutdown_time": time - early for name, time in times.items()})

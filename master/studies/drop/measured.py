@@ -38,7 +38,7 @@ class Landing:
 
 def fine(scene: Scene, step: float) -> Scene:
     """Small macro steps, and bearings that take steps inside as tight as they can."""
-    scene = scene.with_settings({"run.scheme": DEFAULT, "run.macro_step": step})
+    scene = scene.set({"run.scheme": DEFAULT, "run.macro_step": step})
     with opened(scene, True) as system:
         bearings = {a.bearing: system.components[a.bearing].variables for a in touchdown_seats(system)}
     settings = {
@@ -47,7 +47,7 @@ def fine(scene: Scene, step: float) -> Scene:
         for variable, value in FINE_SETTINGS.items()
         if variable in variables
     }
-    return scene.with_settings(settings)
+    return scene.set(settings)
 
 
 def land(scene: Scene, duration: float | None) -> Landing:

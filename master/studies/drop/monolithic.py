@@ -35,7 +35,7 @@ class Monolith:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         # no macro steps, so no copies to carry: a bearing without elastic modes has the shortest state
-        system = open_system(scene.with_setting("run.scheme", "hold"), in_process=True)
+        system = open_system(scene.set({"run.scheme": "hold"}), in_process=True)
         self._twins: dict[str, TwinComponent] = {}
         for name, component in system.components.items():
             if not isinstance(component, TwinComponent):

@@ -108,11 +108,11 @@ def compare(
     scene = _unjudged(scene)
     begin("the scene as it is")
     exact, end = _dropped(scene, Stop(LONGEST if duration is None else duration, early=False))
-    stopwatch = _Stopwatch(scene.with_setting("run.duration", end), repeat, in_process)
+    stopwatch = _Stopwatch(scene.set({"run.duration": end}), repeat, in_process)
     rows = []
     for variant in chosen:
         begin(variant.title)
-        run = _unjudged(variant.scene).with_setting("run.duration", end)
+        run = _unjudged(variant.scene).set({"run.duration": end})
         rows.append(_row(replace(variant, scene=run), exact, stopwatch))
     return Comparison(scene, end, exact, stopwatch.own(), repeat, in_process, rows)
 
@@ -201,7 +201,7 @@ class _Stopwatch:
     def _warm_up(self, variant: Variant) -> None:
         """Compile what is to be timed."""
         scene = variant.scene
-        brief = scene.with_setting("run.duration", 2.0 * scene.run.macro_step)
+        brief = scene.set({"run.duration": 2.0 * scene.run.macro_step})
         self._once(replace(variant, scene=brief))
 
     def _once(self, variant: Variant) -> float:

@@ -53,10 +53,10 @@ def _coupling(scene: Scene, system: System) -> Iterator[Variant]:
     """How much of every difference is the coupling's: half the macro step tells."""
     step = scene.run.macro_step
     for factor in (0.5, 2.0):
-        run = scene.with_setting("run.macro_step", factor * step)
+        run = scene.set({"run.macro_step": factor * step})
         yield Variant(f"macro step of {1e6 * factor * step:g} us", run)
     if scene.run.scheme.modes and _flexible(system):
-        run = scene.with_setting("run.scheme", "point-mass")
+        run = scene.set({"run.scheme": "point-mass"})
         yield Variant("rotor's modes not carried (point-mass)", run)
 
 
@@ -82,7 +82,7 @@ def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
 
 
 def _all(scene: Scene, names: Sequence[str], values: Mapping[str, object]) -> Scene:
-    return scene.with_settings({f"{name}.{key}": value for name in names for key, value in values.items()})
+    return scene.set({f"{name}.{key}": value for name in names for key, value in values.items()})
 
 
 def _bearings(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
@@ -131,13 +131,13 @@ def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator
     fixed = [n for n in fixed if system.value(f"{n}.micro_step") > 0.0]
     if fixed:
         values = {f"{name}.micro_step": 2.0 * system.value(f"{name}.micro_step") for name in fixed}
-        yield Variant("steps inside bearings twice as long", scene.with_settings(values))
+        yield Variant("steps inside bearings twice as long", scene.set(values))
     variable = "interface.tolerance"
     rest = [n for n in seats if n not in fixed and variable in system.components[n].variables]
     if rest:
         values = {f"{name}.{variable}": LOOSER * system.value(f"{name}.{variable}") for name in rest}
         title = f"tolerance inside bearings {LOOSER:g} times as large"
-        yield Variant(title, scene.with_settings(values))
+        yield Variant(title, scene.set(values))
 
 
 def _housings(scene: Scene, system: System) -> Iterator[Variant]:

@@ -140,10 +140,10 @@ def compare(
     of modes cannot be, nothing touches, or a run stops.
     """
     rotor = _rotor(scene)
-    scene = scene.with_setting("run.macro_step", macro_step)
+    scene = scene.set({"run.macro_step": macro_step})
     _check_modes(_basis(scene, rotor, max(modes), 1, 1))
     whole = _basis(scene, rotor, 0, 0, 0)
-    fine = whole.with_setting("run.macro_step", 0.5 * macro_step)
+    fine = whole.set({"run.macro_step": 0.5 * macro_step})
     stop = Stop(LONGEST if duration is None else duration, early=duration is None, every=2)
     exact = _run(fine, rotor, stop)
     impacts = {seat: found for seat, t in exact.traces.items() if (found := t.first_impact())}
@@ -153,7 +153,7 @@ def compare(
     judge = _Judge(exact, impacts)
     reference = judge.row(0, False, 0.5 * macro_step, exact, exact)
     ended = {"run.duration": exact.end}
-    again = _run(whole.with_settings(ended), rotor)
+    again = _run(whole.set(ended), rotor)
     done()
     rows = []
     for count in modes:
@@ -161,7 +161,7 @@ def compare(
             found = []
             for acceleration in (0, 1):
                 basis = _basis(scene, rotor, count, residual, acceleration)
-                found.append(_run(basis.with_settings(ended), rotor))
+                found.append(_run(basis.set(ended), rotor))
                 done()
             rows.append(judge.row(count, bool(residual), macro_step, found[0], found[1]))
     coupling = judge.row(0, False, macro_step, again, again)
@@ -191,7 +191,7 @@ def _rotor(scene: Scene) -> str:
 def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: int) -> Scene:
     values = dict(zip(BASIS, (modes, residual, acceleration), strict=True))
     settings = {f"{rotor}.{name}": value for name, value in values.items()}
-    return scene.with_settings(settings | {f"{rotor}.stress.active": 1})
+    return scene.set(settings | {f"{rotor}.stress.active": 1})
 
 
 def _check_modes(scene: Scene) -> None:

@@ -155,11 +155,11 @@ def compare(scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda 
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.with_setting("run.stop_residual", NEVER)
+    scene = scene.set({"run.stop_residual": NEVER})
     begin("fine steps")
     landing = land(scene, asked.duration)
     looks = plan(landing, (*asked.steps, 2.0 * FINE))
-    scene = scene.with_setting("run.duration", landing.end)
+    scene = scene.set({"run.duration": landing.end})
     solves = _solves(scene, looks, begin)
     exact = reference(looks.times, solves[0], solves[1], AGREED * asked.wanted)
     judge = _Judge(looks, exact, *limits)
@@ -172,7 +172,7 @@ def compare(scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda 
     for name in asked.schemes:
         for step in asked.steps:
             begin(f"{name} at {1e6 * step:g} us")
-            run = scene.with_settings({"run.scheme": name, "run.macro_step": step})
+            run = scene.set({"run.scheme": name, "run.macro_step": step})
             rows.append(_timed(judge.row(run, name, step), run, asked))
     monolithic = [_monolithic(s, exact) for s in solves]
     return Comparison(scene, asked, landing, exact, finely.errors, rows, monolithic)
@@ -249,7 +249,7 @@ class _Judge:
 
 def _warm_up(scene: Scene, asked: Asked) -> None:
     """Compile what is to be timed."""
-    with opened(scene.with_setting("run.duration", 2.0 * scene.run.macro_step), asked.in_process) as system:
+    with opened(scene.set({"run.duration": 2.0 * scene.run.macro_step}), asked.in_process) as system:
         simulate(scene, system).raise_if_interrupted()
 
 
@@ -258,7 +258,7 @@ def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
     if row.failed:
         return row
     if asked.timed is not None:
-        scene = scene.with_setting("run.duration", asked.timed)
+        scene = scene.set({"run.duration": asked.timed})
     spent = []
     try:
         for _ in range(asked.repeat):

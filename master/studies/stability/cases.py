@@ -57,7 +57,7 @@ def _let_go(name: str) -> Scene:
 def _dropped(settings: Mapping[str, object], ms: int) -> Scene:
     """The disk from just above its caged bearing."""
     start = {"rotor.y": ABOVE, "rotor.vy": FALLING, "run.duration": 1e-3 * ms}
-    return _let_go("disk-caged-simplified").with_settings({**start, **settings})
+    return _let_go("disk-caged-simplified").set({**start, **settings})
 
 
 def bounce() -> Case:
@@ -100,7 +100,7 @@ def mass(times: int) -> Case:
 def _rotor(name: str, settings: Mapping[str, object]) -> Scene:
     """A scene of rotor I, let go; micro steps are fine, so that errors are the coupling's alone."""
     fine = {f"bearing_{end}.micro_step": FINE for end in "AB"}
-    return _let_go(name).with_settings({**fine, **settings})
+    return _let_go(name).set({**fine, **settings})
 
 
 def _on_two(name: str, title: str, scene: Scene, scale: float) -> Case:
@@ -144,9 +144,7 @@ def grazing() -> Case:
 def hold() -> Case:
     """Rotor I with 20 modes on its magnetic bearings, which bring it back from 20 um beside."""
     kept = {f"amb_{end}.shutdown_time": 1.0 for end in "AB"}
-    scene = load("rotor1-9000").with_settings(
-        {**kept, "rotor.modes": 20, "rotor.x": 20e-6, "run.duration": 10e-3}
-    )
+    scene = load("rotor1-9000").set({**kept, "rotor.modes": 20, "rotor.x": 20e-6, "run.duration": 10e-3})
     places = tuple(
         Figure(f"{axis} at {end}", (f"rotor.{end}.{axis}",), 20e-6) for end in "AB" for axis in "xy"
     )
@@ -164,7 +162,7 @@ def stick() -> Case:
 
 def swapped() -> Case:
     """Every ball a body, in the scene of the simplified bearing."""
-    scene = _dropped({}, 3).with_swap("bearing", "detailed_caged")
+    scene = _dropped({}, 3).swap(bearing="detailed_caged")
     return Case("swapped", "detailed bearing put into the scene", scene, (REBOUND, PEAK))
 
 

@@ -215,9 +215,7 @@ class Bounds(Observer):
 
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
     """Run a case in process: what the loop says, and the figures, none where the run broke off."""
-    scene = case.scene.with_settings(
-        {"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": NEVER}
-    )
+    scene = case.scene.set({"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": NEVER})
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, observers=[bounds])
         outcome.raise_if_interrupted()

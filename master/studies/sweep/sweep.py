@@ -54,7 +54,7 @@ def sweep(
     ]
     width = max(3, len(str(len(settings))))
     tasks = [
-        Task(number, given, scene.with_settings(given), folder / f"{number:0{width}}", in_process, keep)
+        Task(number, given, scene.set(given), folder / f"{number:0{width}}", in_process, keep)
         for number, given in enumerate(settings, start=1)
     ]
     members = [
@@ -72,10 +72,10 @@ def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:
     for name, values in variations.items():
         if not values:
             raise TouchdownError(f"{name} has no values to vary over")
-    first = scene.with_settings({name: values[0] for name, values in variations.items()})
+    first = scene.set({name: values[0] for name, values in variations.items()})
     for name, values in variations.items():
         for value in values:
-            open_system(first.with_setting(name, value), in_process=True).close()
+            open_system(first.set({name: value}), in_process=True).close()
 
 
 def _run_task(task: Task) -> Member:

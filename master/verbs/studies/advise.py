@@ -25,7 +25,7 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.interop.scenes import load
     from touchdown.master.scene.schemes import SCHEMES
 
-    chosen = load(options.scene).with_settings(settings(options))
+    chosen = load(options.scene).set(settings(options))
     found = advise(chosen, SCHEMES)
     reason = found[chosen.run.scheme.name].reason
     print(f"{chosen.name}, which takes {1e6 * chosen.run.macro_step:g} us: {reason}")

@@ -57,7 +57,7 @@ def execute(options: argparse.Namespace) -> int:
 
     given = settings(options)
     _refuse_varied(given, options)
-    chosen = shortened(load(options.scene)).with_settings(given)
+    chosen = shortened(load(options.scene)).set(given)
     print("\n".join((_models if options.models else _schemes)(chosen, options)))
     return 0
 

@@ -48,7 +48,7 @@ def execute(options: argparse.Namespace) -> int:
     chosen = load(options.scene)
     given = settings(options)
     refuse_varied(given)
-    chosen = chosen.with_settings(given)
+    chosen = chosen.set(given)
     modes = parse_modes(options.modes)
     step = to_si(options.macro_step, "s", "--macro-step")
     duration = None if options.duration is None else to_si(options.duration, "s", "--duration")

@@ -55,9 +55,9 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.studies.sweep.sweep import size, sweep
     from touchdown.master.studies.sweep.variation import parse_all
 
-    chosen = load(options.scene).with_settings(settings(options))
+    chosen = load(options.scene).set(settings(options))
     if options.duration is not None:
-        chosen = chosen.with_setting("run.duration", options.duration)
+        chosen = chosen.set({"run.duration": options.duration})
     variations = parse_all(options.vary)
     jobs = count(options.jobs, "--jobs")
     folder = options.output or Path("runs") / f"sweep-{chosen.name}"

@@ -26,7 +26,7 @@ def reference(scene: Scene) -> np.ndarray:
 
 def ended(scene: Scene, step: float, scheme: str = "interface") -> tuple[np.ndarray, Outcome, list[float]]:
     """Both journals (m) at the end, the outcome, and the largest contact forces (N) at A and B."""
-    scene = scene.with_setting("run.macro_step", step).with_setting("run.scheme", scheme)
+    scene = scene.set({"run.macro_step": step, "run.scheme": scheme})
     system = open_system(scene, in_process=True)
     try:
         outcome = simulate(scene, system)
@@ -45,7 +45,7 @@ def error(found: np.ndarray, exact: np.ndarray) -> float:
 @pytest.fixture(scope="module")
 def alone() -> tuple[Scene, np.ndarray]:
     """Bearing B opened so far that only A is touched."""
-    scene = dropped().with_setting("bearing_B.clearance", 2e-3)
+    scene = dropped().set({"bearing_B.clearance": 2e-3})
     return scene, reference(scene)
 
 

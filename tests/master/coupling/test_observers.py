@@ -39,7 +39,7 @@ class Diary(Observer):
 
 def fallen(record_to: Path | None = None, *observers: Observer) -> Outcome:
     """2 ms of the smallest scene, the magnetic bearing already off."""
-    scene = load("disk-caged-simplified").with_settings({"run.duration": 2e-3, "run.macro_step": STEP})
+    scene = load("disk-caged-simplified").set({"run.duration": 2e-3, "run.macro_step": STEP})
     with opened(scene, in_process=True) as system:
         return simulate(scene, system, record_to, observers=observers)
 

@@ -20,9 +20,9 @@ END = 9.3e-3  # s after the shutdown; the first impact is over
 
 def disk(scheme: str, step: float, **settings: object) -> Scene:
     """The disk on its caged bearing, from just before the shutdown to just after the first impact."""
-    scene = load("disk-caged-simplified").with_setting("amb.shutdown_time", 1e-3)
+    scene = load("disk-caged-simplified").set({"amb.shutdown_time": 1e-3})
     given = {"duration": END, "stop_residual": 1e9, "scheme": scheme, "macro_step": step, **settings}
-    return scene.with_settings({f"run.{key}": value for key, value in given.items()})
+    return scene.set({f"run.{key}": value for key, value in given.items()})
 
 
 def ended(scene: Scene, in_process: bool = True) -> tuple[np.ndarray, float, Outcome]:
@@ -72,7 +72,7 @@ def test_a_leading_bearing_hands_over_the_next_load_without_moving_on() -> None:
     rotor = {"y": -0.305e-3, "vy": -0.05}
     scene = rotor_on("simplified_caged", rotor, duration=1.0, macro_step=2e-5)
     plain = open_system(scene, in_process=True)
-    leading = open_system(scene.with_setting("run.scheme", "jacobi-lead"), in_process=True)
+    leading = open_system(scene.set({"run.scheme": "jacobi-lead"}), in_process=True)
     bearings = [system.components["bearing"] for system in (plain, leading)]
     for system, bearing in zip((plain, leading), bearings, strict=True):
         system.initialise()
@@ -92,7 +92,7 @@ def test_a_leading_bearing_hands_over_the_next_load_without_moving_on() -> None:
 
 
 def test_a_shutdown_within_the_step_to_come_is_seen() -> None:
-    scene = disk("jacobi-lead", 1e-5).with_setting("amb.shutdown_time", 1.3e-5)
+    scene = disk("jacobi-lead", 1e-5).set({"amb.shutdown_time": 1.3e-5})
     system = open_system(scene, in_process=True)
     system.initialise()
     weight = 1.65 * 9.81
@@ -110,21 +110,21 @@ def test_all_at_once_with_longer_steps_of_the_bearings(exact: np.ndarray) -> Non
     """Bodies in small steps under bearings in long ones err as all of them do in long ones."""
     scene = disk("jacobi-lead", 5e-6)
     for name in ("bearing", "amb"):
-        scene = scene.with_setting(f"{name}.every", 4)
+        scene = scene.set({f"{name}.every": 4})
     assert error(ended(scene)[0], exact) < 1e-4
 
 
 def test_a_bearing_that_retires_leaves_no_load_behind() -> None:
     """The body takes a load one step late: also the last one, which is none."""
-    scene = disk("jacobi-interface", 1e-5).with_setting("amb.shutdown_time", 63e-5)
-    system = open_system(scene.with_setting("run.duration", 2e-3), in_process=True)
-    simulate(scene.with_setting("run.duration", 2e-3), system)
+    scene = disk("jacobi-interface", 1e-5).set({"amb.shutdown_time": 63e-5})
+    system = open_system(scene.set({"run.duration": 2e-3}), in_process=True)
+    simulate(scene.set({"run.duration": 2e-3}), system)
     assert "amb" in system.retired
     assert system.components["rotor"].read(["amb.fy"]) == [0.0]
 
 
 def test_a_bearing_that_cannot_lead_is_refused() -> None:
-    scene = disk("interface", 1e-5).with_setting("bearing.interface.lead", 1)
+    scene = disk("interface", 1e-5).set({"bearing.interface.lead": 1})
     with pytest.raises(TouchdownError, match=r"bearing\.interface\.lead follows from the scheme"):
         open_system(scene, in_process=True)
 
@@ -164,7 +164,7 @@ def test_halving_follows_its_tolerance() -> None:
     """Rotor I's two contacts act on each other, so its steps need dividing in the impact."""
     smallest, errors = [], []
     for tolerance in (1e-9, 1e-11):
-        scene = load("rotor1-9000").with_settings(
+        scene = load("rotor1-9000").set(
             {
                 "amb_A.shutdown_time": 2e-4,
                 "amb_B.shutdown_time": 2e-4,
@@ -188,7 +188,7 @@ def test_halving_follows_its_tolerance() -> None:
 
 def test_a_checkpoint_takes_a_whole_system_back_in_mid_contact() -> None:
     """Through FMUs: the same steps again give the same signals to the last bit."""
-    scene = disk("interface", 2e-5).with_setting("run.duration", 8.0e-3)
+    scene = disk("interface", 2e-5).set({"run.duration": 8.0e-3})
     system = open_system(scene)
     try:
         simulate(scene, system)
@@ -221,7 +221,7 @@ def test_fmus_that_cannot_be_taken_back_are_refused(scheme: str) -> None:
 def test_a_bearing_may_take_longer_steps_than_its_bodies(exact: np.ndarray, peak: float) -> None:
     scene = disk("interface", 1e-5)
     for name in ("bearing", "amb"):
-        scene = scene.with_setting(f"{name}.every", 4)
+        scene = scene.set({f"{name}.every": 4})
     found, force, outcome = ended(scene)
     assert error(found, exact) < 0.02
     assert force == pytest.approx(peak, rel=2e-3)
@@ -229,13 +229,13 @@ def test_a_bearing_may_take_longer_steps_than_its_bodies(exact: np.ndarray, peak
 
 
 def test_a_body_may_not_take_longer_steps_than_its_bearing() -> None:
-    scene = disk("interface", 1e-5).with_setting("rotor.every", 2)
+    scene = disk("interface", 1e-5).set({"rotor.every": 2})
     with pytest.raises(TouchdownError, match="must be a multiple of its body's"):
         simulate(scene, open_system(scene, in_process=True))
 
 
 def test_schemes_that_go_back_step_all_alike() -> None:
-    scene = disk("iterated", 1e-5).with_setting("bearing.every", 2)
+    scene = disk("iterated", 1e-5).set({"bearing.every": 2})
     with pytest.raises(TouchdownError, match=r"remove bearing\.every = 2"):
         simulate(scene, open_system(scene, in_process=True))
 
@@ -243,4 +243,4 @@ def test_schemes_that_go_back_step_all_alike() -> None:
 @pytest.mark.parametrize("value", [0, -1, 1.5, "two"])
 def test_a_multiple_is_a_whole_number(value: object) -> None:
     with pytest.raises(TouchdownError, match=r"bearing\.every"):
-        disk("interface", 1e-5).with_setting("bearing.every", value)
+        disk("interface", 1e-5).set({"bearing.every": value})

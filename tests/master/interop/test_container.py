@@ -21,7 +21,7 @@ EVERY = 5  # macro steps of the container in one of its host
 
 
 def dropped(**more: object) -> Scene:
-    return load("disk-caged-simplified").with_settings({**SETTINGS, **more})
+    return load("disk-caged-simplified").set({**SETTINGS, **more})
 
 
 @pytest.mark.parametrize(("scheme", "close"), [("interface", 1e-7), ("jacobi-lead", 0.0)])

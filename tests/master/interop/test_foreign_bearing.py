@@ -53,12 +53,12 @@ def test_without_its_names_every_missing_variable_is_named(folder: Path) -> None
     assert [problem.split()[0] for problem in report.problems] == expected
     assert "(input in m)" in report.problems[0]
     with pytest.raises(TouchdownError, match=r"has no variable journal\.x"):
-        open_system(load("rotor1-9000").with_swap("bearing_A", str(folder / "DryBushing.fmu")))
+        open_system(load("rotor1-9000").swap(bearing_A=str(folder / "DryBushing.fmu")))
 
 
 def test_rotor_1_drops_on_it(folder: Path) -> None:
     """Both ends touch their bushings, rebound, and are braked by friction."""
-    scene = load(str(folder / "rotor1-dry-bushings.toml")).with_settings(
+    scene = load(str(folder / "rotor1-dry-bushings.toml")).set(
         {"amb_A.shutdown_time": 0.0, "amb_B.shutdown_time": 0.0, "run.duration": 0.01}
     )
     names = [f"{part}.{name}" for part in ("rotor.A", "rotor.B") for name in ("y", "fy", "omega")]
@@ -73,11 +73,11 @@ def test_rotor_1_drops_on_it(folder: Path) -> None:
 
 
 def test_names_are_given_to_a_swap_and_survive_a_package(folder: Path, tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").with_swap("bearing", str(folder / "DryBushing.fmu"))
-    scene = scene.with_names("bearing", read_names(NAMES)).with_settings(
+    scene = load("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
+    scene = scene.with_names("bearing", read_names(NAMES)).set(
         {"amb.shutdown_time": 0.0, "run.duration": 0.01, "run.macro_step": 5e-5, "bearing.stiffness": 1e7}
     )
-    scene = scene.with_setting("run.record_every", 1)
+    scene = scene.set({"run.record_every": 1})
     again = load(str(write(scene, tmp_path / "own.ssp").path))
     assert again.components["bearing"].names == scene.components["bearing"].names
     watched = ["rotor.A.y", "bearing.journal.fy"]

@@ -31,7 +31,7 @@ WATCHED = ["rotor.A.x", "rotor.A.y", "bearing.journal.fx", "bearing.contact.peak
 
 def dropped() -> Scene:
     """A disk that drops at once and hits its bearing within the run."""
-    return load("disk-caged-simplified").with_settings(DROP)
+    return load("disk-caged-simplified").set(DROP)
 
 
 @pytest.fixture(scope="session")
@@ -70,7 +70,7 @@ def test_equal_scenes_give_equal_bytes(package: Path, tmp_path: Path) -> None:
 
 def test_connections_are_those_of_the_scheme(tmp_path: Path) -> None:
     """Of a flexible rotor's modes those in use, sensors and constants among them."""
-    scene = load("rotor1-9000").with_settings({"rotor.modes": 2, "run.duration": 1e-3})
+    scene = load("rotor1-9000").set({"rotor.modes": 2, "run.duration": 1e-3})
     path = write(scene, tmp_path / "rotor.ssp").path
     system = open_system(scene, in_process=True)
     try:
@@ -165,7 +165,7 @@ def test_macro_steps_of_their_own_and_scales_survive(tmp_path: Path) -> None:
 
 
 def test_settings_and_swaps_work_on_a_package(package: Path) -> None:
-    scene = load(str(package)).with_setting("rotor.mass", "2 kg").with_swap("bearing", "bushing")
+    scene = load(str(package)).set({"rotor.mass": "2 kg"}).swap(bearing="bushing")
     _, values, _ = history(scene, ["rotor.mass", "bearing.journal.fy"])
     assert values["rotor.mass"][-1] == 2.0
     assert np.max(values["bearing.journal.fy"]) > 100.0
@@ -265,7 +265,7 @@ def test_a_connection_is_converted_and_transformed(pack: Pack) -> None:
     scene = load(str(pack(foreign(wire))))
     assert scene.connect[-1].scale == (2.0, 3.0)
     settings = {"rotor.speed": 100.0, "run.duration": 4e-5, "run.macro_step": 2e-5}
-    _, values, _ = history(scene.with_settings(settings), ["bearing.journal.omega"], in_process=False)
+    _, values, _ = history(scene.set(settings), ["bearing.journal.omega"], in_process=False)
     assert values["bearing.journal.omega"][-1] == pytest.approx(203.0, abs=1e-6)
 
     units = (

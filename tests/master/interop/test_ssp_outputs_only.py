@@ -61,7 +61,7 @@ def landed(scene: Scene) -> list[float]:
 
 
 def test_it_runs_like_the_scene(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").with_settings({"amb.shutdown_time": 2e-3, "run.duration": 9e-3})
+    scene = load("disk-caged-simplified").set({"amb.shutdown_time": 2e-3, "run.duration": 9e-3})
     found = landed(load(str(write(scene, tmp_path / "disk.ssp", outputs_only=True).path)))
     assert found == landed(scene)
     assert found[-1] > 300.0

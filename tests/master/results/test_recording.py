@@ -82,7 +82,7 @@ def test_a_run_that_stops_can_be_read(tmp_path: Path) -> None:
     scene = scene.set({"run.duration": 0.02, "run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, tmp_path / "result.h5")
-    assert outcome.stopped_because
+    assert outcome.reason
     with xarray.open_datatree(tmp_path / "result.h5", engine="h5netcdf") as tree:
         assert 0.0 < tree["time"][-1] < 0.02
         assert tree["rotor"]["A.y"].sizes == {"time": tree.sizes["time"]}

@@ -28,9 +28,7 @@ REQUIRED = {
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
     """A short drop with everything written."""
-    scene = (
-        load("disk-caged-simplified").with_setting("run.duration", 0.2).with_setting("run.record_every", 2)
-    )
+    scene = load("disk-caged-simplified").set({"run.duration": 0.2, "run.record_every": 2})
     return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True)
 
 
@@ -97,7 +95,7 @@ def test_a_silent_run_has_no_frequency() -> None:
 
 
 def test_a_rerun_replaces_what_was_there(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").with_setting("run.duration", 0.002)
+    scene = load("disk-caged-simplified").set({"run.duration": 0.002})
     for _ in range(2):
         result = run_scene(scene, tmp_path, in_process=True, pictures=False)
     assert result.summary["first_contact_time_s"] is None

@@ -34,9 +34,9 @@ SHUTDOWN = 1e-3  # s
 
 def short(name: str, duration: float) -> Scene:
     """The drop of a rotor whose magnetic bearings shut down at once."""
-    scene = load(name).with_setting("run.duration", duration).with_setting("run.record_every", 1)
+    scene = load(name).set({"run.duration": duration, "run.record_every": 1})
     for bearing in ("amb_A", "amb_B"):
-        scene = scene.with_setting(f"{bearing}.shutdown_time", SHUTDOWN)
+        scene = scene.set({f"{bearing}.shutdown_time": SHUTDOWN})
     return scene
 
 
@@ -100,14 +100,14 @@ def test_the_summary_tells_the_stresses_at_the_kept_instant(drop: Drop) -> None:
 
 
 def test_no_stress_was_computed(tmp_path: Path) -> None:
-    scene = short("rotor2-case1", 1e-3).with_setting("rotor.stress.active", 0)
+    scene = short("rotor2-case1", 1e-3).set({"rotor.stress.active": 0})
     result = run_scene(scene, tmp_path, in_process=True)
     assert {result.summary[key] for key in KEYS} == {None}
     assert "stress.png" not in {p.name for p in result.pictures}
 
 
 def test_a_rigid_rotor_has_no_stresses(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").with_setting("run.duration", 1e-3)
+    scene = load("disk-caged-simplified").set({"run.duration": 1e-3})
     assert not run_scene(scene, tmp_path, in_process=True, pictures=False).summary.keys() & KEYS
 
 

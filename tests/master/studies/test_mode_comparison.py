@@ -58,7 +58,7 @@ def compared(modes: list[int]) -> Comparison:
     """Rotor I, levitated for 1 ms."""
     scene = load(ROTOR_I)
     for name in "AB":
-        scene = scene.with_setting(f"amb_{name}.shutdown_time", 1e-3)
+        scene = scene.set({f"amb_{name}.shutdown_time": 1e-3})
     calls: list[int] = []
     found = compare(scene, modes, 2e-6, done=lambda: calls.append(1))
     assert len(calls) == runs(modes)
@@ -190,7 +190,7 @@ def test_what_cannot_be_compared_is_one_line(
 
 
 def test_a_drop_that_never_lands() -> None:
-    scene = load(ROTOR_I).with_setting("run.duration", 1e-3)
+    scene = load(ROTOR_I).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
         compare(scene, [2], 1e-5)
 

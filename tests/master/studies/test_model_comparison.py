@@ -20,7 +20,7 @@ DISK = "disk-caged-simplified"
 
 
 def titles(name: str, **settings: object) -> list[str]:
-    return [v.title for v in variants(load(name).with_settings(settings))]
+    return [v.title for v in variants(load(name).set(settings))]
 
 
 def test_a_rigid_disk_has_no_modes_to_leave_out() -> None:
@@ -74,7 +74,7 @@ def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
 def disk() -> Comparison:
     scene = shortened(load(DISK))
     chosen = [v for v in variants(scene) if v.title != "detailed bearings"]  # slow to compile
-    early = scene.with_setting("run.macro_step", 1.0)
+    early = scene.set({"run.macro_step": 1.0})
     begun: list[str] = []
     chosen.append(Variant("impossible", early))
     found = compare(scene, chosen, 3e-3, 1, True, begun.append)
@@ -125,7 +125,7 @@ def test_only_what_is_cheap_and_faster_is_advised(disk: Comparison) -> None:
 
 
 def test_a_drop_that_never_lands() -> None:
-    scene = load(DISK).with_setting("run.duration", 1e-3)
+    scene = load(DISK).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
         compare(scene, [])
 

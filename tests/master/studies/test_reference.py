@@ -75,9 +75,9 @@ def test_many_states_take_explicit_solvers() -> None:
 
 
 def test_levitation_is_shortened_by_the_same_for_all() -> None:
-    scene = load("rotor1-9000").with_setting("amb_B.shutdown_time", "25 ms")
+    scene = load("rotor1-9000").set({"amb_B.shutdown_time": "25 ms"})
     with opened(shortened(scene), in_process=True) as system:
         assert system.value("amb_A.shutdown_time") == pytest.approx(SHORT)
         assert system.value("amb_B.shutdown_time") == pytest.approx(SHORT + 5e-3)
-    early = scene.with_setting("amb_A.shutdown_time", "1 ms")
+    early = scene.set({"amb_A.shutdown_time": "1 ms"})
     assert shortened(early) is early

@@ -141,7 +141,7 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
 
 
 def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
-    scene = load(SCENE).with_setting("run.duration", 2e-3)
+    scene = load(SCENE).set({"run.duration": 2e-3})
     steps = []
     members = sweep(
         scene, {"rotor.mass": [1.0, "2000 g"]}, tmp_path, keep=True, done=lambda: steps.append(1)
@@ -164,7 +164,7 @@ def test_a_process_that_dies_is_one_failed_member(monkeypatch: pytest.MonkeyPatc
     """It takes the pool along; the others are run again."""
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT / 'src'}")
     (tmp_path / "sitecustomize.py").write_text(DIES)
-    scene = load(SCENE).with_setting("run.duration", 2e-3)
+    scene = load(SCENE).set({"run.duration": 2e-3})
     members = sweep(scene, {"rotor.mass": [1.0, 2.0, 3.0]}, tmp_path / "out", in_process=True)
     assert [m.failed for m in members] == ["", "its process died", ""]
     assert [bool(m.summary) for m in members] == [True, False, True]

@@ -133,7 +133,7 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_a_drop_that_never_lands() -> None:
-    scene = load(SCENE).with_setting("run.duration", 1e-3)
+    scene = load(SCENE).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
         compare(scene, Asked())
 

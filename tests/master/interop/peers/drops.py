@@ -44,7 +44,7 @@ class Fall:
 
     def with_scheme(self, scheme: str) -> Scene:
         """The scene coupled by `scheme`."""
-        return self.scene.with_setting("run.scheme", scheme)
+        return self.scene.set({"run.scheme": scheme})
 
     def package(self, scheme: str, folder: Path) -> Path:
         """An SSP package for tools that connect outputs only."""
@@ -78,13 +78,13 @@ class Fall:
 def disk(levitated: float = LEVITATED) -> Fall:
     """The rigid disk on a simplified caged bearing, held for `levitated` (s): four FMUs."""
     settings = {"amb.shutdown_time": levitated, "run.duration": AT, "run.macro_step": STEP}
-    return Fall(load("disk-caged-simplified").with_settings(settings), ("rotor.A",), ("bearing",))
+    return Fall(load("disk-caged-simplified").set(settings), ("rotor.A",), ("bearing",))
 
 
 def rotor(levitated: float = LEVITATED) -> Fall:
     """Rotor I, flexible, on two simplified caged bearings, held for `levitated` (s): seven FMUs."""
-    scene = dropped().with_setting("run.macro_step", STEP)
-    scene = scene.with_settings({f"amb_{end}.shutdown_time": levitated for end in "AB"})
+    scene = dropped().set({"run.macro_step": STEP})
+    scene = scene.set({f"amb_{end}.shutdown_time": levitated for end in "AB"})
     return Fall(scene, ("rotor.A", "rotor.B"), ("bearing_A", "bearing_B"))
 
 

@@ -169,7 +169,7 @@ def test_zooms_of_short_runs_do_not_repeat() -> None:
 )
 @pytest.mark.parametrize("duration", [0.05, 0.002])
 def test_a_short_run_has_its_pictures(name: str, more: set[str], duration: float, tmp_path: Path) -> None:
-    scene = load(name).with_setting("run.duration", duration)
+    scene = load(name).set({"run.duration": duration})
     pictures = run_scene(scene, tmp_path, in_process=True).pictures
     assert {p.name for p in pictures} == {"orbit.png", "force.png", "speeds.png", "energy.png"} | more
     for picture in pictures:
