@@ -28,7 +28,7 @@ from touchdown.bearings.contact.pair import INSIDE, Place, press
 from touchdown.bearings.rolling.bodies.race import Race, press_race
 from touchdown.bearings.rolling.bodies.state import ball_motion, balls_of
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.modelkit.instance import Instance
 
 MODULES = {"cageless": detailed_cageless, "caged": detailed_caged}
@@ -270,7 +270,7 @@ def whole_drops(repeat: int) -> None:
         runner = Runner("", kept(module), 2e-6)
         runner.run(module, 1e-5)
         mono = statistics.median(runner.run(module, 5.0, falling=True)[1] for _ in range(repeat)) / 5.0
-        scene = load(f"disk-{name}-detailed")
+        scene = load_scene(f"disk-{name}-detailed")
         costs = []
         for _ in range(repeat):
             system = open_system(scene)

@@ -17,7 +17,7 @@ import time as clock
 from touchdown.master.components.twin import TwinComponent
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
 
@@ -80,7 +80,7 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=0.3, help="s")
     parser.add_argument("--pairs", type=int, default=5)
     options = parser.parse_args()
-    scene = load(options.scene).set({"run.duration": options.duration})
+    scene = load_scene(options.scene).set({"run.duration": options.duration})
     scene = scene.set({"run.stop_residual": 1e9})
     if options.macro_step is not None:
         scene = scene.set({"run.macro_step": options.macro_step})

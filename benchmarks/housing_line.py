@@ -19,7 +19,7 @@ import numpy as np
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 
@@ -65,7 +65,7 @@ def main() -> None:
     parser.add_argument("--scene", default="disk-cageless-detailed")
     parser.add_argument("--duration", type=float, default=3.0, help="s")
     options = parser.parse_args()
-    scene = load(options.scene).set({"run.duration": options.duration})
+    scene = load_scene(options.scene).set({"run.duration": options.duration})
     system, time, rows = simulated(scene)
     mass = 1.65 + system.value("housing.mass") + system.value("housing.outer_ring")
     together = math.sqrt(system.value("housing.stiffness") / mass) / (2.0 * math.pi)

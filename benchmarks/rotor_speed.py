@@ -20,7 +20,7 @@ import numpy as np
 
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 
@@ -79,7 +79,7 @@ def main() -> None:
     print(f"{'':<22}{'':>12}{'error at':>11}{'wall time over simulated time':>36}")
     print(f"{'scene':<22}{'macro step':>12}{'9 ms [um]':>11}{'FMUs':>9}{'recorded':>12}{'in process':>15}")
     for name in SCENES:
-        scene = load(name)
+        scene = load_scene(name)
         cost(scene.set({"run.duration": 0.01}), False, True)  # compiles
         exact = reference(short(scene))
         for step in STEPS:

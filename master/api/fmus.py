@@ -51,7 +51,7 @@ def check(fmu: scenes.Path, role: str | None = None, names: Mapping[str, str] | 
 
 
 def _recipe(name: str) -> Recipe:
-    found = locate(name)
-    if not isinstance(found, Recipe):
+    recipe = locate(name)
+    if not isinstance(recipe, Recipe):
         raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
-    return found
+    return recipe

@@ -15,7 +15,7 @@ import numpy as np
 from touchdown.master.api import scenes
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
-from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, table
+from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
 from touchdown.modelkit.kernel import user_cache
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
@@ -74,8 +74,8 @@ class Rotor(Shaft):
 
         Raises TouchdownError where there are not so many modes.
         """
-        found = described(self, speed, modes)
-        return found.backward[0], found.forward[0]
+        portrait = described(self, speed, modes)
+        return portrait.backward[0], portrait.forward[0]
 
     @property
     def plot(self) -> RotorPlot:
@@ -113,7 +113,7 @@ class Rotor(Shaft):
             raise TouchdownError(str(error)) from None
 
     def __repr__(self) -> str:
-        return table(described(self, SPEED, MODES))
+        return report_text(described(self, SPEED, MODES))
 
 
 class RotorPlot:
@@ -145,7 +145,7 @@ class RotorPlot:
         from touchdown.master.studies.rotor.figure import rest
         from touchdown.master.studies.rotor.report import NO_REST
 
-        found = self._portrait()
-        if found.rest is None:
+        portrait = self._portrait()
+        if portrait.rest is None:
             raise TouchdownError(NO_REST.replace("no rest.png: it", "this picture"))
-        return rest(drawable(figure), found)
+        return rest(drawable(figure), portrait)

@@ -29,7 +29,7 @@ def load(name_or_path: Path) -> Scene:
     >>> scene.run.duration  # s
     5.0
     """
-    return anywhere.load(os.fspath(name_or_path))
+    return anywhere.find_scene(os.fspath(name_or_path))
 
 
 def as_scene(scene: Path | Scene) -> Scene:

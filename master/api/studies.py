@@ -19,6 +19,7 @@ from touchdown.master.studies.schemes import compare as schemes_study
 from touchdown.master.studies.schemes.compare import STEPS, Asked, Comparison, pieces
 from touchdown.master.studies.sweep import sweep as sweep_study
 from touchdown.master.studies.sweep.report import Member
+from touchdown.master.studies.sweep.sweep import Execution
 
 
 def sweep(
@@ -46,7 +47,7 @@ def sweep(
     kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
     with kept as where, tqdm(total=total, desc="runs", disable=not progress, leave=False) as bar:
         return sweep_study.sweep(
-            as_scene(scene), variations, Path(where), jobs, in_process, done=bar.update
+            as_scene(scene), variations, Path(where), jobs, Execution(in_process), bar.update
         )
 
 
@@ -65,8 +66,8 @@ def compare(
     monolithic solutions; `rows` has them in SI, with the wall time, `recommended()` is the cheapest that is
     good enough. Raises TouchdownError where nothing touches.
 
-    >>> found = touchdown.compare("disk-caged-simplified", ["hold"], ["100 us"], in_process=True)
-    >>> 1e-6 < found.rows[0].errors["position"] < 1e-5  # m
+    >>> comparison = touchdown.compare("disk-caged-simplified", ["hold"], ["100 us"], in_process=True)
+    >>> 1e-6 < comparison.rows[0].errors["position"] < 1e-5  # m
     True
     """
     asked = Asked(
@@ -82,4 +83,4 @@ def compare(
             bar.set_description(what)
             bar.update()
 
-        return schemes_study.compare(chosen, asked, begin)
+        return schemes_study.compare_schemes(chosen, asked, begin)

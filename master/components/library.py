@@ -36,7 +36,7 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
     return recipe(fmu)
 
 
-def load(name: str, fmu: str, folder: Path = Path(), in_process: bool = False) -> Component:
+def load_component(name: str, fmu: str, folder: Path = Path(), in_process: bool = False) -> Component:
     """A component: an FMU, or, where asked for and possible, its model stepped in process."""
     found = locate(fmu, folder)
     if isinstance(found, Path):

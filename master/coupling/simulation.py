@@ -14,7 +14,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.components.component import Component
-from touchdown.master.components.library import load
+from touchdown.master.components.library import load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.ledger import Judge, Ledger
 from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
@@ -57,7 +57,7 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
     def load_one(name: str, fmu: str) -> Component:
-        return load(name, fmu, scene.folder, in_process)
+        return load_component(name, fmu, scene.folder, in_process)
 
     return assemble(scene, load_one)
 

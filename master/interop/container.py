@@ -29,7 +29,7 @@ SEQUENTIAL = {"gauss-seidel": True, "jacobi": False}  # how a container steps, b
 DESCRIPTION = "modelDescription.xml"
 
 
-def write(scene: Scene, path: Path) -> Path:
+def write_container(scene: Scene, path: Path) -> Path:
     """Write `scene` to `path` (.fmu); returns it. Raises TouchdownError where it cannot."""
     sequence = scene.run.scheme.sequence
     if sequence not in SEQUENTIAL:

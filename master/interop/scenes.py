@@ -9,9 +9,9 @@ from touchdown.master.scene import file
 from touchdown.master.scene.scene import Scene
 
 
-def load(name: str) -> Scene:
+def find_scene(name: str) -> Scene:
     """A scene of the project's by name, or of the user's by the path of a .toml or an SSP package (.ssp).
 
     Raises TouchdownError where there is none, or it has a mistake.
     """
-    return read(Path(name)) if name.endswith(".ssp") else file.load(name)
+    return read(Path(name)) if name.endswith(".ssp") else file.load_scene(name)

@@ -57,7 +57,7 @@ def shipped() -> dict[str, Path]:
     return {path.stem: path for path in sorted(SHIPPED.rglob("*.toml"), key=lambda path: path.stem)}
 
 
-def load(name: str) -> Scene:
+def load_scene(name: str) -> Scene:
     """A scene of the project's by name, or of the user's by the path of a TOML file."""
     path = locate(name)
     return parse(tables(path), path.stem, path.parent)

@@ -76,10 +76,10 @@ def add_quiet(verb: argparse.ArgumentParser) -> None:
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
-    from touchdown.master.interop.scenes import load
+    from touchdown.master.interop.scenes import find_scene
     from touchdown.master.scene.file import read_names
 
-    chosen = load(options.scene)
+    chosen = find_scene(options.scene)
     for text in options.swap:
         name, fmu = assignment(text, "--swap")
         chosen = chosen.swap(**{name: fmu})

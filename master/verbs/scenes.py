@@ -32,16 +32,16 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.interop.scenes import load
+    from touchdown.master.interop.scenes import find_scene
     from touchdown.master.scene.file import shipped
 
     if options.scene is None:
         names = shipped()
         width = max(len(name) for name in names)
         for name in names:
-            print(f"  {name:<{width}}  {load(name).title}")
+            print(f"  {name:<{width}}  {find_scene(name).title}")
         return 0
-    chosen = load(options.scene)
+    chosen = find_scene(options.scene)
     print(chosen.title)
     print(chosen.about.strip())
     print(

@@ -7,7 +7,7 @@ import pytest
 from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
 STIFFNESS = {  # inner, outer, series in 1e10 N/m^1.5, by (2.43)-(2.46) as corrected
     "6004": (2.322, 2.436, 0.841),
@@ -38,7 +38,7 @@ def test_the_parts_fit_together(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(CATALOGUE))
 def test_a_preset_reaches_the_component(name: str) -> None:
-    scene = load("disk-caged-simplified").set({"bearing.preset": name})
+    scene = load_scene("disk-caged-simplified").set({"bearing.preset": name})
     system = open_system(scene.set({"bearing.balls.play": 1e-6}), in_process=True)
     assert system.value("bearing.balls.count") == CATALOGUE[name].balls.count
     assert system.value("bearing.balls.rows") == CATALOGUE[name].balls.rows
@@ -48,4 +48,4 @@ def test_a_preset_reaches_the_component(name: str) -> None:
 
 def test_an_unknown_preset_is_named() -> None:
     with pytest.raises(TouchdownError, match="no preset 6005"):
-        load("disk-caged-simplified").set({"bearing.preset": "6005"})
+        load_scene("disk-caged-simplified").set({"bearing.preset": "6005"})

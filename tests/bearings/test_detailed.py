@@ -17,7 +17,7 @@ from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.modelkit.instance import Instance
@@ -125,7 +125,7 @@ def test_a_turned_frame_turns_the_accelerations(name: str, angle: float) -> None
 
 def drop(name: str, duration: float, **settings: object) -> Scene:
     """The disk's scene of a model, shortened, with settings written `bearing__micro_step`."""
-    scene = load(SCENES[name]).set({"run.duration": duration})
+    scene = load_scene(SCENES[name]).set({"run.duration": duration})
     for key, value in settings.items():
         scene = scene.set({key.replace("__", "."): value})
     return scene
@@ -199,7 +199,7 @@ TABLE_7 = {
 @every_model
 def test_table_7(name: str) -> None:
     """At the first impact, medians over seven starts 1e-7 rad apart."""
-    start = open_system(load(SCENES[name]), in_process=True).value("bearing.balls.first_angle")
+    start = open_system(load_scene(SCENES[name]), in_process=True).value("bearing.balls.first_angle")
     ends = [finished(drop(name, 0.0095, bearing__balls__first_angle=start + 1e-7 * k)) for k in range(7)]
     for contact, (expected, tolerance) in TABLE_7[name].items():
         found = np.median([1e6 * end.value(f"bearing.{contact}.peak_indentation") for end in ends])

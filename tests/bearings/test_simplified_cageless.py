@@ -13,7 +13,7 @@ from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.pitch_circle import rolling_drag
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.angles import cosine_and_sine
 
@@ -30,7 +30,7 @@ def finished(scene: Scene) -> System:
 
 def drop(**settings: object) -> System:
     """The disk 9 ms after the shutdown, just past the first impact."""
-    scene = load(SCENE).set({"run.duration": 9e-3, "run.macro_step": 4e-5})
+    scene = load_scene(SCENE).set({"run.duration": 9e-3, "run.macro_step": 4e-5})
     for key, value in settings.items():
         scene = scene.set({f"bearing.{key.replace('__', '.')}": value})
     return finished(scene)

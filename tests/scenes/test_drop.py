@@ -11,7 +11,7 @@ from systems import run_to_end
 
 from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 
@@ -22,12 +22,12 @@ JOURNAL = ["rotor.A.x", "rotor.A.y"]
 @pytest.fixture(scope="module", params=[CAGED, CAGELESS])
 def first_impact(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> dict:
     """Summary of the first 30 ms through FMUs."""
-    scene = load(request.param).set({"run.duration": 0.03})
+    scene = load_scene(request.param).set({"run.duration": 0.03})
     return run_to_end(scene, tmp_path_factory.mktemp("drop"), in_process=False)
 
 
 def test_the_first_contact_comes_when_the_gap_is_fallen(first_impact: dict, tmp_path: Path) -> None:
-    scene = load(first_impact["scene"]).set({"run.duration": 0.01})
+    scene = load_scene(first_impact["scene"]).set({"run.duration": 0.01})
     system = open_system(scene, in_process=True)
     simulate(scene, system)
     gap = -system.value("bearing.contact.first_y")
@@ -49,7 +49,7 @@ def test_table_7(first_impact: dict) -> None:
 def test_force_on_the_worst_ball_doubles_with_the_cage() -> None:
     peaks = []
     for name in (CAGED, CAGELESS):
-        scene = load(name).set({"run.duration": 0.012})
+        scene = load_scene(name).set({"run.duration": 0.012})
         system = open_system(scene, in_process=True)
         simulate(scene, system)
         peaks.append(system.value("bearing.balls.peak_force"))
@@ -86,7 +86,7 @@ def sampled(scene: Scene, times: np.ndarray) -> np.ndarray:
 @pytest.fixture(scope="module")
 def reference() -> tuple[np.ndarray, np.ndarray]:
     """The caged drop solved as one system of equations by two solvers that agree."""
-    scene = load(CAGED).set({"run.duration": 0.02})
+    scene = load_scene(CAGED).set({"run.duration": 0.02})
     times = np.linspace(1e-3, 20e-3, 20)
     first = Monolith(scene).solve(times, JOURNAL, 1e-9, "DOP853")
     second = Monolith(scene).solve(times, JOURNAL, 1e-8, "Radau")
@@ -101,7 +101,7 @@ def test_large_macro_steps_follow_the_monolithic_solution(
 ) -> None:
     """Within 1e-3 um over the first 20 ms, whatever the macro step."""
     times, exact = reference
-    scene = load(CAGED).set({"run.duration": 0.02, "run.macro_step": step})
+    scene = load_scene(CAGED).set({"run.duration": 0.02, "run.macro_step": step})
     found = sampled(scene, times)
     assert np.max(np.abs(found - exact)) < 1e-9
 
@@ -109,7 +109,7 @@ def test_large_macro_steps_follow_the_monolithic_solution(
 def test_held_motion_errs_a_thousand_times_more(reference: tuple[np.ndarray, np.ndarray]) -> None:
     """The comparison can fail: plain hold at the same step does."""
     times, exact = reference
-    scene = load(CAGED).set({"run.duration": 0.02, "run.macro_step": 1e-5})
+    scene = load_scene(CAGED).set({"run.duration": 0.02, "run.macro_step": 1e-5})
     scene = scene.set({"run.scheme": "hold", "run.stop_residual": 1e9})
     assert np.max(np.abs(sampled(scene, times) - exact)) > 1e-6
 
@@ -127,7 +127,7 @@ def test_what_five_seconds_bring(
     With no play and no ball off the pitch circle, half of the 17 balls are loaded at any time, 8 or 9;
     the 7 of the source's Fig 27 are the detailed model's.
     """
-    summary = run_to_end(load(name), tmp_path)
+    summary = run_to_end(load_scene(name), tmp_path)
     assert 0.07 < float(summary["ring_sync_time_s"]) < 0.15  # type: ignore[arg-type]
     assert pendulum[0] < float(summary["pendulum_frequency_Hz"]) < pendulum[1]  # type: ignore[arg-type]
     assert summary["rotor_speed_end_rpm"] == pytest.approx(speed, abs=15.0)
@@ -137,7 +137,7 @@ def test_what_five_seconds_bring(
 
 def test_the_linearly_implicit_steps_follow_an_explicit_solution() -> None:
     """The cageless bearing, stepped with its stiff friction implicit, against DOP853 on all equations."""
-    scene = load(CAGELESS).set({"run.duration": 0.02, "run.macro_step": 1e-4})
+    scene = load_scene(CAGELESS).set({"run.duration": 0.02, "run.macro_step": 1e-4})
     scene = scene.set({"bearing.micro_step": 0.0})
     times = np.linspace(1e-3, 20e-3, 20)
     solution = Monolith(scene).solve(times, JOURNAL, 1e-6, "DOP853")

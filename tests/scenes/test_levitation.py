@@ -9,7 +9,7 @@ from systems import GRAVITY, history
 
 from touchdown.master.common.units import to_si
 from touchdown.master.coupling.simulation import open_system
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import load as load_rotor
@@ -34,7 +34,7 @@ def shaft(name: str) -> Shaft:
 
 def full_speed(name: str) -> float:
     """rad/s, as the scene says."""
-    return to_si(load(name).components["rotor"].set["speed"], "rad/s", "rotor.speed")
+    return to_si(load_scene(name).components["rotor"].set["speed"], "rad/s", "rotor.speed")
 
 
 def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarray:
@@ -42,7 +42,7 @@ def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarra
 
     The equations of `rotor.motion.equations` with the law of `bearings.amb`, about the rotor at rest.
     """
-    rotor, scene = shaft(name), load(name)
+    rotor, scene = shaft(name), load_scene(name)
     d = prepare(rotor, modes, residual, rotor.damping_ratio, GRAVITY, 0)
     n = d.modes
     p, v = slice(0, n), slice(n, 2 * n)
@@ -84,7 +84,7 @@ def test_a_control_that_is_not_stable_is_found(name: str) -> None:
 
 def levitated(name: str, modes: int = 0, **shutdown: float) -> Scene:
     """The scene with its own macro step, up to 1 ms after the (first) shutdown at A."""
-    scene = load(name).set({"rotor.modes": modes, "run.duration": 1e-3})
+    scene = load_scene(name).set({"rotor.modes": modes, "run.duration": 1e-3})
     for end in ENDS:
         scene = scene.set({f"amb_{end}.shutdown_time": shutdown.get(end, UP_TO)})
     return scene

@@ -13,7 +13,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.rotor.file import shipped
 
@@ -50,7 +50,7 @@ def scene_of(folder: Path, text: str) -> Scene:
     """A scene from TOML in `folder`."""
     path = folder / "scene.toml"
     path.write_text(text, encoding="utf-8")
-    return load(str(path))
+    return load_scene(str(path))
 
 
 ON_BUSHINGS = """
@@ -176,7 +176,7 @@ def test_a_mistake_in_a_rotor_file_is_one_line(
 )
 def test_settings_that_cannot_be(tmp_path: Path, setting: tuple[str, object], named: str) -> None:
     with pytest.raises(TouchdownError, match=named):
-        run_scene(load("rotor1-9000").set(dict([setting])), tmp_path, in_process=True, pictures=False)
+        run_scene(load_scene("rotor1-9000").set(dict([setting])), tmp_path, in_process=True, pictures=False)
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,7 @@ modes = 3
 fmu = "bushing"
 """,
     )
-    base = load("rotor1-9000")
+    base = load_scene("rotor1-9000")
     assert scene.run.duration == 0.25
     assert scene.run.macro_step == base.run.macro_step
     assert scene.components["rotor"].set == {**base.components["rotor"].set, "modes": 3}
@@ -237,7 +237,7 @@ def test_a_scene_that_extends_what_it_cannot(tmp_path: Path, base: str, named: s
 
 def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
     """Figures that need more are left out; what is there is what a full recording has."""
-    scene = load("rotor1-9000").set({"run.duration": 1e-3})
+    scene = load_scene("rotor1-9000").set({"run.duration": 1e-3})
     for name in ("amb_A", "amb_B"):
         scene = scene.set({f"{name}.shutdown_time": 4e-3})
     everything = run_scene(scene, tmp_path / "all", in_process=True, pictures=False)
@@ -258,7 +258,7 @@ def test_only_what_is_asked_for_is_recorded(tmp_path: Path) -> None:
 
 def test_a_bearing_that_is_done_keeps_its_last_values(tmp_path: Path) -> None:
     """After the shutdown the magnetic bearings are not stepped; their columns go on with what they gave."""
-    scene = load("rotor1-9000").set({"run.duration": 8e-3})
+    scene = load_scene("rotor1-9000").set({"run.duration": 8e-3})
     for name in ("amb_A", "amb_B"):
         scene = scene.set({f"{name}.shutdown_time": 2e-3})
     result = run_scene(scene, tmp_path, in_process=True, pictures=False)

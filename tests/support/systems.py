@@ -9,7 +9,7 @@ import numpy as np
 
 from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
 
@@ -52,7 +52,7 @@ def rotor_on(
 
 def dropped(modes: int = 5) -> Scene:
     """Rotor I from 9000 rpm into two simplified caged bearings, up to just after the first impacts."""
-    scene = load("rotor1-9000")
+    scene = load_scene("rotor1-9000")
     for end in "AB":
         scene = scene.swap(**{f"bearing_{end}": "simplified_caged"})
         for name, value in CAGED.items():

@@ -60,7 +60,7 @@ def _content(element: Element, inline: str, root: str, folder: Path, where: str)
     source = element.get("source")
     if not source:
         return xml.child(element, inline)
-    return xml.load(xml.inside(folder, source, where), f"{where}: {source}", root)
+    return xml.read_xml(xml.inside(folder, source, where), f"{where}: {source}", root)
 
 
 def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:

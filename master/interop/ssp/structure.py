@@ -72,7 +72,7 @@ class Structure:
 
 def read(folder: Path, where: str) -> Structure:
     """The structure of an unpacked package. Raises TouchdownError for what cannot be run."""
-    root = xml.load(folder / HEART, f"{where}: {HEART}", "ssd:SystemStructureDescription")
+    root = xml.read_xml(folder / HEART, f"{where}: {HEART}", "ssd:SystemStructureDescription")
     version = root.get("version", "")
     if not version.startswith("1."):
         raise TouchdownError(f"{where} is SSP {version or 'of no version'}; SSP 1.0 is needed")

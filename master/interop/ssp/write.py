@@ -44,7 +44,7 @@ class Written:
     connections: int
 
 
-def write(scene: Scene, path: Path, outputs_only: bool = False) -> Written:
+def write_package(scene: Scene, path: Path, outputs_only: bool = False) -> Written:
     """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot.
 
     With `outputs_only` constants, which are calculated parameters, are not connected.

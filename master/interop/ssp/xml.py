@@ -29,7 +29,7 @@ def child(element: Element, path: str) -> Element | None:
     return element.find(path, NAMESPACES)
 
 
-def load(path: Path, where: str, root: str) -> Element:
+def read_xml(path: Path, where: str, root: str) -> Element:
     """The root element of a file, which must be `root` (PREFIX:NAME). Raises TouchdownError."""
     try:
         content = path.read_bytes()

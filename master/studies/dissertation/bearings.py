@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
 STEP_APART = 1e-7  # rad
@@ -131,7 +131,7 @@ OPTIONS: tuple[tuple[str, str, Mapping[str, object]], ...] = (
 
 def member(model: str, number: int, duration: float, settings: Mapping[str, object] | None = None) -> Scene:
     """One of a model's ensemble."""
-    scene = load(SCENES[model]).set({"run.duration": duration})
+    scene = load_scene(SCENES[model]).set({"run.duration": duration})
     angle = float(open_system(scene, in_process=True).value("bearing.balls.first_angle"))
     scene = scene.set({"bearing.balls.first_angle": angle + STEP_APART * number})
     for name, value in (settings or {}).items():
@@ -149,14 +149,14 @@ def summary_of(scene: Scene) -> dict[str, object]:
 
 def summaries(scenes: Sequence[Scene], done: Callable[[], object]) -> list[dict[str, object]]:
     """Figures of all scenes, run beside each other; done() after each."""
-    found = []
+    figures = []
     with ProcessPoolExecutor(min(len(scenes), os.cpu_count() or 1)) as pool:
         for summary in pool.map(summary_of, scenes):
             if summary.get("stopped_because"):
                 raise TouchdownError(f"a run stopped: {summary['stopped_because']}")
-            found.append(summary)
+            figures.append(summary)
             done()
-    return found
+    return figures
 
 
 def values_of(ensemble: Sequence[Mapping[str, object]], key: str) -> list[float]:
@@ -189,7 +189,7 @@ def row_lines(rows: Sequence[Row], ensembles: Mapping[str, Sequence[Mapping[str,
 
 def count_lines() -> list[str]:
     """Tables 5 and 6: what each model counts, and the source's number where it differs."""
-    systems = {model: open_system(load(scene), in_process=True) for model, scene in SCENES.items()}
+    systems = {model: open_system(load_scene(scene), in_process=True) for model, scene in SCENES.items()}
     for system in systems.values():
         system.initialise()
     lines = [f"{'':<22}" + "".join(f"{model:>21}" for model in SCENES)]
@@ -210,10 +210,10 @@ def option_lines(
 ) -> list[str]:
     """What each option of section 5.3, and damping by ratio, changes in Table 7: medians of ensembles."""
     scenes = [member(m, k, duration, settings) for _, m, settings in OPTIONS for k in range(members)]
-    found = summaries(scenes, done)
+    figures = summaries(scenes, done)
     lines = []
     for i, (label, model, _) in enumerate(OPTIONS):
-        changed, changes = found[i * members : (i + 1) * members], []
+        changed, changes = figures[i * members : (i + 1) * members], []
         for row in TABLE_7:
             before, after = values_of(plain[model], row.key), values_of(changed, row.key)
             if before and after:
@@ -224,13 +224,13 @@ def option_lines(
     return lines
 
 
-def compare(
+def compare_bearings(
     duration: float, members: int, options: bool, folder: Path, done: Callable[[], object] = lambda: None
 ) -> str:
     """Run everything, write bearings.json and bearings.txt into `folder`; returns the text."""
     scenes = [member(model, k, duration) for model in SCENES for k in range(members)]
-    found = summaries(scenes, done)
-    ensembles = {m: found[i * members : (i + 1) * members] for i, m in enumerate(SCENES)}
+    figures = summaries(scenes, done)
+    ensembles = {m: figures[i * members : (i + 1) * members] for i, m in enumerate(SCENES)}
     lines = [
         f"{members} drops of {duration:g} s per model, balls {STEP_APART:g} rad apart at the start:",
         "median, smallest and largest, the source's value, deviation of the median, what it hinges on",

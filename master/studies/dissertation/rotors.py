@@ -18,9 +18,9 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import lines as tallest
 from touchdown.master.results.spectra import on_grid, waterfall
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.sweep.report import Member
-from touchdown.master.studies.sweep.sweep import sweep
+from touchdown.master.studies.sweep.sweep import Execution, sweep
 
 SEATS = ("A", "B")
 NO_LIMIT = {"run.stop_residual": 1000.0}  # of a whirl, which moves joules where falling gives less
@@ -79,14 +79,14 @@ def phases(members: int) -> dict[str, list[str]]:
 
 def verdicts(ensemble: Sequence[Member]) -> str:
     """How often which verdict came, of the seat that whirls more."""
-    found: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for member in ensemble:
         if member.failed:
-            found[f"failed: {member.failed}"] += 1
+            counts[f"failed: {member.failed}"] += 1
             continue
         worst = max(SEATS, key=lambda seat: _turns(member.summary, seat))
-        found[str(member.summary[f"whirl_{worst}"])] += 1
-    return ", ".join(f"{count} x {words}" for words, count in found.most_common())
+        counts[str(member.summary[f"whirl_{worst}"])] += 1
+    return ", ".join(f"{count} x {words}" for words, count in counts.most_common())
 
 
 def _turns(summary: Mapping[str, object], seat: str) -> float:
@@ -110,8 +110,8 @@ def fig_14(members: int, folder: Path, jobs: int, done: Callable[[], object]) ->
     for rpm in (9000, 18000):
         for offset, source in FIG_14.items():
             name = f"rotor1-{rpm}" + (f"-{offset}um" if offset else "")
-            scene = load(name).set({"run.duration": 0.5, **NO_LIMIT})
-            ensemble = sweep(scene, phases(members), folder / name, jobs, in_process=True, done=done)
+            scene = load_scene(name).set({"run.duration": 0.5, **NO_LIMIT})
+            ensemble = sweep(scene, phases(members), folder / name, jobs, Execution(in_process=True), done)
             turns, force = (
                 spread(ensemble, key) for key in ("whirl_A_revolutions", "peak_contact_force_N_bearing_A")
             )
@@ -131,9 +131,9 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
             numbers = "".join(f"{value:>26.4g}" for value in values)
             lines.append(f"{'case ' + row.case + ', source':<32}{numbers}   {verdict}")
             seen = row.case
-        scene = load(f"rotor2-case{row.case}").set({**row.settings, **NO_LIMIT})
+        scene = load_scene(f"rotor2-case{row.case}").set({**row.settings, **NO_LIMIT})
         name = f"table4-{number}-case{row.case}"
-        ensemble = sweep(scene, phases(members), folder / name, jobs, in_process=True, done=done)
+        ensemble = sweep(scene, phases(members), folder / name, jobs, Execution(in_process=True), done)
         numbers = "".join(f"{spread(ensemble, key):>26}" for key in COLUMNS)
         lines.append(f"  {row.reading:<30}{numbers}   {verdicts(ensemble)}")
     return lines
@@ -141,7 +141,7 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
 
 def run_down(folder: Path) -> list[str]:
     """Rotor I over 16 s, and the tallest lines of its velocity at A in the first and the last 2 s."""
-    result = run_scene(load("rotor1-waterfall"), folder / "rotor1-waterfall")
+    result = run_scene(load_scene("rotor1-waterfall"), folder / "rotor1-waterfall")
     if result.ended is not Ended.COMPLETED:
         raise TouchdownError(f"rotor1-waterfall stopped: {result.stopped_because}")
     lines = [f"9000 to {result.summary['rotor_speed_end_rpm']:.0f} rpm in 16 s (source: 7780)"]
@@ -163,7 +163,7 @@ def runs(members: int) -> int:
     return members * (2 * len(FIG_14) + len(TABLE_4))
 
 
-def compare(
+def compare_rotors(
     members: int, folder: Path, long: bool = False, jobs: int = 2, done: Callable[[], object] = lambda: None
 ) -> str:
     """Run everything and write rotors.txt into `folder`; returns the text. `long`: the run-down too."""

@@ -63,7 +63,7 @@ def land(scene: Scene, duration: float | None) -> Landing:
             raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
         stop = Stop(LONGEST if duration is None else duration, early=duration is None)
         outcome, traces = run_watched(scene, system, seats, stop)
-    impacts = {seat: found for seat, t in traces.items() if (found := t.first_impact())}
+    impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
     peaks = {seat: traces[seat].peaks(end).contact for seat, (_, end) in impacts.items()}

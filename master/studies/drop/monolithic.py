@@ -110,12 +110,12 @@ class Monolith:
         """Derivative of the right-hand side by the state, by central differences on the models' scales."""
         weight = self._weights()
         steps = np.where(weight > 0.0, 1e-6 / np.where(weight > 0.0, weight, 1.0), 0.0)
-        found = np.zeros((self._size, self._size))
+        jacobian = np.zeros((self._size, self._size))
         for i in np.flatnonzero(steps):
             off = np.zeros(self._size)
             off[i] = steps[i]
-            found[:, i] = (self.rhs(t, state + off) - self.rhs(t, state - off)) / (2.0 * steps[i])
-        return found
+            jacobian[:, i] = (self.rhs(t, state + off) - self.rhs(t, state - off)) / (2.0 * steps[i])
+        return jacobian
 
     def _weights(self) -> np.ndarray:
         return np.concatenate(
@@ -157,7 +157,7 @@ class Monolith:
         atol[weight == 0.0] = 1e3  # quadratures: nothing depends on them
         state, now = self.initial(), 0.0
         self.evaluations = 0
-        found: list[np.ndarray] = []
+        states: list[np.ndarray] = []
         clock = np.asarray(times) + self.zero
         last = float(clock[-1])
         for end in (*sorted(s for s in self._switches if 0.0 < s < last), last):
@@ -175,9 +175,9 @@ class Monolith:
             )
             if not solution.success:
                 raise TouchdownError(f"scipy's {method} gave up: {solution.message}")
-            found += list(solution.y.T[: len(asked)])
+            states += list(solution.y.T[: len(asked)])
             state, now = solution.y[:, -1], end
-        return self._series(np.asarray(times), found, watched)
+        return self._series(np.asarray(times), states, watched)
 
     def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> Solution:
         series: dict[str, list[float]] = {name: [] for name in watched}

@@ -21,6 +21,8 @@ from touchdown.master.studies.drop.monolithic import Monolith
 POSITION, VELOCITY = slice(0, 2), slice(2, 4)  # of a journal's motion
 MOST_IMPLICIT = 120  # states that an implicit solver takes: each Jacobian is as many evaluations
 
+IMPLICIT = ("Radau", "BDF", "LSODA")  # methods of scipy's
+
 
 @dataclass(frozen=True)
 class Solver:
@@ -28,6 +30,11 @@ class Solver:
 
     method: str
     tolerance: float
+
+    @property
+    def implicit(self) -> bool:
+        """Whether its steps solve for the state, with a Jacobian."""
+        return self.method in IMPLICIT
 
     @property
     def title(self) -> str:
@@ -96,10 +103,10 @@ def solve(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, solver: 
     names = [a.motion(variable) for a in seats for variable in SENSED]
     monolith = Monolith(scene)
     began = clock.perf_counter()
-    found = monolith.solve(times, names, solver.tolerance, solver.method)
+    solution = monolith.solve(times, names, solver.tolerance, solver.method)
     wall = (clock.perf_counter() - began) / (monolith.zero + float(times[-1]))
-    motion = np.stack([found.series[name] for name in names], 1).reshape(len(times), len(seats), 4)
-    return Solve(solver, motion, found.evaluations, wall)
+    motion = np.stack([solution.series[name] for name in names], 1).reshape(len(times), len(seats), 4)
+    return Solve(solver, motion, solution.evaluations, wall)
 
 
 def pair(scene: Scene) -> tuple[Solver, Solver]:

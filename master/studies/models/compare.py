@@ -92,7 +92,7 @@ class Comparison:
         return sorted(good, key=lambda row: row.ratio or math.inf)
 
 
-def compare(
+def compare_models(
     scene: Scene,
     chosen: Sequence[Variant],
     duration: float | None = None,
@@ -124,8 +124,8 @@ def _unjudged(scene: Scene) -> Scene:
 
 def _row(variant: Variant, exact: Drop, stopwatch: _Stopwatch) -> Row:
     try:
-        found, _ = _dropped(variant.scene)
-        return Row(variant.title, _price(found, exact), *stopwatch.time(variant))
+        drop, _ = _dropped(variant.scene)
+        return Row(variant.title, _price(drop, exact), *stopwatch.time(variant))
     except TouchdownError as error:
         return Row(variant.title, failed=str(error))
 
@@ -138,7 +138,7 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, float]:
             raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
         outcome, traces = run_watched(scene, system, seats, stop)
         touched = {seat_name(a, seats): system.value(f"{a.bearing}.contact.first_time") for a in seats}
-    impacts = {seat: found for seat, t in traces.items() if (found := t.first_impact())}
+    impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
     ends = {seat: end for seat, (_, end) in impacts.items()}
@@ -147,26 +147,26 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, float]:
     return Drop(first, ends, peaks, traces), outcome.end - outcome.zero
 
 
-def _price(found: Drop, exact: Drop) -> Price:
-    """`found` against `exact`; a seat that only one of them touches is not compared."""
-    both = [seat for seat in exact.ends if seat in found.ends]
+def _price(drop: Drop, exact: Drop) -> Price:
+    """`drop` against `exact`; a seat that only one of them touches is not compared."""
+    both = [seat for seat in exact.ends if seat in drop.ends]
     if not both:
         raise TouchdownError("it touches down at other seats")
     force, contact = (
-        max((getattr(found.peaks[s], kind) / getattr(exact.peaks[s], kind) - 1.0 for s in both), key=abs)
+        max((getattr(drop.peaks[s], kind) / getattr(exact.peaks[s], kind) - 1.0 for s in both), key=abs)
         for kind in ("force", "contact")
     )
     places = [
-        np.subtract(_place(found.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
+        np.subtract(_place(drop.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
         for s in both
     ]
     radius = exact.orbit()
     return Price(
-        first=found.first - exact.first,
+        first=drop.first - exact.first,
         force=force,
         contact=contact,
         position=float(max(np.hypot(*place) for place in places)),
-        orbit=found.orbit() / radius - 1.0,
+        orbit=drop.orbit() / radius - 1.0,
         radius=radius,
     )
 

@@ -10,9 +10,9 @@ from touchdown.master.studies.models.compare import CLEAR, Comparison
 LEAST = 1e-3  # %; what a price of nothing is drawn as
 
 
-def error_against_time(found: Comparison) -> Figure:
+def error_against_time(comparison: Comparison) -> Figure:
     """Bars of price and of time, a line for each variant, in the order of the table."""
-    rows = [row for row in found.rows if row.price is not None]
+    rows = [row for row in comparison.rows if row.price is not None]
     figure = sheet(12, 1.6 + 0.32 * len(rows))
     price, time = figure.subplots(1, 2, sharey=True)
     names = [row.title for row in rows]
@@ -26,5 +26,5 @@ def error_against_time(found: Comparison) -> Figure:
     price.invert_yaxis()
     for axes in (price, time):
         axes.grid(alpha=0.3, axis="x")
-    figure.suptitle(f"{found.scene.title}: what it does not need")
+    figure.suptitle(f"{comparison.scene.title}: what it does not need")
     return figure

@@ -21,43 +21,46 @@ HEADS = (
 )
 
 
-def lines(found: Comparison) -> list[str]:
+def report_lines(comparison: Comparison) -> list[str]:
     """What the scene does, a table of what variants change, and what may be left out."""
-    return [*_about(found), "", *_table(found), "", *advice(found)]
+    return [*_about(comparison), "", *_table(comparison), "", *advice(comparison)]
 
 
-def _about(found: Comparison) -> list[str]:
-    drop = found.drop
-    about = [found.scene.title]
+def _about(comparison: Comparison) -> list[str]:
+    drop = comparison.drop
+    about = [comparison.scene.title]
+    average = max(AVERAGE, comparison.scene.run.macro_step)
     for seat, end in drop.ends.items():
         peaks = drop.peaks[seat]
         about.append(
             f"  {seat}: first impact over at {1e3 * end:.4g} ms, journal force {peaks.force:.5g} N over "
-            f"{1e6 * max(AVERAGE, found.scene.run.macro_step):g} us, contact force {peaks.contact:.5g} N"
+            f"{1e6 * average:g} us, contact force {peaks.contact:.5g} N"
         )
     about.append(
         f"  first contact {1e3 * drop.first:.5g} ms, largest orbit {1e6 * drop.orbit():.4g} um up to "
-        f"{1e3 * (found.end - drop.first):.3g} ms after it"
+        f"{1e3 * (comparison.end - drop.first):.3g} ms after it"
     )
-    where = "in process" if found.in_process else "through FMUs"
-    about.append(f"wall time {where}, recorded, median of {found.repeat}; position: as the impact ends")
+    where = "in process" if comparison.in_process else "through FMUs"
+    about.append(
+        f"wall time {where}, recorded, median of {comparison.repeat}; position: as the impact ends"
+    )
     about.append("other bearings have all parameters of the scene's that they know")
     return about
 
 
-def _table(found: Comparison) -> list[str]:
-    width = max(len(row.title) for row in found.rows) + 2
+def _table(comparison: Comparison) -> list[str]:
+    width = max(len(row.title) for row in comparison.rows) + 2
     top, below = ("".join(f"{head[i]:>{WIDTH}}" for head in HEADS) for i in (0, 1))
-    own = "".join(f"{cell:>{WIDTH}}" for cell in ("", "", "", "", "", f"{found.wall:.3g}", "1.00"))
+    own = "".join(f"{cell:>{WIDTH}}" for cell in ("", "", "", "", "", f"{comparison.wall:.3g}", "1.00"))
     return [
         f"{'changes against the scene':<{width}}{top}",
         f"{'':<{width}}{below}",
         f"{'as it is':<{width}}{own}",
-        *(f"{row.title:<{width}}{_cells(found, row)}" for row in found.rows),
+        *(f"{row.title:<{width}}{_cells(comparison, row)}" for row in comparison.rows),
     ]
 
 
-def _cells(found: Comparison, row: Row) -> str:
+def _cells(comparison: Comparison, row: Row) -> str:
     price = row.price
     if price is None or row.wall is None or row.ratio is None:
         return f"  {row.failed}"
@@ -73,9 +76,9 @@ def _cells(found: Comparison, row: Row) -> str:
     return "".join(f"{cell:>{WIDTH}}" for cell in cells)
 
 
-def advice(found: Comparison) -> list[str]:
+def advice(comparison: Comparison) -> list[str]:
     """What makes the scene faster without changing it by much."""
-    good = found.dispensable()
+    good = comparison.dispensable()
     if not good:
         return [f"nothing of these makes the scene faster for less than {CLEAR:g} %"]
     return [
@@ -88,23 +91,23 @@ def advice(found: Comparison) -> list[str]:
     ]
 
 
-def write(found: Comparison, folder: Path) -> None:
+def write_report(comparison: Comparison, folder: Path) -> None:
     """models.csv and models.png into `folder`."""
     from touchdown.master.studies.models.figure import error_against_time  # matplotlib is slow to import
 
     with writing_to(folder):
-        _write_csv(found, folder / "models.csv")
-        error_against_time(found).savefig(folder / "models.png", dpi=110)
+        write_table(comparison, folder / "models.csv")
+        error_against_time(comparison).savefig(folder / "models.png", dpi=110)
 
 
-def _write_csv(found: Comparison, path: Path) -> None:
+def write_table(comparison: Comparison, path: Path) -> None:
     fields = ("first", "force", "contact", "position", "orbit")
     units = ("s", "relative", "relative", "m", "relative")
     titles = [f"{name}_change_{unit}" for name, unit in zip(fields, units, strict=True)]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["variant", *titles, "wall_time_per_simulated_s", "wall_time_ratio", "failed"])
-        writer.writerow(["as it is", *[0.0] * len(fields), found.wall, 1.0, ""])
-        for row in found.rows:
+        writer.writerow(["as it is", *[0.0] * len(fields), comparison.wall, 1.0, ""])
+        for row in comparison.rows:
             values = [None if row.price is None else getattr(row.price, name) for name in fields]
             writer.writerow([row.title, *values, row.wall, row.ratio, row.failed])

@@ -94,7 +94,7 @@ class Run:
 
 def parse_modes(text: str) -> tuple[int, ...]:
     """Numbers of modes from "3,5,8", in order. Raises TouchdownError."""
-    found: set[int] = set()
+    numbers: set[int] = set()
     for item in text.split(","):
         try:
             number = int(item)
@@ -107,8 +107,8 @@ def parse_modes(text: str) -> tuple[int, ...]:
                 f"--modes {text}: {number} is less than {RIGID}, the rigid modes per plane; "
                 "all modes are the reference, which always runs"
             )
-        found.add(number)
-    return tuple(sorted(found))
+        numbers.add(number)
+    return tuple(sorted(numbers))
 
 
 def refuse_varied(names: Iterable[str]) -> None:
@@ -126,7 +126,7 @@ def refuse_varied(names: Iterable[str]) -> None:
                 raise TouchdownError(f"--set {name}: compare-modes sets it itself; {instead[key]}")
 
 
-def compare(
+def compare_modes(
     scene: Scene,
     modes: Sequence[int] = MODES,
     macro_step: float = STEP,
@@ -146,7 +146,7 @@ def compare(
     fine = whole.set({"run.macro_step": 0.5 * macro_step})
     stop = Stop(LONGEST if duration is None else duration, early=duration is None, every=2)
     exact = _run(fine, rotor, stop)
-    impacts = {seat: found for seat, t in exact.traces.items() if (found := t.first_impact())}
+    impacts = {seat: impact for seat, t in exact.traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
     done()
@@ -158,12 +158,12 @@ def compare(
     rows = []
     for count in modes:
         for residual in (0, 1):
-            found = []
+            ways = []  # the stresses by mode displacement, then by mode acceleration
             for acceleration in (0, 1):
                 basis = _basis(scene, rotor, count, residual, acceleration)
-                found.append(_run(basis.set(ended), rotor))
+                ways.append(_run(basis.set(ended), rotor))
                 done()
-            rows.append(judge.row(count, bool(residual), macro_step, found[0], found[1]))
+            rows.append(judge.row(count, bool(residual), macro_step, *ways))
     coupling = judge.row(0, False, macro_step, again, again)
     return Comparison(scene, exact.end, impacts, reference, coupling, rows)
 
@@ -176,16 +176,16 @@ def runs(modes: Sequence[int]) -> int:
 def _rotor(scene: Scene) -> str:
     """The component that is a flexible rotor."""
     with opened(scene, in_process=True) as system:
-        found = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
-    if not found:
+        rotors = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
+    if not rotors:
         raise TouchdownError(
             f"scene {scene.name} has no flexible rotor: no component has the parameters modes and residual"
         )
-    if len(found) > 1:
+    if len(rotors) > 1:
         raise TouchdownError(
-            f"scene {scene.name} has several flexible rotors ({', '.join(found)}); compare-modes takes one"
+            f"scene {scene.name} has several flexible rotors ({', '.join(rotors)}); compare-modes takes one"
         )
-    return found[0]
+    return rotors[0]
 
 
 def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: int) -> Scene:
@@ -271,6 +271,6 @@ def percent(value: float, exact: float) -> float:
     return 100.0 * (value / exact - 1.0) if exact != 0.0 else math.nan
 
 
-def stress_error(found: Comparison, row: Row, kind: str, way: str) -> float:
+def stress_error(comparison: Comparison, row: Row, kind: str, way: str) -> float:
     """Error (%) of the peak of `kind`, one of STRESSES, found in one of WAYS."""
-    return percent(getattr(getattr(row, way), kind), getattr(found.reference.displacement, kind))
+    return percent(getattr(getattr(row, way), kind), getattr(comparison.reference.displacement, kind))

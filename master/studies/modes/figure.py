@@ -24,53 +24,61 @@ class Line:
     error: Callable[[Row], float]
 
 
-def errors_over_modes(found: Comparison) -> Figure:
+def errors_over_modes(comparison: Comparison) -> Figure:
     """Four panels: forces, orbit, bending and shear stress; grey: all modes, the coupling's error."""
     figure = sheet(12, 9)
     panels = figure.subplots(2, 2)
     forces = [
-        Line("journal, averaged", "-", lambda row: _worst(found, row, "force")),
-        Line("contact, momentary", "--", lambda row: _worst(found, row, "contact")),
+        Line("journal, averaged", "-", lambda row: _worst(comparison, row, "force")),
+        Line("contact, momentary", "--", lambda row: _worst(comparison, row, "contact")),
     ]
-    _draw(panels[0, 0], found, forces, "peak force of the first impact, worst seat", "error [%]")
+    _draw_errors(
+        panels[0, 0], comparison, forces, "peak force of the first impact, worst seat", "error [%]"
+    )
     orbit = [Line("", "-", lambda row: 1e6 * row.orbit)]
-    _draw(panels[0, 1], found, orbit, "journal from the reference's, worst seat", "distance [µm]")
+    _draw_errors(
+        panels[0, 1], comparison, orbit, "journal from the reference's, worst seat", "distance [µm]"
+    )
     for axes, kind in zip(panels[1], ("bending", "shear"), strict=True):
         stresses = [
-            Line("mode displacement", "--", lambda row, k=kind: _stress(found, row, k, "displacement")),
-            Line("mode acceleration", "-", lambda row, k=kind: _stress(found, row, k, "acceleration")),
+            Line(
+                "mode displacement", "--", lambda row, k=kind: _stress(comparison, row, k, "displacement")
+            ),
+            Line("mode acceleration", "-", lambda row, k=kind: _stress(comparison, row, k, "acceleration")),
         ]
-        _draw(axes, found, stresses, f"peak {kind} stress", "error [%]")
-    span, step = 1e3 * (found.end - found.first), 1e6 * found.coupling.macro_step
+        _draw_errors(axes, comparison, stresses, f"peak {kind} stress", "error [%]")
+    span, step = 1e3 * (comparison.end - comparison.first), 1e6 * comparison.coupling.macro_step
     figure.suptitle(
-        f"{found.scene.title}: errors against all modes of the finite elements\n"
+        f"{comparison.scene.title}: errors against all modes of the finite elements\n"
         f"from the first contact to {span:.3g} ms after it, macro step {step:g} µs"
     )
     return figure
 
 
-def _worst(found: Comparison, row: Row, name: str) -> float:
-    exact = found.reference.seats
-    return max(abs(percent(getattr(row.seats[s], name), getattr(exact[s], name))) for s in found.impacts)
+def _worst(comparison: Comparison, row: Row, name: str) -> float:
+    exact = comparison.reference.seats
+    return max(
+        abs(percent(getattr(row.seats[s], name), getattr(exact[s], name))) for s in comparison.impacts
+    )
 
 
-def _stress(found: Comparison, row: Row, kind: str, way: str) -> float:
-    return abs(stress_error(found, row, kind, way))
+def _stress(comparison: Comparison, row: Row, kind: str, way: str) -> float:
+    return abs(stress_error(comparison, row, kind, way))
 
 
-def _draw(axes: Axes, found: Comparison, drawn: list[Line], title: str, label: str) -> None:
+def _draw_errors(axes: Axes, comparison: Comparison, drawn: list[Line], title: str, label: str) -> None:
     for residual, colour, basis in BASES:
-        rows = [row for row in found.rows if row.residual == residual]
+        rows = [row for row in comparison.rows if row.residual == residual]
         for one in drawn:
             values = [max(one.error(row), LEAST) for row in rows]
             name = f"{one.label}, {basis}" if one.label else basis
             axes.plot([row.modes for row in rows], values, f"o{one.style}", color=colour, ms=4, label=name)
     for one in drawn:
         name = "all modes at this macro step" if one is drawn[0] else None
-        floor = max(one.error(found.coupling), LEAST)
+        floor = max(one.error(comparison.coupling), LEAST)
         axes.axhline(floor, color=GREY, ls=one.style, lw=0.8, label=name)
     axes.set_yscale("log")
-    axes.set_xticks(sorted({row.modes for row in found.rows}))
+    axes.set_xticks(sorted({row.modes for row in comparison.rows}))
     axes.set_title(title)
     axes.set_xlabel("modes per plane, the two rigid ones included")
     axes.set_ylabel(label)

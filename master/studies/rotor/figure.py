@@ -30,35 +30,35 @@ FLATTEST, HIGHEST = 0.2, 0.4  # height over width of a side view
 SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 
-def draw(found: Portrait, folder: Path) -> list[Path]:
+def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
     """campbell.png, modes.png and, where the rotor has two seats, rest.png in `folder`."""
     pictures = {"campbell": campbell, "modes": modes}
-    if found.rest is not None:
+    if portrait.rest is not None:
         pictures["rest"] = rest
     made: list[Path] = []
     for name, picture in pictures.items():
         figure = sheet()
-        picture(figure, found)
+        picture(figure, portrait)
         made.append(folder / f"{name}.png")
         figure.savefig(made[-1], dpi=110)
     return made
 
 
-def campbell(figure: FigureBase, found: Portrait) -> list[Axes]:
+def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Whirl frequencies of the free rotor [Hz] over speed [rpm], with the line where both are equal.
 
     The first of the portrait's speeds is the one asked for, the others make the lines.
     """
-    asked, speeds = RPM * found.speeds[0], RPM * found.speeds[1:]
+    asked, speeds = RPM * portrait.speeds[0], RPM * portrait.speeds[1:]
     axes = sized(figure, 9.0, 6.5).subplots()
-    drawn = range(1, min(len(found.kinds), MOST))
+    drawn = range(1, min(len(portrait.kinds), MOST))
     for k in drawn:
         axes.plot(
-            speeds, found.forward[1:, k], color=COLOURS[k], lw=1.4, label=f"{found.kinds[k]}, forward"
+            speeds, portrait.forward[1:, k], color=COLOURS[k], lw=1.4, label=f"{portrait.kinds[k]}, forward"
         )
-        if found.frequencies[k] > 0.0:
-            label = f"{found.kinds[k]}, backward"
-            axes.plot(speeds, found.backward[1:, k], "--", color=COLOURS[k], lw=1.2, label=label)
+        if portrait.frequencies[k] > 0.0:
+            label = f"{portrait.kinds[k]}, backward"
+            axes.plot(speeds, portrait.backward[1:, k], "--", color=COLOURS[k], lw=1.2, label=label)
     axes.plot(speeds, speeds / 60.0, ":", color=BLACK, lw=1.2, label="1x, once per turn")
     axes.axvline(asked, color=GREY, lw=0.8, label=f"{asked:.5g} rpm")
     axes.set_xlim(0.0, float(speeds[-1]))
@@ -66,13 +66,13 @@ def campbell(figure: FigureBase, found: Portrait) -> list[Axes]:
     axes.set_xlabel("rotor speed [rpm]")
     axes.set_ylabel("whirl frequency of the free rotor [Hz]")
     figure.legend(loc="outside right upper", fontsize="small")
-    figure.suptitle(f"{found.shaft.title}: Campbell diagram")
+    figure.suptitle(f"{portrait.shaft.title}: Campbell diagram")
     return [axes]
 
 
-def modes(figure: FigureBase, found: Portrait) -> list[Axes]:
+def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
-    shaft, count = found.shaft, min(len(found.kinds), MOST)
+    shaft, count = portrait.shaft, min(len(portrait.kinds), MOST)
     panels = _stack(figure, shaft, count)
     height = SHAPE * _window(shaft).reach
 
@@ -84,25 +84,25 @@ def modes(figure: FigureBase, found: Portrait) -> list[Axes]:
 
     for k, axes in enumerate(panels):
         _side_view(axes, shaft, named=k == 0)
-        shape = found.shapes[:, k]
+        shape = portrait.shapes[:, k]
         axes.plot(MM * shaft.positions(), height * shape, ".-", color=ORANGE, lw=1.5, ms=4)
         right = axes.secondary_yaxis("right", functions=(to_shape, from_shape))
         right.set_ylabel("shape [1]", color=ORANGE)
         right.set_yticks([-1.0, 0.0, 1.0])
-        what = "rigid" if found.frequencies[k] == 0.0 else f"{found.frequencies[k]:.1f} Hz"
+        what = "rigid" if portrait.frequencies[k] == 0.0 else f"{portrait.frequencies[k]:.1f} Hz"
         _to_scale(axes, shaft)
-        axes.set_title(f"{found.kinds[k]}, {what}", fontsize="medium", pad=14 if k == 0 else 4)
+        axes.set_title(f"{portrait.kinds[k]}, {what}", fontsize="medium", pad=14 if k == 0 else 4)
     panels[-1].set_xlabel(AXIS)
     figure.suptitle(f"{shaft.title}: modes of the free rotor at rest")
     return panels
 
 
-def rest(figure: FigureBase, found: Portrait) -> list[Axes]:
+def rest(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats.
 
     Only for a portrait with `rest`.
     """
-    shaft, lying = found.shaft, found.rest
+    shaft, lying = portrait.shaft, portrait.rest
     assert lying is not None
     position = MM * shaft.positions()
     view_height = _window(shaft).height

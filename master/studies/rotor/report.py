@@ -42,11 +42,11 @@ def report(name: str, folder: Path, speed: float = SPEED, modes: int = MODES) ->
     speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0: all).
     Raises TouchdownError where there is no such rotor, or its file has a mistake.
     """
-    found = described(find_rotor(name), speed, modes)
+    portrait = described(find_rotor(name), speed, modes)
     make_writable(folder)
-    from touchdown.master.studies.rotor.figure import draw  # matplotlib is slow to import
+    from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
 
-    return Report(table(found), draw(found, folder))
+    return Report(report_text(portrait), draw_pictures(portrait, folder))
 
 
 def described(shaft: Shaft, speed: float, modes: int) -> Portrait:
@@ -71,18 +71,18 @@ def find_rotor(name: str) -> Shaft:
         ) from None
 
 
-def table(found: Portrait) -> str:
+def report_text(portrait: Portrait) -> str:
     """All figures as text; the frequencies are split at the first of the portrait's speeds."""
-    shaft = found.shaft
+    shaft = portrait.shaft
     lines = [
         shaft.title,
         *_two_columns(_body(shaft)),
         "",
         *_places(shaft),
         "",
-        *_frequencies(found),
+        *_frequencies(portrait),
         "",
-        *_rest(shaft, found.rest),
+        *_rest(shaft, portrait.rest),
     ]
     return "\n".join(lines)
 
@@ -121,12 +121,12 @@ def _places(shaft: Shaft) -> list[str]:
     return [head, *(f"  {n:<{width}}  {k:<16}  {i:4d}  {1e3 * position[i - 1]:13.1f}" for n, k, i in rows)]
 
 
-def _frequencies(found: Portrait) -> list[str]:
-    speed = f"{RPM * found.speeds[0]:.6g} rpm"
+def _frequencies(portrait: Portrait) -> list[str]:
+    speed = f"{RPM * portrait.speeds[0]:.6g} rpm"
     head = f"  {'free rotor':<12}  {'at rest [Hz]':>12}  {'backward [Hz]':>14}  {'forward [Hz]':>14}"
     lines = [f"  backward and forward whirl at {speed}", head]
     for kind, still, back, ahead in zip(
-        found.kinds, found.frequencies, found.backward[0], found.forward[0], strict=True
+        portrait.kinds, portrait.frequencies, portrait.backward[0], portrait.forward[0], strict=True
     ):
         lines.append(f"  {kind:<12}  {still:12.2f}  {back:14.2f}  {ahead:14.2f}")
     return lines

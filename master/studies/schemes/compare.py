@@ -12,6 +12,7 @@ import math
 import statistics
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 
 import numpy as np
 
@@ -60,13 +61,14 @@ class Quantity:
     title: str
     unit: str
     factor: float  # from SI
+    axis: str  # title of the axis of its errors
 
 
 SHOWN = {
-    "position": Quantity("journal", "um", 1e6),
-    "velocity": Quantity("velocity", "mm/s", 1e3),
-    "force": Quantity("peak force", "%", 100.0),
-    "energy": Quantity("ledger", "1", 1.0),
+    "position": Quantity("journal", "um", 1e6, "error of journal [um]"),
+    "velocity": Quantity("velocity", "mm/s", 1e3, "error of velocity [mm/s]"),
+    "force": Quantity("peak force", "%", 100.0, "error of peak force [%]"),
+    "energy": Quantity("ledger", "1", 1.0, "residual of the ledger [1]"),
 }
 
 
@@ -83,6 +85,14 @@ class Asked:
     in_process: bool = False
 
 
+class Alarm(StrEnum):
+    """What the ledger would do by the scene's thresholds."""
+
+    NONE = ""
+    WARNS = "warns"
+    STOPS = "stops"
+
+
 @dataclass(frozen=True)
 class Row:
     """One scheme at one macro step, or one monolithic solver; errors by quantity, where known.
@@ -95,7 +105,7 @@ class Row:
     step: float | None  # s; None: monolithic
     errors: Mapping[str, float] = field(default_factory=dict)
     wall: float | None = None  # s per simulated s
-    ledger: str = ""  # "warns" or "stops": what it would do by the scene's thresholds
+    ledger: Alarm = Alarm.NONE
     failed: str = ""  # why there are no errors
 
 
@@ -117,6 +127,11 @@ class Comparison:
         position, velocity = self.exact.floor(POSITION), self.exact.floor(VELOCITY)
         return {"position": position, "velocity": velocity, "force": self.fine["force"], "energy": 0.0}
 
+    @property
+    def wanted(self) -> Mapping[str, float]:
+        """By quantity: errors that are good enough, of those that the advice goes by."""
+        return {"position": self.asked.wanted}
+
     def orders(self, scheme: str) -> Mapping[str, Order | None]:
         """By quantity; None where too few macro steps tell."""
         rows = [row for row in self.rows if row.name == scheme and row.errors and row.step is not None]
@@ -134,8 +149,8 @@ class Comparison:
 
         Of rows that take about the same time the most accurate one.
         """
-        quiet = self._cheapest([row for row in self.rows if not row.ledger])
-        return quiet or self._cheapest([row for row in self.rows if row.ledger != "stops"])
+        quiet = self._cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
+        return quiet or self._cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
 
     def recommended_solver(self) -> Row | None:
         """The cheapest monolithic solver that errs by no more than wanted."""
@@ -148,7 +163,9 @@ class Comparison:
         return min(near, key=lambda row: row.errors["position"], default=None)
 
 
-def compare(scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda what: None) -> Comparison:
+def compare_schemes(
+    scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda what: None
+) -> Comparison:
     """Run everything; begin(what) before each of `pieces(scene, asked)` pieces of work.
 
     Raises TouchdownError where nothing touches, or where there is no reference. A scheme that stops or
@@ -187,26 +204,26 @@ def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[S
     """Both solutions of the reference, then looser ones."""
     seats, solvers = looks.landing.seats, pair(scene)
     solve(scene, seats, np.array([FINE]), Solver(FIRST.method, 1e-3))  # compiles
-    found = []
+    solves = []
     for solver in (*solvers, *_loose(solvers[1])):
         begin(solver.title)
-        found.append(solve(scene, seats, looks.times, solver))
-    return found
+        solves.append(solve(scene, seats, looks.times, solver))
+    return solves
 
 
 def _loose(second: Solver) -> Sequence[Solver]:
-    return LOOSE if second.method == "Radau" else LOOSE_OF_MANY
+    return LOOSE if second.implicit else LOOSE_OF_MANY
 
 
-def _monolithic(found: Solve, exact: Reference) -> Row:
+def _monolithic(solution: Solve, exact: Reference) -> Row:
     """A solution against the reference, the reference against the other one."""
-    other = exact.second if found is exact.first else exact.first
+    other = exact.second if solution is exact.first else exact.first
     count = len(exact.time)
     errors = {
-        name: largest_distance(found.motion[:count], other.motion[:count], part)
+        name: largest_distance(solution.motion[:count], other.motion[:count], part)
         for name, part in (("position", POSITION), ("velocity", VELOCITY))
     }
-    return Row(found.solver.title, None, errors, found.wall)
+    return Row(solution.solver.title, None, errors, solution.wall)
 
 
 @dataclass(frozen=True)
@@ -229,8 +246,12 @@ class _Judge:
         except TouchdownError as error:
             return Row(name, step, failed=str(error))
         residual = outcome.residual
-        ledger = "stops" if residual > self.stop else "warns" if residual > self.warn else ""
-        return Row(name, step, self._errors(sampler, residual), ledger=ledger)
+        return Row(name, step, self._errors(sampler, residual), ledger=self._alarm(residual))
+
+    def _alarm(self, residual: float) -> Alarm:
+        if residual > self.stop:
+            return Alarm.STOPS
+        return Alarm.WARNS if residual > self.warn else Alarm.NONE
 
     def _errors(self, sampler: Sampler, residual: float) -> Mapping[str, float]:
         times = np.array(sampler.times) - self.looks.landing.zero

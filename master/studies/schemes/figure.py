@@ -13,39 +13,36 @@ from touchdown.master.studies.schemes.compare import SHOWN, Comparison, Row
 MARKERS = "osD^v<>ph*"
 
 
-def work_precision(found: Comparison) -> Figure:
+def work_precision(comparison: Comparison) -> Figure:
     """Four panels: journal position and velocity, peak force, ledger; labels are macro steps."""
     figure = sheet(13, 10)
     for axes, name in zip(figure.subplots(2, 2).flat, SHOWN, strict=True):
-        _panel(axes, found, name)
+        _panel(axes, comparison, name)
     figure.axes[0].legend(fontsize=8)
-    asked, landing = found.asked, found.landing
+    asked, landing = comparison.asked, comparison.landing
     figure.suptitle(
-        f"{found.scene.title}: wall time against error\n"
+        f"{comparison.scene.title}: wall time against error\n"
         f"up to {1e3 * (landing.end - landing.first):.3g} ms after the first contact, "
         f"{'in process' if asked.in_process else 'through FMUs'}"
     )
     return figure
 
 
-def _panel(axes: Axes, found: Comparison, name: str) -> None:
+def _panel(axes: Axes, comparison: Comparison, name: str) -> None:
     shown = SHOWN[name]
-    for i, scheme in enumerate(found.asked.schemes):
-        rows = [row for row in found.rows if row.name == scheme]
+    for i, scheme in enumerate(comparison.asked.schemes):
+        rows = [row for row in comparison.rows if row.name == scheme]
         style = {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]}
         _curve(axes, rows, name, scheme, **style, ls="-" if i < len(COLOURS) else "--")
-    if name in ("position", "velocity"):
-        _curve(axes, found.monolithic, name, "monolithic", color=BLACK, marker="x", ls="")
-    floor = shown.factor * found.floors[name]
+    _curve(axes, comparison.monolithic, name, "monolithic", color=BLACK, marker="x", ls="")
+    floor = shown.factor * comparison.floors[name]
     if floor > 0.0:
         axes.axvline(floor, color=GREY, lw=0.8, ls=":")
-    if name == "position":
-        axes.axvline(shown.factor * found.asked.wanted, color=GREY, lw=0.8, ls="--", label="wanted")
+    if name in comparison.wanted:
+        axes.axvline(shown.factor * comparison.wanted[name], color=GREY, lw=0.8, ls="--", label="wanted")
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlabel(
-        "residual of the ledger [1]" if name == "energy" else f"error of {shown.title} [{shown.unit}]"
-    )
+    axes.set_xlabel(shown.axis)
     axes.set_ylabel("wall time per simulated s [s]")
     axes.grid(alpha=0.3)
 

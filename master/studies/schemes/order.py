@@ -41,5 +41,5 @@ def fitted_order(
         longest = max(longest, stretch, key=len).copy()
     if len(longest) < FEWEST:
         return None
-    used, found = zip(*longest, strict=True)
-    return Order(float(np.polyfit(np.log(used), np.log(found), 1)[0]), used)
+    used, errors_used = zip(*longest, strict=True)
+    return Order(float(np.polyfit(np.log(used), np.log(errors_used), 1)[0]), used)

@@ -12,14 +12,14 @@ from touchdown.master.studies.schemes.compare import QUANTITIES, SHOWN, Comparis
 MONOLITHIC = "monolithic"
 
 
-def lines(found: Comparison) -> list[str]:
+def report_lines(comparison: Comparison) -> list[str]:
     """What it is measured against, a table of errors, fitted orders, and what to take."""
-    return [*_about(found), "", *_table(found), "", *_orders(found), "", *advice(found)]
+    return [*_about(comparison), "", *_table(comparison), "", *_orders(comparison), "", *advice(comparison)]
 
 
-def _about(found: Comparison) -> list[str]:
-    landing, exact, asked = found.landing, found.exact, found.asked
-    about = [found.scene.title]
+def _about(comparison: Comparison) -> list[str]:
+    landing, exact, asked = comparison.landing, comparison.exact, comparison.asked
+    about = [comparison.scene.title]
     for seat, (start, end) in landing.impacts.items():
         about.append(
             f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, "
@@ -32,16 +32,16 @@ def _about(found: Comparison) -> list[str]:
         "the first contact",
         f"reference: {first.solver.title} ({first.evaluations} evaluations) and {second.solver.title} "
         f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}",
-        f"co-simulation in fine steps is off by {1e6 * found.fine['position']:.1g} um; "
-        f"peak forces are measured against it, known to {100.0 * found.fine['force']:.1g} %",
+        f"co-simulation in fine steps is off by {1e6 * comparison.fine['position']:.1g} um; "
+        f"peak forces are measured against it, known to {100.0 * comparison.fine['force']:.1g} %",
         f"wall time {'in process' if asked.in_process else 'through FMUs'}, median of {asked.repeat}; "
         "of monolithic solvers, one run in process",
     ]
     return about
 
 
-def _table(found: Comparison) -> list[str]:
-    rows = [*found.rows, *found.monolithic]
+def _table(comparison: Comparison) -> list[str]:
+    rows = [*comparison.rows, *comparison.monolithic]
     width = max(len(row.name) for row in rows) + 2
     heads = [f"{q.title}" for q in SHOWN.values()]
     units = [f"[{q.unit}]" for q in SHOWN.values()]
@@ -64,30 +64,30 @@ def _shown(row: Row, name: str) -> str:
     return "-" if error is None else f"{SHOWN[name].factor * error:.2g}"
 
 
-def _orders(found: Comparison) -> list[str]:
+def _orders(comparison: Comparison) -> list[str]:
     """By scheme; the steps used stand beside the order."""
-    width = max(len(name) for name in found.asked.schemes) + 2
+    width = max(len(name) for name in comparison.asked.schemes) + 2
     head = f"{'order':<{width}}" + "".join(f"{q.title:>22}" for q in SHOWN.values())
     body = [
-        f"{name:<{width}}" + "".join(f"{_order(found, name, quantity):>22}" for quantity in SHOWN)
-        for name in found.asked.schemes
+        f"{name:<{width}}" + "".join(f"{_order(comparison, name, quantity):>22}" for quantity in SHOWN)
+        for name in comparison.asked.schemes
     ]
     return [head, *body]
 
 
-def _order(found: Comparison, scheme: str, quantity: str) -> str:
-    order = found.orders(scheme)[quantity]
+def _order(comparison: Comparison, scheme: str, quantity: str) -> str:
+    order = comparison.orders(scheme)[quantity]
     if order is None:
         return "-"
     return f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)"
 
 
-def advice(found: Comparison) -> list[str]:
+def advice(comparison: Comparison) -> list[str]:
     """Scheme and macro step for the wanted error."""
-    wanted = f"for {1e6 * found.asked.wanted:g} um: "
-    best = found.recommended()
+    wanted = f"for {1e6 * comparison.asked.wanted:g} um: "
+    best = comparison.recommended()
     if best is None or best.step is None or best.wall is None:
-        errors = [row for row in found.rows if row.errors]
+        errors = [row for row in comparison.rows if row.errors]
         if not errors:
             return [f"{wanted}no scheme got there; try smaller --macro-steps"]
         least = min(errors, key=lambda row: row.errors["position"])
@@ -97,23 +97,23 @@ def advice(found: Comparison) -> list[str]:
         f'{wanted}--scheme {best.name} --macro-step "{1e6 * best.step:g} us" is '
         f"{1e6 * best.errors['position']:.2g} um off and takes {best.wall:.3g} s per simulated s"
     )
-    solver = found.recommended_solver()
+    solver = comparison.recommended_solver()
     if solver is None or solver.wall is None:
         return [text]
     return [text, f"  the fastest monolithic solver there, {solver.name}, takes {solver.wall:.3g} s"]
 
 
-def write(found: Comparison, folder: Path) -> None:
+def write_report(comparison: Comparison, folder: Path) -> None:
     """work_precision.csv, orders.csv and work_precision.png into `folder`."""
     from touchdown.master.studies.schemes.figure import work_precision  # matplotlib is slow to import
 
     with writing_to(folder):
-        write_csv(found, folder / "work_precision.csv")
-        write_orders(found, folder / "orders.csv")
-        work_precision(found).savefig(folder / "work_precision.png", dpi=110)
+        write_table(comparison, folder / "work_precision.csv")
+        write_orders(comparison, folder / "orders.csv")
+        work_precision(comparison).savefig(folder / "work_precision.png", dpi=110)
 
 
-def write_csv(found: Comparison, path: Path) -> None:
+def write_table(comparison: Comparison, path: Path) -> None:
     """All rows, errors in SI and in full precision."""
     units = {"position": "m", "velocity": "m_s", "force": "relative", "energy": "relative"}
     records: list[Mapping[str, object]] = [
@@ -125,17 +125,17 @@ def write_csv(found: Comparison, path: Path) -> None:
             "ledger": row.ledger,
             "failed": row.failed,
         }
-        for row in (*found.rows, *found.monolithic)
+        for row in (*comparison.rows, *comparison.monolithic)
     ]
     write_records(records, path)
 
 
-def write_orders(found: Comparison, path: Path) -> None:
+def write_orders(comparison: Comparison, path: Path) -> None:
     """Fitted orders, and the steps they were fitted to."""
     records: list[Mapping[str, object]] = []
-    for scheme in found.asked.schemes:
+    for scheme in comparison.asked.schemes:
         for quantity in QUANTITIES:
-            order = found.orders(scheme)[quantity]
+            order = comparison.orders(scheme)[quantity]
             records.append(
                 {
                     "scheme": scheme,

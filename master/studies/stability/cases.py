@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.studies.stability.trials import STEPS, Case, Figure, Right
@@ -47,7 +47,7 @@ def _disk(bearing: str, rotor: Mapping[str, object], settings: Mapping[str, obje
 
 def _let_go(name: str) -> Scene:
     """A scene of the project's without its magnetic bearings."""
-    scene = load(name)
+    scene = load_scene(name)
     gone = {key for key, spec in scene.components.items() if spec.fmu == "amb"}
     left = {key: spec for key, spec in scene.components.items() if key not in gone}
     attach = tuple(pair for pair in scene.attach if pair[0].partition(".")[0] not in gone)
@@ -144,7 +144,9 @@ def grazing() -> Case:
 def hold() -> Case:
     """Rotor I with 20 modes on its magnetic bearings, which bring it back from 20 um beside."""
     kept = {f"amb_{end}.shutdown_time": 1.0 for end in "AB"}
-    scene = load("rotor1-9000").set({**kept, "rotor.modes": 20, "rotor.x": 20e-6, "run.duration": 10e-3})
+    scene = load_scene("rotor1-9000").set(
+        {**kept, "rotor.modes": 20, "rotor.x": 20e-6, "run.duration": 10e-3}
+    )
     places = tuple(
         Figure(f"{axis} at {end}", (f"rotor.{end}.{axis}",), 20e-6) for end in "AB" for axis in "xy"
     )

@@ -21,7 +21,7 @@ HALF = 1.4  # cells' margin of the colour scale, as a factor
 DARK = 3e-5  # s; below it a cell is dark and its number white
 
 
-def draw(study: Study, path: Path) -> None:
+def draw_chart(study: Study, path: Path) -> None:
     """Save the chart. Raises TouchdownError where it cannot be written."""
     try:
         chart(study).savefig(path, dpi=150)
@@ -36,9 +36,9 @@ def chart(study: Study) -> Figure:
     wide, high = len(study.schemes), len(study.cases)
     figure = sheet(5 + 1.3 * wide, 2.2 + 0.42 * high)
     panels = figure.subplots(1, 2, sharey=True, squeeze=False)[0]
-    _panel(panels[0], study, lambda found: found.right)
+    _panel(panels[0], study, lambda finding: finding.right)
     panels[0].set_title(f"right: no figure off by more than {VISIBLE:.0%}")
-    image = _panel(panels[1], study, lambda found: found.stable)
+    image = _panel(panels[1], study, lambda finding: finding.stable)
     panels[1].set_title(f"stable: no journal beyond {GROWTH:g} times its speed or distance")
     panels[0].set_yticks(range(high), [case.title for case in study.cases])
     bar = figure.colorbar(image, ax=list(panels), fraction=0.03, pad=0.01)
@@ -54,17 +54,17 @@ def _panel(axes: Axes, study: Study, pick: Callable[[Finding], Attempt | None]) 
     steps = np.full((len(study.cases), len(study.schemes)), np.nan)
     for i, case in enumerate(study.cases):
         for j, scheme in enumerate(study.schemes):
-            found = study.finding(case, scheme)
-            if found is None:
+            finding = study.finding(case, scheme)
+            if finding is None:
                 continue
-            attempt = pick(found)
+            attempt = pick(finding)
             steps[i, j] = np.nan if attempt is None else attempt.step
             pale = attempt is not None and attempt.step >= DARK
             axes.text(
                 j, i, microseconds(attempt), ha="center", va="center", fontsize=8,
                 color="black" if pale or attempt is None else "white",
             )  # fmt: skip
-            if found.called is False:
+            if finding.called is False:
                 axes.add_patch(_frame(i, j))
     norm = LogNorm(STEPS[0] / HALF, STEPS[-1] * HALF)
     image = axes.imshow(steps, cmap="viridis", norm=norm, aspect="auto")

@@ -32,7 +32,7 @@ class Study:
         return self.findings.get((case.name, scheme))
 
 
-def lines(study: Study) -> list[str]:
+def report_lines(study: Study) -> list[str]:
     """Tables of macro steps, of errors and of what the ledger says, cases by schemes."""
     return [
         f"longest macro step [us] that is right (figures within {VISIBLE:.0%}) / stable (to the end, no "
@@ -41,10 +41,10 @@ def lines(study: Study) -> list[str]:
         *_table(study, _steps),
         "",
         "error of the worst figure at the longest stable macro step [%]",
-        *_table(study, lambda found: _at_stable(found, lambda attempt: percent(attempt.error))),
+        *_table(study, lambda finding: _at_stable(finding, lambda attempt: percent(attempt.error))),
         "",
         "residual of the energy ledger there, over the case's energy scale",
-        *_table(study, lambda found: _at_stable(found, lambda attempt: f"{attempt.residual:.0e}")),
+        *_table(study, lambda finding: _at_stable(finding, lambda attempt: f"{attempt.residual:.0e}")),
         *_theory(study),
         "",
         "swing of the journal on its contact in the longest right macro step [rad]; below, the least of "
@@ -66,45 +66,45 @@ def percent(error: float) -> str:
     return f"{100.0 * error:.2g}" if 100.0 * error < 100.0 else f"{100.0 * error:.0f}"
 
 
-def _steps(found: Finding) -> str:
-    silent = SILENT if found.called is False else ""
-    return f"{microseconds(found.right)}/{microseconds(found.stable)}{silent}"
+def _steps(finding: Finding) -> str:
+    silent = SILENT if finding.called is False else ""
+    return f"{microseconds(finding.right)}/{microseconds(finding.stable)}{silent}"
 
 
-def _at_stable(found: Finding, shown: Callable[[Attempt], str]) -> str:
-    return "-" if found.stable is None else shown(found.stable)
+def _at_stable(finding: Finding, shown: Callable[[Attempt], str]) -> str:
+    return "-" if finding.stable is None else shown(finding.stable)
 
 
 def _swings(study: Study) -> list[str]:
     least = ["least", *(_least(study, scheme) for scheme in study.schemes)]
     advised = ["advised", *(f"{SCHEMES[scheme].bears:g}" for scheme in study.schemes)]
-    return _table(study, lambda found: _swing(found, study.rights[found.case]), [least, advised])
+    return _table(study, lambda finding: _swing(finding, study.rights[finding.case]), [least, advised])
 
 
 def _least(study: Study, scheme: str) -> str:
     """The smallest swing over the cases; below it, where not even the shortest step is right in one."""
     swings: list[tuple[float, str]] = []
-    for found in (study.finding(case, scheme) for case in study.cases):
-        if found is not None:
-            good = found.right
-            step = found.attempts[0].step if good is None else good.step
-            swings.append((study.rights[found.case].rate * step, "<" if good is None else ""))
+    for finding in (study.finding(case, scheme) for case in study.cases):
+        if finding is not None:
+            good = finding.right
+            step = finding.attempts[0].step if good is None else good.step
+            swings.append((study.rights[finding.case].rate * step, "<" if good is None else ""))
     if not swings:
         return NOT_RUN
     swing, below = min(swings)
     return f"{below}{swing:.2g}"
 
 
-def _swing(found: Finding, right: Right) -> str:
-    return "-" if found.right is None else f"{right.rate * found.right.step:.2g}"
+def _swing(finding: Finding, right: Right) -> str:
+    return "-" if finding.right is None else f"{right.rate * finding.right.step:.2g}"
 
 
 def _table(study: Study, cell: Callable[[Finding], str], last: Sequence[Sequence[str]] = ()) -> list[str]:
     """Cases by schemes; `last`: rows below them."""
     rows: list[Sequence[str]] = [["", *study.schemes]]
     for case in study.cases:
-        found = [study.finding(case, scheme) for scheme in study.schemes]
-        rows.append([case.name, *(NOT_RUN if one is None else cell(one) for one in found)])
+        findings = [study.finding(case, scheme) for scheme in study.schemes]
+        rows.append([case.name, *(NOT_RUN if one is None else cell(one) for one in findings)])
     return _aligned([*rows, *last])
 
 
@@ -125,52 +125,56 @@ def _theory(study: Study) -> list[str]:
     for case in study.cases:
         if case.theory is None or case.first != FIRST:
             continue
-        found = [study.finding(case, scheme) for scheme in study.schemes]
+        findings = [study.finding(case, scheme) for scheme in study.schemes]
         for i, (figure, exact) in enumerate(zip(case.figures, case.theory.values, strict=True)):
-            shown = ["-" if (value := _value(one, i)) is None else f"{value / exact:.5f}" for one in found]
+            shown = [
+                "-" if (value := _value(one, i)) is None else f"{value / exact:.5f}" for one in findings
+            ]
             rows.append([f"{case.name}, {figure.title}", *shown])
     if len(rows) == 1:
         return []
     return ["", f"over what theory says, macro step {1e6 * FIRST:g} us", *_aligned(rows)]
 
 
-def _value(found: Finding | None, place: int) -> float | None:
+def _value(finding: Finding | None, place: int) -> float | None:
     """A figure at the macro step that is common, if there was a run that ended."""
-    attempt = None if found is None else found.at(FIRST)
+    attempt = None if finding is None else finding.at(FIRST)
     return attempt.values[place] if attempt is not None and attempt.values else None
 
 
-def write_csv(study: Study, folder: Path) -> None:
+def write_tables(study: Study, folder: Path) -> None:
     """stability.csv: a row per case and scheme; runs.csv: one per run. Full precision."""
     with writing_to(folder):
-        write_records((_summary(found) for found in study.findings.values()), folder / "stability.csv")
+        write_records((_summary(finding) for finding in study.findings.values()), folder / "stability.csv")
         runs = (
-            _run(study, found, attempt) for found in study.findings.values() for attempt in found.attempts
+            _run(study, finding, attempt)
+            for finding in study.findings.values()
+            for attempt in finding.attempts
         )
         write_records(runs, folder / "runs.csv")
 
 
-def _summary(found: Finding) -> Mapping[str, object]:
-    stable, right, wrong = found.stable, found.right, found.wrong
+def _summary(finding: Finding) -> Mapping[str, object]:
+    stable, right, wrong = finding.stable, finding.right, finding.wrong
     return {
-        "case": found.case,
-        "scheme": found.scheme,
+        "case": finding.case,
+        "scheme": finding.scheme,
         "largest_right_macro_step_s": right and right.step,
         "largest_stable_macro_step_s": stable and stable.step,
         "error_there_relative": stable and stable.error,
         "energy_residual_there_relative": stable and stable.residual,
         "first_wrong_macro_step_s": wrong and wrong.step,
-        "ledger_warned_at_first_wrong": None if found.called is None else int(found.called),
+        "ledger_warned_at_first_wrong": None if finding.called is None else int(finding.called),
     }
 
 
-def _run(study: Study, found: Finding, attempt: Attempt) -> Mapping[str, object]:
-    figures = next(case.figures for case in study.cases if case.name == found.case)
-    right = study.rights[found.case].values
+def _run(study: Study, finding: Finding, attempt: Attempt) -> Mapping[str, object]:
+    figures = next(case.figures for case in study.cases if case.name == finding.case)
+    right = study.rights[finding.case].values
     values = attempt.values or (math.nan,) * len(figures)
     return {
-        "case": found.case,
-        "scheme": found.scheme,
+        "case": finding.case,
+        "scheme": finding.scheme,
         "macro_step_s": attempt.step,
         "stable": int(attempt.stable),
         "right": int(attempt.right),

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.processes import TaskOutcome, run_all
-from touchdown.master.studies.stability.report import Study, write_csv
+from touchdown.master.studies.stability.report import Study, write_tables
 from touchdown.master.studies.stability.trials import Case, Finding, Right, examine, reference
 
 Key = TypeVar("Key")
@@ -25,7 +25,7 @@ class Task:
     right: Right
 
 
-def study(
+def study_stability(
     cases: Sequence[Case],
     schemes: Sequence[str],
     folder: Path,
@@ -46,13 +46,13 @@ def study(
     findings, lost = _parted(pairs, run_all(_examine, tasks, jobs, done))
     failed |= {f"{case} with {scheme}": outcome for (case, scheme), outcome in lost.items()}
     why = {what: outcome.reason for what, outcome in failed.items()}
-    found = Study(cases, schemes, rights, findings, why, _interrupted(failed))
-    write_csv(found, folder)
+    study = Study(cases, schemes, rights, findings, why, _interrupted(failed))
+    write_tables(study, folder)
     if findings:
-        from touchdown.master.studies.stability.figure import draw  # matplotlib is slow to import
+        from touchdown.master.studies.stability.figure import draw_chart  # matplotlib is slow to import
 
-        draw(found, folder / "stability.png")
-    return found
+        draw_chart(study, folder / "stability.png")
+    return study
 
 
 def _parted(

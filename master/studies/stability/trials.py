@@ -140,16 +140,16 @@ def search(
 ) -> tuple[Attempt, ...]:
     """Attempts from the longest right step at or below `first` to the shortest above that is not stable."""
     begin = steps.index(first)
-    found = [attempt(first)]
+    attempts = [attempt(first)]
     for step in reversed(steps[:begin]):
-        if found[0].right:
+        if attempts[0].right:
             break
-        found.insert(0, attempt(step))
+        attempts.insert(0, attempt(step))
     for step in steps[begin + 1 :]:
-        if not found[-1].stable:
+        if not attempts[-1].stable:
             break
-        found.append(attempt(step))
-    return tuple(found)
+        attempts.append(attempt(step))
+    return tuple(attempts)
 
 
 def examine(case: Case, scheme: str, right: Right) -> Finding:

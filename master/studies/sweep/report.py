@@ -86,7 +86,7 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
     return "\n".join(line.rstrip() for line in aligned)
 
 
-def write_csv(members: Sequence[Member], path: Path) -> None:
+def write_table(members: Sequence[Member], path: Path) -> None:
     """All figures of all members; a varied number stands in the unit its column names, or SI."""
     names, figures = list(members[0].settings), keys(members)
     columns = {name: _column(name, [m.settings[name] for m in members]) for name in names}

@@ -13,7 +13,15 @@ from touchdown.master.common.processes import run_all
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.results.run import make_writable, run_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.report import Member, write_csv
+from touchdown.master.studies.sweep.report import Member, write_table
+
+
+@dataclass(frozen=True)
+class Execution:
+    """How members run, and what is kept of them."""
+
+    in_process: bool = False  # without FMUs
+    keep: bool = False  # the recording, result.h5
 
 
 @dataclass(frozen=True)
@@ -24,8 +32,7 @@ class Task:
     settings: Mapping[str, object]
     scene: Scene
     folder: Path
-    in_process: bool
-    keep: bool
+    execution: Execution
 
 
 def sweep(
@@ -33,17 +40,16 @@ def sweep(
     variations: Mapping[str, Sequence[object]],
     folder: Path,
     jobs: int = 2,
-    in_process: bool = False,
-    keep: bool = False,
+    execution: Execution = Execution(),
     done: Callable[[], object] = lambda: None,
 ) -> list[Member]:
     """Run `scene` with every combination of the values that `variations` has for each setting.
 
     Writes `folder`/sweep.csv with all figures of all members, and summary.json of each into 001, 002 and
-    so on; their recordings too if `keep`. Runs `jobs` at a time; done() after each. Raises TouchdownError
-    where a setting cannot be; a member that fails says so and the others go on. After Ctrl-C those that
-    have not run are INTERRUPTED. A script that calls it needs `if __name__ == "__main__":`, as all do
-    that start processes.
+    so on; their recordings too where `execution` keeps them. Runs `jobs` at a time; done() after each.
+    Raises TouchdownError where a setting cannot be; a member that fails says so and the others go on.
+    After Ctrl-C those that have not run are INTERRUPTED. A script that calls it needs
+    `if __name__ == "__main__":`, as all do that start processes.
     """
     check(scene, variations)
     if jobs < 1:
@@ -54,14 +60,14 @@ def sweep(
     ]
     width = max(3, len(str(len(settings))))
     tasks = [
-        Task(number, given, scene.set(given), folder / f"{number:0{width}}", in_process, keep)
+        Task(number, given, scene.set(given), folder / f"{number:0{width}}", execution)
         for number, given in enumerate(settings, start=1)
     ]
     members = [
         outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
         for task, outcome in zip(tasks, run_all(_run_task, tasks, jobs, done), strict=True)
     ]
-    write_csv(members, folder / "sweep.csv")
+    write_table(members, folder / "sweep.csv")
     return members
 
 
@@ -80,8 +86,8 @@ def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:
 
 def _run_task(task: Task) -> Member:
     """Run a member; whether it completed or not, it has a summary."""
-    result = run_scene(task.scene, task.folder, in_process=task.in_process, pictures=False)
-    if not task.keep:
+    result = run_scene(task.scene, task.folder, in_process=task.execution.in_process, pictures=False)
+    if not task.execution.keep:
         (task.folder / "result.h5").unlink(missing_ok=True)
     return Member(task.number, task.settings, result.summary, result.stopped_because, result.ended)
 

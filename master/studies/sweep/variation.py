@@ -38,19 +38,19 @@ def parse(text: str) -> Variation:
 
 def parse_all(texts: Iterable[str]) -> dict[str, tuple[str, ...]]:
     """Values by name. Raises TouchdownError where there are none, or a name comes twice."""
-    found: dict[str, tuple[str, ...]] = {}
+    variations: dict[str, tuple[str, ...]] = {}
     for text in texts:
         variation = parse(text)
-        if variation.name in found:
+        if variation.name in variations:
             raise TouchdownError(
                 f"--vary {variation.name} is given twice; write all its values in one list"
             )
-        found[variation.name] = variation.values
-    if not found:
+        variations[variation.name] = variation.values
+    if not variations:
         raise TouchdownError(
             "nothing varies; add --vary NAME=VALUE,VALUE,... or --vary NAME=START:STOP:COUNT"
         )
-    return found
+    return variations
 
 
 def number_and_unit(value: object) -> tuple[float, str] | None:

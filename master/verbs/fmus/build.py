@@ -40,15 +40,15 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.fmus.recipes import Recipe, names
     from touchdown.master.components.library import locate
 
-    found = [locate(name) for name in options.names or names()]
-    for name, one in zip(options.names, found, strict=False):
+    recipes = [locate(name) for name in options.names or names()]
+    for name, one in zip(options.names, recipes, strict=False):
         if not isinstance(one, Recipe):
             raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
     try:
         linked = interpreter() if options.link_python else None
     except LinkError as error:
         raise TouchdownError(str(error)) from None
-    for one in found:
+    for one in recipes:
         assert isinstance(one, Recipe)
         try:
             with writing_to(options.output):

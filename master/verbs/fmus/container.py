@@ -19,10 +19,10 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.interop.container import write
+    from touchdown.master.interop.container import write_container
 
     scene = chosen_scene(options)
-    path = write(scene, options.output or Path(f"{scene.name}.fmu"))
+    path = write_container(scene, options.output or Path(f"{scene.name}.fmu"))
     print(f"{path}: macro step {scene.run.macro_step:g} s, scheme {scene.run.scheme.name}")
     return 0
 

@@ -27,12 +27,12 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.interop.ssp.write import write
+    from touchdown.master.interop.ssp.write import write_package
 
     scene = chosen_scene(options)
-    found = write(scene, options.output or Path(f"{scene.name}.ssp"), options.outputs_only)
+    package = write_package(scene, options.output or Path(f"{scene.name}.ssp"), options.outputs_only)
     print(
-        f"{found.path}: {found.components} components, {found.connections} connections, "
+        f"{package.path}: {package.components} components, {package.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"
     )
     return 0

@@ -22,16 +22,16 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.coupling.advisor import advise
-    from touchdown.master.interop.scenes import load
+    from touchdown.master.interop.scenes import find_scene
     from touchdown.master.scene.schemes import SCHEMES
 
-    chosen = load(options.scene).set(settings(options))
-    found = advise(chosen, SCHEMES)
-    reason = found[chosen.run.scheme.name].reason
+    chosen = find_scene(options.scene).set(settings(options))
+    advice = advise(chosen, SCHEMES)
+    reason = advice[chosen.run.scheme.name].reason
     print(f"{chosen.name}, which takes {1e6 * chosen.run.macro_step:g} us: {reason}")
-    for name, advice in found.items():
+    for name, advised in advice.items():
         scheme = SCHEMES[name]
-        print(f"  {name:<18}{1e6 * advice.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")
+        print(f"  {name:<18}{1e6 * advised.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")
     return 0
 
 

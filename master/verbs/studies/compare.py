@@ -52,19 +52,19 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.interop.scenes import load
+    from touchdown.master.interop.scenes import find_scene
     from touchdown.master.studies.drop.levitation import shortened
 
     given = settings(options)
     _refuse_varied(given, options)
-    chosen = shortened(load(options.scene)).set(given)
+    chosen = shortened(find_scene(options.scene)).set(given)
     print("\n".join((_models if options.models else _schemes)(chosen, options)))
     return 0
 
 
 def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
-    from touchdown.master.studies.schemes.compare import STEPS, WANTED, Asked, compare, pieces
-    from touchdown.master.studies.schemes.report import lines, write
+    from touchdown.master.studies.schemes.compare import STEPS, WANTED, Asked, compare_schemes, pieces
+    from touchdown.master.studies.schemes.report import report_lines, write_report
 
     asked = Asked(
         schemes=tuple(SCHEMES) if options.schemes is None else _names(options.schemes),
@@ -77,14 +77,14 @@ def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
     )
     folder = results_folder(options, f"compare-{scene.name}")
     with named_progress(pieces(scene, asked), options.quiet) as begin:
-        found = compare(scene, asked, begin)
-    write(found, folder)
-    return [*lines(found), f"results in {folder}"]
+        comparison = compare_schemes(scene, asked, begin)
+    write_report(comparison, folder)
+    return [*report_lines(comparison), f"results in {folder}"]
 
 
 def _models(scene: Any, options: argparse.Namespace) -> list[str]:
-    from touchdown.master.studies.models.compare import compare
-    from touchdown.master.studies.models.report import lines, write
+    from touchdown.master.studies.models.compare import compare_models
+    from touchdown.master.studies.models.report import report_lines, write_report
     from touchdown.master.studies.models.variants import variants
 
     duration = above_zero(options.duration, "s", "--duration")
@@ -92,9 +92,9 @@ def _models(scene: Any, options: argparse.Namespace) -> list[str]:
     folder = results_folder(options, f"compare-models-{scene.name}")
     chosen = variants(scene)
     with named_progress(1 + len(chosen), options.quiet) as begin:
-        found = compare(scene, chosen, duration, repeat, options.in_process, begin)
-    write(found, folder)
-    return [*lines(found), f"results in {folder}"]
+        comparison = compare_models(scene, chosen, duration, repeat, options.in_process, begin)
+    write_report(comparison, folder)
+    return [*report_lines(comparison), f"results in {folder}"]
 
 
 def _names(text: str) -> tuple[str, ...]:
@@ -106,8 +106,8 @@ def _names(text: str) -> tuple[str, ...]:
 def _steps(text: str) -> tuple[float, ...]:
     from touchdown.master.studies.sweep.variation import listed
 
-    found = [above_zero(item, "s", "--macro-steps") for item in listed(text, f"--macro-steps {text}")]
-    return tuple(sorted({step for step in found if step is not None}))
+    steps = [above_zero(item, "s", "--macro-steps") for item in listed(text, f"--macro-steps {text}")]
+    return tuple(sorted({step for step in steps if step is not None}))
 
 
 def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> None:

@@ -28,7 +28,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.units import to_si
-    from touchdown.master.studies.dissertation.bearings import OPTIONS, SCENES, compare
+    from touchdown.master.studies.dissertation.bearings import OPTIONS, SCENES, compare_bearings
 
     duration = to_si(options.duration, "s", "--duration")
     members = count(options.ensemble, "--ensemble")
@@ -37,7 +37,7 @@ def execute(options: argparse.Namespace) -> int:
     folder = results_folder(options)
     total = members * (len(SCENES) + (len(OPTIONS) if options.options else 0))
     with progress(total, "drops", options.quiet) as bar:
-        text = compare(duration, members, options.options, folder, bar.update)
+        text = compare_bearings(duration, members, options.options, folder, bar.update)
     print(text, end="")
     print(f"results in {folder}")
     return 0

@@ -41,11 +41,11 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.units import to_si
-    from touchdown.master.interop.scenes import load
-    from touchdown.master.studies.modes.compare import compare, parse_modes, refuse_varied, runs
-    from touchdown.master.studies.modes.report import lines, write
+    from touchdown.master.interop.scenes import find_scene
+    from touchdown.master.studies.modes.compare import compare_modes, parse_modes, refuse_varied, runs
+    from touchdown.master.studies.modes.report import report_lines, write_report
 
-    chosen = load(options.scene)
+    chosen = find_scene(options.scene)
     given = settings(options)
     refuse_varied(given)
     chosen = chosen.set(given)
@@ -57,11 +57,11 @@ def execute(options: argparse.Namespace) -> int:
             raise TouchdownError(f"{name} = {value:g} s must be above 0")
     folder = results_folder(options, f"modes-{chosen.name}")
     with progress(runs(modes), "drops", options.quiet) as bar:
-        found = compare(chosen, modes, step, duration, bar.update)
-    write(found, folder)
-    print("\n".join(lines(found)))
+        comparison = compare_modes(chosen, modes, step, duration, bar.update)
+    write_report(comparison, folder)
+    print("\n".join(report_lines(comparison)))
     print(f"results in {folder}")
-    warn(found.warnings)
+    warn(comparison.warnings)
     return 0
 
 

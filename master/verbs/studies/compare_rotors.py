@@ -26,13 +26,13 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.studies.dissertation.rotors import compare, runs
+    from touchdown.master.studies.dissertation.rotors import compare_rotors, runs
 
     members = count(options.ensemble, "--ensemble")
     jobs = count(options.jobs, "--jobs")
     folder = results_folder(options)
     with progress(runs(members), "drops", options.quiet) as bar:
-        text = compare(members, folder, options.long, jobs, bar.update)
+        text = compare_rotors(members, folder, options.long, jobs, bar.update)
     print(text, end="")
     print(f"results in {folder}")
     return 0

@@ -51,8 +51,8 @@ def execute(options: argparse.Namespace) -> int:
         folder = options.output or Path("runs") / f"rotor-{own}"
         if options.output and len(names) > 1:
             folder = options.output / own
-        found = report(name, folder, speed, int(modes))
-        print(found.text)
+        description = report(name, folder, speed, int(modes))
+        print(description.text)
         print(f"pictures in {folder}\n")
     return 0
 

@@ -27,21 +27,21 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.studies.stability.cases import chosen
-    from touchdown.master.studies.stability.report import lines
-    from touchdown.master.studies.stability.study import size, study
+    from touchdown.master.studies.stability.report import report_lines
+    from touchdown.master.studies.stability.study import size, study_stability
 
     cases = chosen(_names(options.cases, "--cases"), options.long)
     schemes = [scheme(name).name for name in _names(options.schemes, "--schemes")] or list(SCHEMES)
     jobs = count(options.jobs, "--jobs")
     folder = results_folder(options)
     with progress(size(cases, schemes), "searches", options.quiet) as bar:
-        found = study(cases, schemes, folder, jobs, bar.update)
-    print("\n".join(lines(found)))
+        study = study_stability(cases, schemes, folder, jobs, bar.update)
+    print("\n".join(report_lines(study)))
     print(f"results in {folder}")
-    if found.interrupted:
+    if study.interrupted:
         return broken_off()
-    if found.failed:
-        complain(f"{len(found.failed)} searches failed, see the end of the table")
+    if study.failed:
+        complain(f"{len(study.failed)} searches failed, see the end of the table")
         return STOPPED
     return 0
 

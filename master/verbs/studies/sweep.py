@@ -50,19 +50,20 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.ended import Ended
-    from touchdown.master.interop.scenes import load
+    from touchdown.master.interop.scenes import find_scene
     from touchdown.master.studies.sweep.report import picked, table, verdict_lines
-    from touchdown.master.studies.sweep.sweep import size, sweep
+    from touchdown.master.studies.sweep.sweep import Execution, size, sweep
     from touchdown.master.studies.sweep.variation import parse_all
 
-    chosen = load(options.scene).set(settings(options))
+    chosen = find_scene(options.scene).set(settings(options))
     if options.duration is not None:
         chosen = chosen.set({"run.duration": options.duration})
     variations = parse_all(options.vary)
     jobs = count(options.jobs, "--jobs")
     folder = options.output or Path("runs") / f"sweep-{chosen.name}"
+    execution = Execution(options.in_process, options.keep)
     with progress(size(variations), "runs", options.quiet) as bar:
-        members = sweep(chosen, variations, folder, jobs, options.in_process, options.keep, bar.update)
+        members = sweep(chosen, variations, folder, jobs, execution, bar.update)
     figures, complaints = picked(members, options.pick)
     print("\n".join([table(members, figures), *verdict_lines(members)]))
     print(f"results in {folder}")

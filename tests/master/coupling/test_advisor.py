@@ -11,7 +11,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.coupling.advisor import LONGEST, advise
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.schemes import SCHEMES
 from touchdown.master.scene.step_sizes import tidy
 
@@ -26,7 +26,7 @@ def test_the_contact_states_the_swing_of_its_journal() -> None:
 
 def test_elastic_modes_make_the_swing_faster() -> None:
     steps = [
-        advise(load("rotor1-9000").set({"rotor.modes": modes}))["interface"].macro_step
+        advise(load_scene("rotor1-9000").set({"rotor.modes": modes}))["interface"].macro_step
         for modes in (2, 5, 20)
     ]
     assert LONGEST >= steps[0] > steps[1] > steps[2] > 1e-6
@@ -39,7 +39,7 @@ def test_a_scheme_bears_what_is_advised(scheme: str) -> None:
     """First impact of the disk: its peak force within 1.5 % (hold gains energy all the while)."""
 
     def peak(name: str, step: float) -> float:
-        scene = load("disk-caged-simplified").set(
+        scene = load_scene("disk-caged-simplified").set(
             {"amb.shutdown_time": 1e-3, "run.duration": 9.3e-3, "run.scheme": name, "run.macro_step": step}
         )
         system = open_system(scene, in_process=True)
@@ -47,7 +47,7 @@ def test_a_scheme_bears_what_is_advised(scheme: str) -> None:
         assert not outcome.reason
         return system.value("bearing.contact.peak_force")
 
-    step = advise(load("disk-caged-simplified"), [scheme])[scheme].macro_step
+    step = advise(load_scene("disk-caged-simplified"), [scheme])[scheme].macro_step
     assert step >= 2e-6
     assert peak(scheme, step) == pytest.approx(peak("interface", 1e-5), rel=0.015)
 

@@ -16,7 +16,7 @@ from touchdown.master.components import contract
 from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
 STEP = 2e-5  # s
 STEPS = 350  # 5 ms to the shutdown and 2 ms of falling
@@ -39,7 +39,7 @@ class Diary(Observer):
 
 def fallen(record_to: Path | None = None, *observers: Observer) -> Outcome:
     """2 ms of the smallest scene, the magnetic bearing already off."""
-    scene = load("disk-caged-simplified").set({"run.duration": 2e-3, "run.macro_step": STEP})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 2e-3, "run.macro_step": STEP})
     with opened(scene, in_process=True) as system:
         return simulate(scene, system, record_to, observers=observers)
 

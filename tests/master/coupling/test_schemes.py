@@ -9,7 +9,7 @@ from systems import history, rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, energy_scale, open_system, simulate
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES, scheme
 
@@ -64,7 +64,7 @@ def test_an_unknown_scheme_is_refused() -> None:
 
 @pytest.mark.parametrize("name", ["disk-caged-simplified", "disk-cageless-simplified"])
 def test_fmus_and_models_in_process_agree_bit_for_bit(name: str) -> None:
-    scene = load(name).set({"run.duration": 0.012})
+    scene = load_scene(name).set({"run.duration": 0.012})
     assert np.array_equal(final_signals(scene, in_process=False), final_signals(scene, in_process=True))
 
 
@@ -81,7 +81,7 @@ def final_signals(scene: Scene, in_process: bool) -> np.ndarray:
 
 
 def test_a_component_that_is_done_is_not_stepped_any_more() -> None:
-    scene = load("disk-caged-simplified").set({"run.duration": 0.01})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.01})
     system = open_system(scene, in_process=True)
     calls = 0
     step = system.components["amb"].step
@@ -97,7 +97,7 @@ def test_a_component_that_is_done_is_not_stepped_any_more() -> None:
 
 
 def test_a_swap_by_name_changes_the_bearing() -> None:
-    scene = load("disk-caged-simplified").swap(bearing="simplified_cageless")
+    scene = load_scene("disk-caged-simplified").swap(bearing="simplified_cageless")
     scene = scene.set({"run.duration": 0.012})
     system = open_system(scene, in_process=True)
     simulate(scene, system)
@@ -107,7 +107,7 @@ def test_a_swap_by_name_changes_the_bearing() -> None:
 
 def test_a_saved_state_replays_the_impact() -> None:
     """Rollback in the middle of a contact, through FMUs."""
-    scene = load("disk-caged-simplified").set({"run.duration": 0.008})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.008})
     system = open_system(scene)
     try:
         simulate(scene, system)
@@ -130,7 +130,7 @@ def test_a_saved_state_replays_the_impact() -> None:
 
 def residual(name: str, step: float) -> tuple[float, float]:
     """Ledger and balance of all energies through the first impact, over the energy lost by falling."""
-    scene = load("disk-caged-simplified").set({"run.duration": 0.01, "run.scheme": name})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.01, "run.scheme": name})
     scene = scene.set({"run.macro_step": step, "run.stop_residual": 1e9})
     system = open_system(scene, in_process=True)
     energies = ("kinetic", "potential", "dissipated")
@@ -161,7 +161,7 @@ def test_the_ledger_is_the_energy_that_is_made() -> None:
 
 @pytest.mark.parametrize(("name", "step"), [("hold", 1e-4), ("velocity", 5e-4), ("interface", 2e-2)])
 def test_a_step_that_is_too_long_stops_and_names_one_that_holds(name: str, step: float) -> None:
-    scene = load("disk-caged-simplified").set({"run.duration": 0.05, "run.scheme": name})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.05, "run.scheme": name})
     outcome = simulated(scene.set({"run.macro_step": step}))
     assert "bearing.journal on rotor.A" in outcome.reason
     suggested = float(outcome.reason.rpartition(" ")[2])

@@ -10,7 +10,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.checkpoint import Checkpoint
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith
 
@@ -20,7 +20,7 @@ END = 9.3e-3  # s after the shutdown; the first impact is over
 
 def disk(scheme: str, step: float, **settings: object) -> Scene:
     """The disk on its caged bearing, from just before the shutdown to just after the first impact."""
-    scene = load("disk-caged-simplified").set({"amb.shutdown_time": 1e-3})
+    scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 1e-3})
     given = {"duration": END, "stop_residual": 1e9, "scheme": scheme, "macro_step": step, **settings}
     return scene.set({f"run.{key}": value for key, value in given.items()})
 
@@ -86,9 +86,9 @@ def test_a_leading_bearing_hands_over_the_next_load_without_moving_on() -> None:
         system.feed(name)
         system.components[name].step(0.0 if name == "rotor" else 2e-5, 2e-5)
         system.components[name].pull()
-    load = ["journal.fx", "journal.fy", "journal.mz", "journal.dfx", "journal.dfy", "journal.dmz"]
-    assert bearings[1].read(load) == pytest.approx(bearings[0].read(load), rel=1e-6)
-    assert bearings[1].read(load)[1] > 2.0  # N
+    load_scene = ["journal.fx", "journal.fy", "journal.mz", "journal.dfx", "journal.dfy", "journal.dmz"]
+    assert bearings[1].read(load_scene) == pytest.approx(bearings[0].read(load_scene), rel=1e-6)
+    assert bearings[1].read(load_scene)[1] > 2.0  # N
 
 
 def test_a_shutdown_within_the_step_to_come_is_seen() -> None:
@@ -164,7 +164,7 @@ def test_halving_follows_its_tolerance() -> None:
     """Rotor I's two contacts act on each other, so its steps need dividing in the impact."""
     smallest, errors = [], []
     for tolerance in (1e-9, 1e-11):
-        scene = load("rotor1-9000").set(
+        scene = load_scene("rotor1-9000").set(
             {
                 "amb_A.shutdown_time": 2e-4,
                 "amb_B.shutdown_time": 2e-4,

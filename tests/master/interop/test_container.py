@@ -11,8 +11,8 @@ from fmpy.validation import validate_fmu
 from systems import history
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.interop.container import write
-from touchdown.master.scene.file import load
+from touchdown.master.interop.container import write_container
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
 SETTINGS = {"amb.shutdown_time": 0.0, "run.duration": 0.012}
@@ -21,14 +21,14 @@ EVERY = 5  # macro steps of the container in one of its host
 
 
 def dropped(**more: object) -> Scene:
-    return load("disk-caged-simplified").set({**SETTINGS, **more})
+    return load_scene("disk-caged-simplified").set({**SETTINGS, **more})
 
 
 @pytest.mark.parametrize(("scheme", "close"), [("interface", 1e-7), ("jacobi-lead", 0.0)])
 def test_a_container_drops_the_rotor_as_the_master_does(scheme: str, close: float, tmp_path: Path) -> None:
     """Bit for bit, where bearings go first only until the contact: their ring starts free."""
     scene = dropped(**{"run.scheme": scheme})
-    path = write(scene, tmp_path / "whole-disk.fmu")
+    path = write_container(scene, tmp_path / "whole-disk.fmu")
     assert validate_fmu(str(path)) == []
     step = EVERY * scene.run.macro_step
     found = simulate_fmu(str(path), stop_time=0.012, output_interval=step, output=WATCHED)
@@ -43,7 +43,7 @@ def test_a_container_drops_the_rotor_as_the_master_does(scheme: str, close: floa
 
 
 def test_equal_scenes_give_equal_containers(tmp_path: Path) -> None:
-    first, again = (write(dropped(), tmp_path / folder / "disk.fmu") for folder in ("a", "b"))
+    first, again = (write_container(dropped(), tmp_path / folder / "disk.fmu") for folder in ("a", "b"))
     assert first.read_bytes() == again.read_bytes()
 
 
@@ -58,4 +58,4 @@ def test_what_a_container_cannot_do_is_refused(
     setting: str, value: object, expected: str, tmp_path: Path
 ) -> None:
     with pytest.raises(TouchdownError, match=expected):
-        write(dropped(**{setting: value}), tmp_path / "disk.fmu")
+        write_container(dropped(**{setting: value}), tmp_path / "disk.fmu")

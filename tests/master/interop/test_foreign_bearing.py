@@ -14,8 +14,8 @@ from systems import history
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.scenes import load
-from touchdown.master.interop.ssp.write import write
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import read_names
 
 EXAMPLES = ROOT / "examples"
@@ -53,12 +53,12 @@ def test_without_its_names_every_missing_variable_is_named(folder: Path) -> None
     assert [problem.split()[0] for problem in report.problems] == expected
     assert "(input in m)" in report.problems[0]
     with pytest.raises(TouchdownError, match=r"has no variable journal\.x"):
-        open_system(load("rotor1-9000").swap(bearing_A=str(folder / "DryBushing.fmu")))
+        open_system(find_scene("rotor1-9000").swap(bearing_A=str(folder / "DryBushing.fmu")))
 
 
 def test_rotor_1_drops_on_it(folder: Path) -> None:
     """Both ends touch their bushings, rebound, and are braked by friction."""
-    scene = load(str(folder / "rotor1-dry-bushings.toml")).set(
+    scene = find_scene(str(folder / "rotor1-dry-bushings.toml")).set(
         {"amb_A.shutdown_time": 0.0, "amb_B.shutdown_time": 0.0, "run.duration": 0.01}
     )
     names = [f"{part}.{name}" for part in ("rotor.A", "rotor.B") for name in ("y", "fy", "omega")]
@@ -73,12 +73,12 @@ def test_rotor_1_drops_on_it(folder: Path) -> None:
 
 
 def test_names_are_given_to_a_swap_and_survive_a_package(folder: Path, tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
+    scene = find_scene("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
     scene = scene.with_names("bearing", read_names(NAMES)).set(
         {"amb.shutdown_time": 0.0, "run.duration": 0.01, "run.macro_step": 5e-5, "bearing.stiffness": 1e7}
     )
     scene = scene.set({"run.record_every": 1})
-    again = load(str(write(scene, tmp_path / "own.ssp").path))
+    again = find_scene(str(write_package(scene, tmp_path / "own.ssp").path))
     assert again.components["bearing"].names == scene.components["bearing"].names
     watched = ["rotor.A.y", "bearing.journal.fy"]
     values, values_again = (history(s, watched, in_process=False)[1] for s in (scene, again))

@@ -17,9 +17,9 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
-from touchdown.master.interop.scenes import load
+from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.names import HEART, NAMESPACES
-from touchdown.master.interop.ssp.write import write
+from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.interop.ssp.xml import CHOICES
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
@@ -31,12 +31,12 @@ WATCHED = ["rotor.A.x", "rotor.A.y", "bearing.journal.fx", "bearing.contact.peak
 
 def dropped() -> Scene:
     """A disk that drops at once and hits its bearing within the run."""
-    return load("disk-caged-simplified").set(DROP)
+    return find_scene("disk-caged-simplified").set(DROP)
 
 
 @pytest.fixture(scope="session")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write(dropped(), tmp_path_factory.mktemp("ssp") / "disk.ssp").path
+    return write_package(dropped(), tmp_path_factory.mktemp("ssp") / "disk.ssp").path
 
 
 def structure(path: Path) -> etree._Element:
@@ -64,14 +64,14 @@ def test_units_that_are_used_are_defined(package: Path) -> None:
 
 
 def test_equal_scenes_give_equal_bytes(package: Path, tmp_path: Path) -> None:
-    again = write(dropped(), tmp_path / "elsewhere" / "again.ssp").path
+    again = write_package(dropped(), tmp_path / "elsewhere" / "again.ssp").path
     assert again.read_bytes() == package.read_bytes()
 
 
 def test_connections_are_those_of_the_scheme(tmp_path: Path) -> None:
     """Of a flexible rotor's modes those in use, sensors and constants among them."""
-    scene = load("rotor1-9000").set({"rotor.modes": 2, "run.duration": 1e-3})
-    path = write(scene, tmp_path / "rotor.ssp").path
+    scene = find_scene("rotor1-9000").set({"rotor.modes": 2, "run.duration": 1e-3})
+    path = write_package(scene, tmp_path / "rotor.ssp").path
     system = open_system(scene, in_process=True)
     try:
         system.initialise()
@@ -102,7 +102,7 @@ def test_constants_are_start_values_too(package: Path) -> None:
 
 
 def test_a_package_runs_as_its_scene_to_the_last_bit(package: Path) -> None:
-    scene, again = dropped(), load(str(package))
+    scene, again = dropped(), find_scene(str(package))
     assert (again.run, again.zero, again.energy_scale) == (scene.run, scene.zero, scene.energy_scale)
     times, values, outcome = history(scene, WATCHED, in_process=False)
     times_again, values_again, outcome_again = history(again, WATCHED, in_process=False)
@@ -114,7 +114,7 @@ def test_a_package_runs_as_its_scene_to_the_last_bit(package: Path) -> None:
 
 
 def test_ports_are_recognised_again(package: Path) -> None:
-    system = open_system(load(str(package)))
+    system = open_system(find_scene(str(package)))
     try:
         assert [a.title for a in system.attachments] == [
             "amb.journal on rotor.amb",
@@ -127,7 +127,7 @@ def test_ports_are_recognised_again(package: Path) -> None:
 
 
 def test_units_and_types_survive(package: Path, tmp_path: Path) -> None:
-    again = write(load(str(package)), tmp_path / "disk.ssp").path
+    again = write_package(find_scene(str(package)), tmp_path / "disk.ssp").path
     assert structure(again).get("name") == "disk"
     parts = "ssd:System/ssd:Elements", "ssd:System/ssd:Connections", "ssd:Units", "ssd:DefaultExperiment"
     for part in parts:
@@ -154,7 +154,7 @@ def test_macro_steps_of_their_own_and_scales_survive(tmp_path: Path) -> None:
         "scaled",
         tmp_path,
     )
-    again = load(str(write(scene, tmp_path / "scaled.ssp").path))
+    again = find_scene(str(write_package(scene, tmp_path / "scaled.ssp").path))
     assert again.components["amb"].every == 2
     assert again.connect[-1] == scene.connect[0]
     times, values, _ = history(again, ["rotor.A.y", "amb.sensor.y"], in_process=False)
@@ -165,7 +165,7 @@ def test_macro_steps_of_their_own_and_scales_survive(tmp_path: Path) -> None:
 
 
 def test_settings_and_swaps_work_on_a_package(package: Path) -> None:
-    scene = load(str(package)).set({"rotor.mass": "2 kg"}).swap(bearing="bushing")
+    scene = find_scene(str(package)).set({"rotor.mass": "2 kg"}).swap(bearing="bushing")
     _, values, _ = history(scene, ["rotor.mass", "bearing.journal.fy"])
     assert values["rotor.mass"][-1] == 2.0
     assert np.max(values["bearing.journal.fy"]) > 100.0
@@ -240,7 +240,7 @@ def pack(tmp_path: Path) -> Pack:
 
 
 def test_bindings_mappings_and_units_of_other_tools_are_applied(pack: Pack) -> None:
-    scene = load(str(pack(None)))
+    scene = find_scene(str(pack(None)))
     assert scene.components["rotor"].set == pytest.approx({"mass": 1.65, "y": -0.125e-3, "gravity": 1.62})
     assert scene.run.duration == 0.004
     system = open_system(scene)
@@ -253,7 +253,7 @@ def test_bindings_mappings_and_units_of_other_tools_are_applied(pack: Pack) -> N
 
 def test_the_outer_binding_wins(pack: Pack) -> None:
     outer = SYSTEM_VALUES.replace('"gravity"', '"mass"')
-    assert load(str(pack(foreign(system=outer)))).components["rotor"].set["mass"] == 1.62
+    assert find_scene(str(pack(foreign(system=outer)))).components["rotor"].set["mass"] == 1.62
 
 
 def test_a_connection_is_converted_and_transformed(pack: Pack) -> None:
@@ -262,7 +262,7 @@ def test_a_connection_is_converted_and_transformed(pack: Pack) -> None:
         '<ssd:Connection startElement="rotor" startConnector="A.omega" endElement="bearing" '
         'endConnector="journal.omega"><ssc:LinearTransformation factor="2" offset="3"/></ssd:Connection>'
     )
-    scene = load(str(pack(foreign(wire))))
+    scene = find_scene(str(pack(foreign(wire))))
     assert scene.connect[-1].scale == (2.0, 3.0)
     settings = {"rotor.speed": 100.0, "run.duration": 4e-5, "run.macro_step": 2e-5}
     _, values, _ = history(scene.set(settings), ["bearing.journal.omega"], in_process=False)
@@ -277,7 +277,7 @@ def test_a_connection_is_converted_and_transformed(pack: Pack) -> None:
         '<ssc:Real unit="rpm"/></ssd:Connector></ssd:Connectors></ssd:Component>'
     )
     text = foreign(wire).replace("<ssd:DefaultExperiment", units).replace('bushing.fmu"/>', declared)
-    scale = load(str(pack(text))).connect[-1].scale
+    scale = find_scene(str(pack(text))).connect[-1].scale
     assert scale == pytest.approx((2.0 / 0.10471975511965977, 3.0), rel=1e-14)
 
 
@@ -328,7 +328,7 @@ REFUSED = {
 def test_what_cannot_be_run_is_refused_in_one_line(pack: Pack, expected: str) -> None:
     path = pack(REFUSED[expected])
     with pytest.raises(TouchdownError) as refused:
-        load(str(path))
+        find_scene(str(path))
     message = str(refused.value)
     assert expected in message
     assert str(path) in message
@@ -349,23 +349,23 @@ def test_broken_parameters_are_named(pack: Pack, file: str, old: str, new: str, 
     text = {"ssv": SSV, "ssm": SSM}[file]
     assert old in text
     with pytest.raises(TouchdownError, match=expected):
-        load(str(pack(None, **{file: text.replace(old, new)})))
+        find_scene(str(pack(None, **{file: text.replace(old, new)})))
 
 
 def test_broken_archives_are_refused(tmp_path: Path, package: Path) -> None:
     path = tmp_path / "broken.ssp"
     with pytest.raises(TouchdownError, match="there is no file"):
-        load(str(path))
+        find_scene(str(path))
     path.write_bytes(package.read_bytes()[:100_000])
     with pytest.raises(TouchdownError, match="damaged or not an SSP package"):
-        load(str(path))
+        find_scene(str(path))
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", "<a/>")
     with pytest.raises(TouchdownError, match=r"it has no SystemStructure\.ssd"):
-        load(str(path))
+        find_scene(str(path))
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr(HEART, foreign())
         archive.writestr("../outside", "x")
     with pytest.raises(TouchdownError, match="leads out of its folder"):
-        load(str(path))
+        find_scene(str(path))
     assert not (tmp_path.parent / "outside").exists()

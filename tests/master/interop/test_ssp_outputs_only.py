@@ -10,9 +10,9 @@ import pytest
 
 from touchdown.master.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.interop.scenes import load
+from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.names import HEART, NAMESPACES
-from touchdown.master.interop.ssp.write import write
+from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.scene import Scene
 
 CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m"}
@@ -40,9 +40,9 @@ def started(root: Element) -> dict[str, float]:
 
 
 def test_constants_are_start_values_instead(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified")
-    whole = structure(write(scene, tmp_path / "whole.ssp").path)
-    outputs = structure(write(scene, tmp_path / "outputs.ssp", outputs_only=True).path)
+    scene = find_scene("disk-caged-simplified")
+    whole = structure(write_package(scene, tmp_path / "whole.ssp").path)
+    outputs = structure(write_package(scene, tmp_path / "outputs.ssp", outputs_only=True).path)
     assert connected(whole) - connected(outputs) == CONSTANTS
     kinds = {c.attrib["kind"] for c in outputs.iter(f"{{{NAMESPACES['ssd']}}}Connector")}
     assert kinds == {"input", "output", "parameter"}
@@ -61,8 +61,8 @@ def landed(scene: Scene) -> list[float]:
 
 
 def test_it_runs_like_the_scene(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").set({"amb.shutdown_time": 2e-3, "run.duration": 9e-3})
-    found = landed(load(str(write(scene, tmp_path / "disk.ssp", outputs_only=True).path)))
+    scene = find_scene("disk-caged-simplified").set({"amb.shutdown_time": 2e-3, "run.duration": 9e-3})
+    found = landed(find_scene(str(write_package(scene, tmp_path / "disk.ssp", outputs_only=True).path)))
     assert found == landed(scene)
     assert found[-1] > 300.0
 

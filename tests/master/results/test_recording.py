@@ -13,9 +13,9 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.recording import Recording
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
-SCENE = load("disk-caged-detailed").set({"run.duration": 2e-3})
+SCENE = load_scene("disk-caged-detailed").set({"run.duration": 2e-3})
 HEADING = {
     "title": "Rigid disk dropped on a detailed caged bearing",
     "scene": "disk-caged-detailed",
@@ -78,7 +78,7 @@ def test_elements_of_arrays_are_kept_of_the_end(path: Path) -> None:
 
 
 def test_a_run_that_stops_can_be_read(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified")
+    scene = load_scene("disk-caged-simplified")
     scene = scene.set({"run.duration": 0.02, "run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, tmp_path / "result.h5")

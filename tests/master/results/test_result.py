@@ -20,12 +20,14 @@ from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
 
 def short(name: str, duration: float = 0.01) -> Result:
     """A short run in a temporary folder."""
-    return run_scene(load(name).set({"run.duration": duration}), None, in_process=True, pictures=False)
+    return run_scene(
+        load_scene(name).set({"run.duration": duration}), None, in_process=True, pictures=False
+    )
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +104,7 @@ def test_it_tells_how_the_run_ended(detailed: Result) -> None:
 
 
 def test_a_stopped_run_says_why() -> None:
-    scene = load("disk-caged-simplified")
+    scene = load_scene("disk-caged-simplified")
     scene = scene.set({"run.duration": 0.01, "run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
     result = run_scene(scene, None, in_process=True, pictures=False)
     assert result.ended is Ended.STOPPED
@@ -171,7 +173,7 @@ def test_without_a_figure_pyplot_makes_one(detailed: Result) -> None:
 
 
 def test_a_result_needs_no_fmu_any_more(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").set({"run.duration": 2e-3})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 2e-3})
     here = run_scene(scene, tmp_path, in_process=True)
     figure = sheet()
     here.plot.paths(figure)

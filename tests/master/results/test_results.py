@@ -14,7 +14,7 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import dominant_frequency
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
 REQUIRED = {
     "first_contact_time_s", "first_contact_speed_m_s", "peak_contact_force_N",
@@ -28,7 +28,7 @@ REQUIRED = {
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
     """A short drop with everything written."""
-    scene = load("disk-caged-simplified").set({"run.duration": 0.2, "run.record_every": 2})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.2, "run.record_every": 2})
     return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True)
 
 
@@ -95,7 +95,7 @@ def test_a_silent_run_has_no_frequency() -> None:
 
 
 def test_a_rerun_replaces_what_was_there(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").set({"run.duration": 0.002})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
     for _ in range(2):
         result = run_scene(scene, tmp_path, in_process=True, pictures=False)
     assert result.summary["first_contact_time_s"] is None

@@ -20,7 +20,7 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.stresses import along
 from touchdown.master.results.summary import summarise, touchdown_seats
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
 NODES = 25
@@ -34,7 +34,7 @@ SHUTDOWN = 1e-3  # s
 
 def short(name: str, duration: float) -> Scene:
     """The drop of a rotor whose magnetic bearings shut down at once."""
-    scene = load(name).set({"run.duration": duration, "run.record_every": 1})
+    scene = load_scene(name).set({"run.duration": duration, "run.record_every": 1})
     for bearing in ("amb_A", "amb_B"):
         scene = scene.set({f"{bearing}.shutdown_time": SHUTDOWN})
     return scene
@@ -107,7 +107,7 @@ def test_no_stress_was_computed(tmp_path: Path) -> None:
 
 
 def test_a_rigid_rotor_has_no_stresses(tmp_path: Path) -> None:
-    scene = load("disk-caged-simplified").set({"run.duration": 1e-3})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-3})
     assert not run_scene(scene, tmp_path, in_process=True, pictures=False).summary.keys() & KEYS
 
 

@@ -15,7 +15,7 @@ from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import summarise, table
 from touchdown.master.results.whirl.contacts import NEAR
 from touchdown.master.results.whirl.verdict import Whirl, classify
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
 CLEARANCE = 3e-4  # m
 BOTTOM = -0.5 * math.pi
@@ -230,7 +230,7 @@ def test_values_that_are_no_numbers_are_passed_over() -> None:
 
 def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
     """A recorded drop whose motion is replaced by a made one: the housing moves as far as the journal."""
-    scene = load("disk-caged-simplified").set({"run.duration": 0.1})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.1})
     run_scene(scene, tmp_path, in_process=True, pictures=False)
     with h5py.File(tmp_path / "result.h5", "a") as file:
         time = np.asarray(file["time"])
@@ -270,7 +270,7 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
 
 def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
     """Long enough for it to have bounced and begun its pendulum motion."""
-    scene = load("disk-caged-simplified").set({"run.duration": 0.3})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.3})
     summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
     assert summary["whirl_A"] == "pendulum"
     assert summary["whirl_A_revolutions"] == 0.0
@@ -280,7 +280,7 @@ def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
 
 def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
     """Rotor I at 18000 rpm, 450 um out of line: a turn takes 4 ms from the first contact on."""
-    scene = load("rotor1-18000-225um").set({"run.duration": 0.04, "run.macro_step": 4e-5})
+    scene = load_scene("rotor1-18000-225um").set({"run.duration": 0.04, "run.macro_step": 4e-5})
     summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
     assert summary["whirl_A"] == "sustained backward whirl"
     (episode,) = summary["whirl_A_episodes"]

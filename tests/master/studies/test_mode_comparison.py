@@ -10,10 +10,10 @@ import pytest
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.drop.first_impact import AVERAGE, Trace
-from touchdown.master.studies.modes.compare import Comparison, compare, parse_modes, runs
-from touchdown.master.studies.modes.report import lines, write
+from touchdown.master.studies.modes.compare import Comparison, compare_modes, parse_modes, runs
+from touchdown.master.studies.modes.report import report_lines, write_report
 
 ROTOR_I = "rotor1-9000"
 SHORT = ("--set", "amb_A.shutdown_time=1 ms", "--set", "amb_B.shutdown_time=1 ms", "--macro-step", "5 us")
@@ -56,11 +56,11 @@ def test_no_touch_is_no_impact() -> None:
 
 def compared(modes: list[int]) -> Comparison:
     """Rotor I, levitated for 1 ms."""
-    scene = load(ROTOR_I)
+    scene = load_scene(ROTOR_I)
     for name in "AB":
         scene = scene.set({f"amb_{name}.shutdown_time": 1e-3})
     calls: list[int] = []
-    found = compare(scene, modes, 2e-6, done=lambda: calls.append(1))
+    found = compare_modes(scene, modes, 2e-6, done=lambda: calls.append(1))
     assert len(calls) == runs(modes)
     return found
 
@@ -110,7 +110,7 @@ def test_the_highest_frequency_is_known_where_the_seats_are_told_of_it(rotor_i: 
 
 
 def test_the_table_says_what_the_reference_is(rotor_i: Comparison) -> None:
-    text = lines(rotor_i)
+    text = report_lines(rotor_i)
     assert "macro step 1 us, energy residual" in text[1]
     assert text[2].startswith("  A: first impact 7.")
     assert [line.split()[0] for line in text[-3:]] == ["3", "3", "all"]
@@ -118,7 +118,7 @@ def test_the_table_says_what_the_reference_is(rotor_i: Comparison) -> None:
 
 
 def test_what_is_written(rotor_i: Comparison, tmp_path: Path) -> None:
-    write(rotor_i, tmp_path)
+    write_report(rotor_i, tmp_path)
     rows = table(tmp_path)
     assert [row["run"] for row in rows] == ["reference", "coupling", "modes", "modes"]
     assert [row["modes"] for row in rows] == ["all", "all", "3", "3"]
@@ -130,7 +130,7 @@ def test_what_is_written(rotor_i: Comparison, tmp_path: Path) -> None:
     assert rows[0]["highest_frequency_Hz"] == ""
     assert (tmp_path / "modes.png").stat().st_size > 10_000
     with pytest.raises(TouchdownError, match="choose another folder with -o"):
-        write(rotor_i, tmp_path / "missing")
+        write_report(rotor_i, tmp_path / "missing")
 
 
 def table(folder: Path) -> list[dict[str, str]]:
@@ -190,9 +190,9 @@ def test_what_cannot_be_compared_is_one_line(
 
 
 def test_a_drop_that_never_lands() -> None:
-    scene = load(ROTOR_I).set({"run.duration": 1e-3})
+    scene = load_scene(ROTOR_I).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare(scene, [2], 1e-5)
+        compare_modes(scene, [2], 1e-5)
 
 
 def test_numbers_of_modes_are_put_in_order() -> None:

@@ -10,9 +10,9 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.drop.levitation import shortened
-from touchdown.master.studies.models.compare import Comparison, Row, compare
+from touchdown.master.studies.models.compare import Comparison, Row, compare_models
 from touchdown.master.studies.models.report import advice
 from touchdown.master.studies.models.variants import Variant, variants
 
@@ -20,7 +20,7 @@ DISK = "disk-caged-simplified"
 
 
 def titles(name: str, **settings: object) -> list[str]:
-    return [v.title for v in variants(load(name).set(settings))]
+    return [v.title for v in variants(load_scene(name).set(settings))]
 
 
 def test_a_rigid_disk_has_no_modes_to_leave_out() -> None:
@@ -57,7 +57,7 @@ def test_detailed_bearings_are_simplified() -> None:
 
 @pytest.mark.parametrize("name", ["rotor1-9000", "rotor2-case1", DISK, "disk-cageless-detailed"])
 def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
-    scene = load(name)
+    scene = load_scene(name)
     for variant in variants(scene):
         with opened(variant.scene, in_process=True) as system:
             seat = next(iter(system.attachments)).bearing
@@ -72,12 +72,12 @@ def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
-    scene = shortened(load(DISK))
+    scene = shortened(load_scene(DISK))
     chosen = [v for v in variants(scene) if v.title != "detailed bearings"]  # slow to compile
     early = scene.set({"run.macro_step": 1.0})
     begun: list[str] = []
     chosen.append(Variant("impossible", early))
-    found = compare(scene, chosen, 3e-3, 1, True, begun.append)
+    found = compare_models(scene, chosen, 3e-3, 1, True, begun.append)
     assert begun == ["the scene as it is", *(v.title for v in chosen)]
     return found
 
@@ -125,9 +125,9 @@ def test_only_what_is_cheap_and_faster_is_advised(disk: Comparison) -> None:
 
 
 def test_a_drop_that_never_lands() -> None:
-    scene = load(DISK).set({"run.duration": 1e-3})
+    scene = load_scene(DISK).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare(scene, [])
+        compare_models(scene, [])
 
 
 def test_the_command(

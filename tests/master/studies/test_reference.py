@@ -7,7 +7,7 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.drop.levitation import SHORT, shortened
 from touchdown.master.studies.drop.reference import (
     FIRST,
@@ -70,12 +70,12 @@ def test_a_distance_is_the_largest_of_any_seat_and_instant() -> None:
 
 
 def test_many_states_take_explicit_solvers() -> None:
-    assert pair(load("disk-caged-simplified")) == (FIRST, SECOND)
-    assert pair(load("rotor1-9000")) == (FIRST, EXPLICIT)
+    assert pair(load_scene("disk-caged-simplified")) == (FIRST, SECOND)
+    assert pair(load_scene("rotor1-9000")) == (FIRST, EXPLICIT)
 
 
 def test_levitation_is_shortened_by_the_same_for_all() -> None:
-    scene = load("rotor1-9000").set({"amb_B.shutdown_time": "25 ms"})
+    scene = load_scene("rotor1-9000").set({"amb_B.shutdown_time": "25 ms"})
     with opened(shortened(scene), in_process=True) as system:
         assert system.value("amb_A.shutdown_time") == pytest.approx(SHORT)
         assert system.value("amb_B.shutdown_time") == pytest.approx(SHORT + 5e-3)

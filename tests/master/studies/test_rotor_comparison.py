@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from touchdown.master.coupling.simulation import open_system
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.dissertation import rotors as rotor_comparison
 from touchdown.master.studies.dissertation.rotors import (
     FIG_14,
@@ -51,7 +51,7 @@ def test_a_figure_that_no_run_has_is_a_dash() -> None:
 def test_every_row_can_be_assembled(row: Case) -> None:
     """Its settings exist in its scene, and the source has its case."""
     assert row.case in SOURCE_4
-    open_system(load(f"rotor2-case{row.case}").set(row.settings), in_process=True).close()
+    open_system(load_scene(f"rotor2-case{row.case}").set(row.settings), in_process=True).close()
 
 
 def test_a_table_of_one_short_drop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

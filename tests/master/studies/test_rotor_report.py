@@ -13,7 +13,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor.figure import campbell, modes, rest
-from touchdown.master.studies.rotor.report import NO_REST, report, table
+from touchdown.master.studies.rotor.report import NO_REST, report, report_text
 from touchdown.rotor.file import find, shipped
 from touchdown.rotor.portrait import Portrait, portrait
 
@@ -67,7 +67,7 @@ def test_the_sense_of_the_spin_does_not_matter(found: Portrait) -> None:
 
 
 def test_the_table_tells_all(found: Portrait) -> None:
-    text, shaft = table(found), found.shaft
+    text, shaft = report_text(found), found.shaft
     assert text.startswith(f"{shaft.title}\n")
     for label, value in (
         ("mass", shaft.mass),

@@ -22,7 +22,7 @@ from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.studies.stability import study as stability_study
 from touchdown.master.studies.stability.cases import bounce, cases, chosen
-from touchdown.master.studies.stability.report import Study, lines
+from touchdown.master.studies.stability.report import Study, report_lines
 from touchdown.master.studies.stability.trials import (
     FIRST,
     GROWTH,
@@ -195,7 +195,9 @@ def test_tables_show_limits_and_where_the_ledger_was_silent() -> None:
     }
     right = Right((1.0,), 1.0, 1.0, rate=1e4)
     schemes = ("hold", "interface", "velocity")
-    text = lines(Study([replace(case, theory=None)], schemes, {case.name: right}, found, {"it": "why"}))
+    text = report_lines(
+        Study([replace(case, theory=None)], schemes, {case.name: right}, found, {"it": "why"})
+    )
     rows = [line.split() for line in text if line.startswith(case.name)]
     assert rows[0] == ["bounce", "10/50!", "1000/1000", "?"]
     assert rows[1] == ["bounce", "50", "1", "?"]  # %

@@ -16,9 +16,9 @@ from places import ROOT
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.sweep.report import Member, picked, table, verdict_lines
-from touchdown.master.studies.sweep.sweep import sweep
+from touchdown.master.studies.sweep.sweep import Execution, sweep
 from touchdown.master.studies.sweep.variation import parse, parse_all
 
 SCENE = "disk-caged-simplified"
@@ -141,10 +141,14 @@ def test_a_sweep_runs_every_combination(capsys: pytest.CaptureFixture[str], tmp_
 
 
 def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
-    scene = load(SCENE).set({"run.duration": 2e-3})
+    scene = load_scene(SCENE).set({"run.duration": 2e-3})
     steps = []
     members = sweep(
-        scene, {"rotor.mass": [1.0, "2000 g"]}, tmp_path, keep=True, done=lambda: steps.append(1)
+        scene,
+        {"rotor.mass": [1.0, "2000 g"]},
+        tmp_path,
+        execution=Execution(keep=True),
+        done=lambda: steps.append(1),
     )
     assert [m.settings for m in members] == [{"rotor.mass": 1.0}, {"rotor.mass": "2000 g"}]
     assert [m.summary["energy_scale_J"] for m in members] == [
@@ -164,8 +168,10 @@ def test_a_process_that_dies_is_one_failed_member(monkeypatch: pytest.MonkeyPatc
     """It takes the pool along; the others are run again."""
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT / 'src'}")
     (tmp_path / "sitecustomize.py").write_text(DIES)
-    scene = load(SCENE).set({"run.duration": 2e-3})
-    members = sweep(scene, {"rotor.mass": [1.0, 2.0, 3.0]}, tmp_path / "out", in_process=True)
+    scene = load_scene(SCENE).set({"run.duration": 2e-3})
+    members = sweep(
+        scene, {"rotor.mass": [1.0, 2.0, 3.0]}, tmp_path / "out", execution=Execution(in_process=True)
+    )
     assert [m.failed for m in members] == ["", "its process died", ""]
     assert [bool(m.summary) for m in members] == [True, False, True]
 

@@ -13,14 +13,14 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.drop.reference import POSITION
 from touchdown.master.studies.schemes import compare as work_precision
-from touchdown.master.studies.schemes.compare import Asked, Comparison, Row, compare, pieces
+from touchdown.master.studies.schemes.compare import Asked, Comparison, Row, compare_schemes, pieces
 from touchdown.master.studies.schemes.order import Order
-from touchdown.master.studies.schemes.report import advice, lines
+from touchdown.master.studies.schemes.report import advice, report_lines
 
 SCENE = "disk-caged-simplified"
 STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
@@ -29,9 +29,9 @@ STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
     asked = Asked(("hold", "acceleration", "interface"), STEPS, repeat=1, in_process=True)
-    scene = shortened(load(SCENE))
+    scene = shortened(load_scene(SCENE))
     begun: list[str] = []
-    found = compare(scene, asked, begun.append)
+    found = compare_schemes(scene, asked, begun.append)
     assert len(begun) == pieces(scene, asked)
     return found
 
@@ -106,7 +106,7 @@ def test_nothing_good_enough_is_said(disk: Comparison) -> None:
 
 
 def test_the_table_has_a_line_for_each_row(disk: Comparison) -> None:
-    text = lines(disk)
+    text = report_lines(disk)
     assert sum(line.startswith("interface ") for line in text) == len(STEPS) + 1  # and its orders
     assert any("Radau 1e-06" in line and "monolithic" in line for line in text)
     assert any(line.startswith("hold") and line.endswith("ledger stops") for line in text)
@@ -114,7 +114,7 @@ def test_the_table_has_a_line_for_each_row(disk: Comparison) -> None:
 
 def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
     """The second of two schemes cannot go on; the first has its numbers, and the command goes on."""
-    scene = shortened(load(SCENE))
+    scene = shortened(load_scene(SCENE))
 
     def simulated(run: Scene, system: System, **options: Any) -> Outcome:
         if run.run.scheme.name == "hold":
@@ -123,19 +123,19 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr(work_precision, "simulate", simulated)
     asked = Asked(("interface", "hold"), (2e-5, 1e-4), repeat=1, in_process=True)
-    found = compare(scene, asked)
+    found = compare_schemes(scene, asked)
     good, broken = row(found, "interface", 1e-4), row(found, "hold", 1e-4)
     assert not good.failed
     assert good.errors
     assert (broken.failed, broken.errors, broken.wall) == ("it broke", {}, None)
     assert found.orders("hold") == dict.fromkeys(("position", "velocity", "force", "energy"))
-    assert any(line.endswith("100 us  it broke") for line in lines(found))
+    assert any(line.endswith("100 us  it broke") for line in report_lines(found))
 
 
 def test_a_drop_that_never_lands() -> None:
-    scene = load(SCENE).set({"run.duration": 1e-3})
+    scene = load_scene(SCENE).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare(scene, Asked())
+        compare_schemes(scene, Asked())
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,8 +11,8 @@ from pathlib import Path
 from systems import AT, LEVITATED, dropped
 
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.interop.ssp.write import write
-from touchdown.master.scene.file import load
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
 STEP = 5e-6  # s
@@ -48,7 +48,9 @@ class Fall:
 
     def package(self, scheme: str, folder: Path) -> Path:
         """An SSP package for tools that connect outputs only."""
-        return write(self.with_scheme(scheme), folder / f"{self.scene.name}-{scheme}.ssp", True).path
+        return write_package(
+            self.with_scheme(scheme), folder / f"{self.scene.name}-{scheme}.ssp", True
+        ).path
 
     def ours(self, in_process: bool = True) -> tuple[dict[str, float], Outcome]:
         """What the project's own master gives at the same macro step, with its default scheme."""
@@ -78,7 +80,7 @@ class Fall:
 def disk(levitated: float = LEVITATED) -> Fall:
     """The rigid disk on a simplified caged bearing, held for `levitated` (s): four FMUs."""
     settings = {"amb.shutdown_time": levitated, "run.duration": AT, "run.macro_step": STEP}
-    return Fall(load("disk-caged-simplified").set(settings), ("rotor.A",), ("bearing",))
+    return Fall(load_scene("disk-caged-simplified").set(settings), ("rotor.A",), ("bearing",))
 
 
 def rotor(levitated: float = LEVITATED) -> Fall:

@@ -24,7 +24,7 @@ from touchdown.master.results.spectra import (
     waterfall,
     windows,
 )
-from touchdown.master.scene.file import load
+from touchdown.master.scene.file import load_scene
 
 RATE = 10e3  # Hz
 
@@ -169,7 +169,7 @@ def test_zooms_of_short_runs_do_not_repeat() -> None:
 )
 @pytest.mark.parametrize("duration", [0.05, 0.002])
 def test_a_short_run_has_its_pictures(name: str, more: set[str], duration: float, tmp_path: Path) -> None:
-    scene = load(name).set({"run.duration": duration})
+    scene = load_scene(name).set({"run.duration": duration})
     pictures = run_scene(scene, tmp_path, in_process=True).pictures
     assert {p.name for p in pictures} == {"orbit.png", "force.png", "speeds.png", "energy.png"} | more
     for picture in pictures:
@@ -181,7 +181,7 @@ def test_a_short_run_has_its_pictures(name: str, more: set[str], duration: float
 )
 def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: bool, tmp_path: Path) -> None:
     """A recording made up: the rotor slows down, its vibration with it."""
-    scene = load("disk-caged-simplified")
+    scene = load_scene("disk-caged-simplified")
     time = times(end, rate)
     omega = 900.0 - 50.0 * time
     with h5py.File(tmp_path / "made.h5", "w") as file:
