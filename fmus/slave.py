@@ -152,16 +152,16 @@ class ModelSlave(Fmi2Slave):
         last = self._last.get((access, kind))
         if last is not None and last[0] == vrs:
             return last[1]
-        found = self._known.get((access, kind, *vrs))
-        if found is not None:
-            self._last[access, kind] = (list(vrs), found)
-        return found
+        places = self._known.get((access, kind, *vrs))
+        if places is not None:
+            self._last[access, kind] = (list(vrs), places)
+        return places
 
     def _note(self, access: str, kind: str, vrs: list[int]) -> np.ndarray:
         """Keep a vector that was checked."""
-        found = np.array(vrs, dtype=np.intp)
-        self._known[(access, kind, *vrs)] = found
-        return found
+        places = np.array(vrs, dtype=np.intp)
+        self._known[(access, kind, *vrs)] = places
+        return places
 
     def _forget(self) -> None:
         """What may be set is another matter from now on."""

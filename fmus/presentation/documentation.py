@@ -232,11 +232,11 @@ def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
 
 def _bounds(slot: Slot) -> str:
     spec = slot.variable.spec
-    found = []
+    bounds = []
     if spec.above is not None:
-        found.append(f"&gt; {spec.above:g}")
+        bounds.append(f"&gt; {spec.above:g}")
     if spec.minimum is not None:
-        found.append(f"≥ {spec.minimum:g}")
+        bounds.append(f"≥ {spec.minimum:g}")
     if spec.maximum is not None:
-        found.append(f"≤ {spec.maximum:g}")
-    return ", ".join(found)
+        bounds.append(f"≤ {spec.maximum:g}")
+    return ", ".join(bounds)

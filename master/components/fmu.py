@@ -117,13 +117,13 @@ def _resources(folder: Path, description: Any) -> str:
 
 def units_of(description: Any) -> dict[str, Unit]:
     """Units that the description defines by SI base units, by name."""
-    found: dict[str, Unit] = {}
+    units: dict[str, Unit] = {}
     for unit in description.unitDefinitions:
         base = unit.baseUnit
         if base is not None:
             exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
-            found[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
-    return found
+            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
+    return units
 
 
 def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:

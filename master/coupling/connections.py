@@ -150,9 +150,9 @@ class Way:
 
     def needed(self, variable: str, what: str) -> Connection:
         """Of a variable that both must have; raises TouchdownError, about `what`, where one has not."""
-        found = self.connection(variable)
-        if found is not None:
-            return found
+        crossing = self.connection(variable)
+        if crossing is not None:
+            return crossing
         lacking = self._lacking(variable) or self.target
         kind = "motion" if variable in MOTION else "load"
         raise TouchdownError(
@@ -178,8 +178,8 @@ def port_connections(
         for variable in variables:
             if variable in NEEDED:
                 yield way.needed(variable, f"attach {a.title}")
-            elif (found := way.connection(variable)) is not None:
-                yield found
+            elif (crossing := way.connection(variable)) is not None:
+                yield crossing
     if scheme.modes:
         yield from _mode_connections(motion, load)
 

@@ -29,19 +29,19 @@ def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | Non
     it calls the variables of the contract. Raises TouchdownError where there is nothing to check
     (missing, damaged, no co-simulation here).
     """
-    found = locate(name)
-    path = found if isinstance(found, Path) else cached(found)
+    source = locate(name)
+    path = source if isinstance(source, Path) else cached(source)
     component = FmuComponent("checked", path, user_cache())
     report = Report(name)
     try:
         component.rename(names or {})
-        found = validate_fmu(str(path))
-        if not found:
+        complaints = validate_fmu(str(path))
+        if not complaints:
             report.lines.append("valid FMI 2.0 for co-simulation")
         elif role is None:
-            report.problems += found
+            report.problems += complaints
         else:  # what this master does not need
-            report.lines += [f"not valid FMI 2.0: {problem}" for problem in found]
+            report.lines += [f"not valid FMI 2.0: {problem}" for problem in complaints]
         check_ports(component, report)
         if role is not None:
             check_role(component, role, report)

@@ -34,11 +34,11 @@ def callbacks() -> fmi2CallbackFunctions:
         if status > 1:
             say(LOG + message.decode("utf-8", "replace"))
 
-    found = fmi2CallbackFunctions()
-    found.logger = fmi2CallbackLoggerTYPE(log)
-    found.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-    found.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-    return found
+    functions = fmi2CallbackFunctions()
+    functions.logger = fmi2CallbackLoggerTYPE(log)
+    functions.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    functions.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    return functions
 
 
 def main() -> None:

@@ -70,7 +70,7 @@ def write(scene: Scene, path: Path, outputs_only: bool = False) -> Written:
 def _resources(system: System) -> dict[str, tuple[str, Path]]:
     """By component: the FMU's place in the package, and its path. Equal FMUs are packed once."""
     places: dict[bytes, str] = {}
-    found: dict[str, tuple[str, Path]] = {}
+    files: dict[str, tuple[str, Path]] = {}
     for name, component in system.components.items():
         assert isinstance(component, FmuComponent)
         content = component.path.read_bytes()
@@ -78,8 +78,8 @@ def _resources(system: System) -> dict[str, tuple[str, Path]]:
             stem = component.path.stem
             same = [p for p in places.values() if p.startswith(f"{RESOURCES}/{stem}")]
             places[content] = f"{RESOURCES}/{stem}{f'_{len(same) + 1}' if same else ''}.fmu"
-        found[name] = places[content], component.path
-    return found
+        files[name] = places[content], component.path
+    return files
 
 
 # -- SystemStructure.ssd -----------------------------------------------------------------------------------
@@ -196,11 +196,11 @@ def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[s
 
 def _units(system: System) -> dict[str, Unit]:
     """Units by name that the FMUs define; where two differ, the first."""
-    found: dict[str, Unit] = {}
+    units: dict[str, Unit] = {}
     for component in system.components.values():
         for name, unit in component.units.items():
-            found.setdefault(name, unit)
-    return dict(sorted(found.items()))
+            units.setdefault(name, unit)
+    return dict(sorted(units.items()))
 
 
 def _unit_definitions(root: Element, units: Mapping[str, Unit]) -> None:

@@ -136,15 +136,15 @@ def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
 
 
 def _rings(system: Readable, recording: Recording, a: Attachment) -> list[Track]:
-    found: list[Track] = []
+    tracks: list[Track] = []
     if f"{a.bearing}.ring.x" in recording:
         x, y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
-        found.append(Track("inner ring", ORANGE, x, y))
+        tracks.append(Track("inner ring", ORANGE, x, y))
     port = housing_port(system, a)
     if port is not None:
         x, y = (UM * recording[f"{port}.{axis}"] for axis in "xy")
-        found.append(Track("outer ring", GREEN, x, y))
-    return found
+        tracks.append(Track("outer ring", GREEN, x, y))
+    return tracks
 
 
 def _cage(recording: Recording, a: Attachment) -> list[Track]:
@@ -157,8 +157,8 @@ def _cage(recording: Recording, a: Attachment) -> list[Track]:
 def _sync(run: Finished, a: Attachment) -> float:
     """When the ring first turned with the rotor (s from the zero); the run's end where it did not."""
     zero = run.system.value(run.scene.zero) if run.scene.zero else 0.0
-    found = run.system.value(f"{a.bearing}.ring.sync_time") - zero
-    return found if found > 0.0 else float(run.recording.time[-1])
+    sync = run.system.value(f"{a.bearing}.ring.sync_time") - zero
+    return sync if sync > 0.0 else float(run.recording.time[-1])
 
 
 def _zoom(axes: Axes, values: list[np.ndarray]) -> None:

@@ -46,9 +46,9 @@ def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
     """All of a row of contacts, in their order."""
     time = orbit.time[march.rows]
     pendulum = TURN * math.sqrt(orbit.clearance / GRAVITY)
-    found = stretches(march.angle, BACK)
-    for i, whole in enumerate(found):
-        if abs(whole.turn) < NEARLY or is_swing(time, march.angle, found, i):
+    ways = stretches(march.angle, BACK)
+    for i, whole in enumerate(ways):
+        if abs(whole.turn) < NEARLY or is_swing(time, march.angle, ways, i):
             continue
         parts = [p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= NEARLY]
         for part in parts:
