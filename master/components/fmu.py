@@ -28,9 +28,10 @@ from fmpy.fmi2 import (
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
-from touchdown.master.components.component import Causality, Component, Kind, Variability, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.description import refuse_definitions, refuse_lies
 from touchdown.master.components.unpack import unpack
+from touchdown.modelkit.variables import Causality, Variability
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale
-from touchdown.master.components.component import Causality, Component, Kind, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.contract import (
     FORCE,
     LOAD,
@@ -27,6 +27,7 @@ from touchdown.master.components.contract import (
 )
 from touchdown.master.scene.scene import Wire
 from touchdown.master.scene.schemes import Scheme
+from touchdown.modelkit.variables import Causality
 
 GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be
 

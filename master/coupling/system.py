@@ -107,7 +107,9 @@ class System:
             for source in dict.fromkeys(c.source for c in mine):
                 theirs = [c for c in mine if c.source == source]
                 outputs = self.components[source].read([c.output for c in theirs])
-                values |= {c.input: scaled(value, c.scale) for c, value in zip(theirs, outputs, strict=True)}
+                values |= {
+                    c.input: scaled(value, c.scale) for c, value in zip(theirs, outputs, strict=True)
+                }
             self.components[target].set(values)
 
     def _live(self) -> list[Connection]:

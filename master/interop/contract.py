@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from touchdown.master.components.component import Causality, Component, Kind, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.contract import (
     FORCE,
     LOAD,
@@ -25,6 +25,7 @@ from touchdown.master.components.contract import (
     UNITS,
 )
 from touchdown.modelkit.ports import MODES
+from touchdown.modelkit.variables import Causality
 
 TAKING = (Causality.INPUT,)
 GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)

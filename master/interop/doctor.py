@@ -147,4 +147,4 @@ def _verdict(path: Path, done: subprocess.CompletedProcess[str]) -> str:
     if done.returncode:
         told = said or done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
         return f"{path} failed while {stage}: {told[0 if said else -1]}"
-    return "" if stage == "ending" else f"{path} ended while {stage}"
+    return "" if stage == trial.Stage.ENDING else f"{path} ended while {stage}"

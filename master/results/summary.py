@@ -192,7 +192,7 @@ def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Record
 
 def _episode_figures(a: Attachment, episode: Episode, recording: Recording) -> dict[str, object]:
     return {
-        "direction": episode.direction,
+        "direction": episode.direction.value,
         "from_s": episode.start,
         "to_s": episode.end,
         "revolutions": episode.revolutions,

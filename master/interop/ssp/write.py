@@ -17,7 +17,7 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import Unit
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import Component, Kind
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.coupling.connections import Connection
 from touchdown.master.coupling.simulation import open_system
@@ -150,8 +150,15 @@ def _component(
     for variable in dict.fromkeys([*taken, *given, *settings]):
         _connector(connectors, component, variable, units)
     values = {**settings, **dict(zip(starts, component.read(starts), strict=True))}
-    if not values:
-        return element
+    if values:
+        _parameters(element, component, values, units)
+    return element
+
+
+def _parameters(
+    element: Element, component: Component, values: Mapping[str, float], units: Mapping[str, Unit]
+) -> None:
+    """A binding of the element with a set of `values` (SI) by variable."""
     binding = SubElement(SubElement(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
     parameter_set = SubElement(
         SubElement(binding, "ssd:ParameterValues"),
@@ -162,9 +169,8 @@ def _component(
     for variable, value in values.items():
         parameter = SubElement(parameters, "ssv:Parameter", {"name": component.own_name(variable)})
         kind, details = _type(component, variable, units)
-        number = repr(float(value)) if kind == "Real" else str(int(value))
+        number = repr(float(value)) if kind is Kind.REAL else str(int(value))
         SubElement(parameter, f"ssv:{kind}", {"value": number, **details})
-    return element
 
 
 def _step_hint(element: Element, step: float) -> None:
@@ -186,11 +192,11 @@ def _connector(connectors: Element, component: Component, name: str, units: Mapp
     SubElement(element, f"ssc:{kind}", details)
 
 
-def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[str, dict[str, str]]:
+def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[Kind, dict[str, str]]:
     """A variable's type, and its unit where it is one of `units`."""
     variable = component.variable(name)
     unit = variable.unit or ""
-    known = variable.kind == "Real" and unit in units and component.units.get(unit) == units[unit]
+    known = variable.kind is Kind.REAL and unit in units and component.units.get(unit) == units[unit]
     return variable.kind, {"unit": unit} if known else {}
 
 

@@ -20,9 +20,9 @@ from touchdown.master.results.figures.style import (
     TIME,
     Curve,
     beginning,
-    line,
     present,
     sized,
+    thinned,
     within,
     zooms,
 )
@@ -88,7 +88,8 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     for axes, span in zip(row, spans, strict=True):
         part = within(time, span)
         for c in curves:
-            line(axes, time[part], values[c.label][part], c.colour, c.label, width=c.width)
+            shown = thinned(time[part], values[c.label][part])
+            axes.plot(*shown, color=c.colour, lw=c.width, label=c.label)
         whole = span == (beginning(time), float(time[-1]))
         zoomed = whole and int(np.sum(settled)) > 1
         if zoomed:
