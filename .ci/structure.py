@@ -102,23 +102,23 @@ def _graph(root: Path, trees: Mapping[Path, ast.AST]) -> dict[str, set[str]]:
 def _circles(graph: Mapping[str, set[str]]) -> list[set[str]]:
     """Sets of modules of which each leads to each other."""
     reach = {name: _reached(name, graph) for name in graph}
-    found: list[set[str]] = []
+    circles: list[set[str]] = []
     for name in graph:
         circle = {other for other in reach[name] if name in reach[other]}
-        if circle and circle not in found:
-            found.append(circle)
-    return found
+        if circle and circle not in circles:
+            circles.append(circle)
+    return circles
 
 
 def _reached(name: str, graph: Mapping[str, set[str]]) -> set[str]:
-    found: set[str] = set()
+    reached: set[str] = set()
     ahead = list(graph[name])
     while ahead:
         other = ahead.pop()
-        if other not in found:
-            found.add(other)
+        if other not in reached:
+            reached.add(other)
             ahead += graph[other]
-    return found
+    return reached
 
 
 def _stretches(files: list[Path]) -> int:

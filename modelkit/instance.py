@@ -11,7 +11,7 @@ from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.integrators.control import MOST_STEPS
 from touchdown.modelkit.model import Model, ModelError, slots
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
-from touchdown.modelkit.variables import as_tuple, from_record, layout
+from touchdown.modelkit.variables import Causality, Scalar, as_tuple, from_record, layout
 
 
 class Instance:
@@ -103,9 +103,9 @@ class Instance:
 
     def _check_bounds(self) -> None:
         for slot in self.slots:
-            if slot.causality == "output":
+            if slot.causality is Causality.OUTPUT:
                 continue
-            store = self.reals if slot.variable.spec.kind == "real" else self.integers
+            store = self.reals if slot.variable.spec.kind is Scalar.REAL else self.integers
             problem = slot.variable.problem(store[slot.index])
             if problem:
                 raise ModelError(problem)
@@ -116,7 +116,7 @@ def _explanation(instance: Instance, status: int, time: float, step: float) -> s
     if status == BAD_INPUT:
         for slot in instance.slots:
             value = instance.reals[slot.index]
-            if slot.causality == "input" and not math.isfinite(value):
+            if slot.causality is Causality.INPUT and not math.isfinite(value):
                 return (
                     f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
                     "look at the component that feeds it"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.modelkit.variables import Nothing, Variable, flatten, layout
+from touchdown.modelkit.variables import Causality, Nothing, Variable, flatten, layout
 
 
 class ModelError(Exception):
@@ -129,7 +129,7 @@ class Slot:
     """Where a variable lives in an instance's memory, counted in 8-byte words."""
 
     variable: Variable
-    causality: str  # "parameter", "input" or "output"
+    causality: Causality  # parameter, input or output
     index: int
 
 
@@ -141,9 +141,9 @@ def slots(model: Model) -> tuple[Slot, ...]:
     """
     exposed: list[Slot] = []
     for part, kind, causality in (
-        ("p", model.parameters, "parameter"),
-        ("u", model.inputs, "input"),
-        ("o", model.outputs, "output"),
+        ("p", model.parameters, Causality.PARAMETER),
+        ("u", model.inputs, Causality.INPUT),
+        ("o", model.outputs, Causality.OUTPUT),
     ):
         fields: Any = model.memory.fields
         offset = fields[part][1] // 8

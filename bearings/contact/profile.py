@@ -99,10 +99,9 @@ def problem(name: str, profile: RaceProfile, radius: float, ball_radius: float, 
     if sharpest * ball_radius * ROOM < 1.0:
         return None
     worn, lobed = profile.wear / profile.wear_width**2, abs(profile.amplitude) * profile.lobes**2
-    cause = "wear" if worn > lobed else "amplitude"
+    cause, remedy = ("wear", "dent wider") if worn > lobed else ("amplitude", "lobes fewer")
     value = getattr(profile, cause)
     return (
         f"{name}.{cause} = {value:g} m bends the race to a radius of {1.0 / sharpest:.3g} m, where a ball "
-        f"of {ball_radius:g} m touches it at more than one point; make it smaller, or the "
-        f"{'lobes fewer' if cause == 'amplitude' else 'dent wider'}"
+        f"of {ball_radius:g} m touches it at more than one point; make it smaller, or the {remedy}"
     )

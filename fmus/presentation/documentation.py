@@ -16,15 +16,16 @@ from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import ROOT
 from touchdown.fmus.version import VERSION
 from touchdown.modelkit.model import Slot, slots
+from touchdown.modelkit.variables import Causality
 
 SOURCE = "O. Halminen, Multibody models for examination of touchdown bearing systems (LUT, 2016)"
 PHYSICS = ("touchdown.bearings.", "touchdown.rotor.")
 HEADINGS = {
-    "parameter": "Parameters",
-    "input": "Inputs",
-    "output": "Outputs",
-    "calculatedParameter": "Constants, known after initialisation",
-    "local": "Diagnostics",
+    Causality.PARAMETER: "Parameters",
+    Causality.INPUT: "Inputs",
+    Causality.OUTPUT: "Outputs",
+    Causality.CALCULATED_PARAMETER: "Constants, known after initialisation",
+    Causality.LOCAL: "Diagnostics",
 }
 STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 1em; color: #222 }
@@ -183,8 +184,8 @@ def _host(interpreter: Interpreter | None) -> Iterator[str]:
 
 def _example(recipe: Recipe) -> Iterator[str]:
     exposed = slots(recipe.model)
-    parameter = next(s for s in exposed if causality(s)[0] == "parameter" and s.variable.default)
-    shown = [s.variable.name for s in exposed if causality(s)[0] == "output"][:2]
+    parameter = next(s for s in exposed if causality(s)[0] is Causality.PARAMETER and s.variable.default)
+    shown = [s.variable.name for s in exposed if causality(s)[0] is Causality.OUTPUT][:2]
     name, value = parameter.variable.name, parameter.variable.default
     yield "<h2>Example</h2>"
     yield (
@@ -206,7 +207,7 @@ def _example(recipe: Recipe) -> Iterator[str]:
 
 def _tables(exposed: Sequence[Slot]) -> Iterator[str]:
     for role, heading in HEADINGS.items():
-        rows = list(_rows(slot for slot in exposed if causality(slot)[0] == role))
+        rows = list(_rows(slot for slot in exposed if causality(slot)[0] is role))
         if not rows:
             continue
         yield f"<h2>{heading}</h2>\n<table>"
@@ -225,18 +226,20 @@ def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
     for (_, unit, bounds, meaning), group in members.items():
         first, last = group[0].variable, group[-1].variable
         name = first.name if len(group) == 1 else f"{first.name}<br>… {last.name}"
-        start = f"{first.default:g}" if causality(group[0])[0] in ("parameter", "input") else ""
+        start = (
+            f"{first.default:g}" if causality(group[0])[0] in (Causality.PARAMETER, Causality.INPUT) else ""
+        )
         cells = (name, start, _plain(unit), bounds, _plain(meaning))
         yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
 
 
 def _bounds(slot: Slot) -> str:
     spec = slot.variable.spec
-    found = []
+    bounds = []
     if spec.above is not None:
-        found.append(f"&gt; {spec.above:g}")
+        bounds.append(f"&gt; {spec.above:g}")
     if spec.minimum is not None:
-        found.append(f"≥ {spec.minimum:g}")
+        bounds.append(f"≥ {spec.minimum:g}")
     if spec.maximum is not None:
-        found.append(f"≤ {spec.maximum:g}")
-    return ", ".join(found)
+        bounds.append(f"≤ {spec.maximum:g}")
+    return ", ".join(bounds)

@@ -17,6 +17,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Unit
+from touchdown.modelkit.variables import Causality, Variability
 
 
 class Kind(StrEnum):
@@ -29,27 +30,7 @@ class Kind(StrEnum):
     ENUMERATION = "Enumeration"
 
 
-class Causality(StrEnum):
-    """What FMI 2.0's variables are for."""
-
-    PARAMETER = "parameter"
-    CALCULATED_PARAMETER = "calculatedParameter"
-    INPUT = "input"
-    OUTPUT = "output"
-    LOCAL = "local"
-    INDEPENDENT = "independent"
-
-
-class Variability(StrEnum):
-    """When FMI 2.0's variables may change."""
-
-    CONSTANT = "constant"
-    FIXED = "fixed"
-    TUNABLE = "tunable"
-    DISCRETE = "discrete"
-    CONTINUOUS = "continuous"
-
-
+NUMBERS = (Kind.REAL, Kind.INTEGER)  # what is recorded and kept
 SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 
 

@@ -8,7 +8,8 @@ from typing import Any
 from xml.parsers import expat
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Causality, Kind, Variability
+from touchdown.master.components.component import Kind
+from touchdown.modelkit.variables import Causality, Variability
 
 
 def refuse_definitions(path: Path) -> None:

@@ -28,9 +28,10 @@ from fmpy.fmi2 import (
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
-from touchdown.master.components.component import Causality, Component, Kind, Variability, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.description import refuse_definitions, refuse_lies
 from touchdown.master.components.unpack import unpack
+from touchdown.modelkit.variables import Causality, Variability
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
@@ -117,13 +118,13 @@ def _resources(folder: Path, description: Any) -> str:
 
 def units_of(description: Any) -> dict[str, Unit]:
     """Units that the description defines by SI base units, by name."""
-    found: dict[str, Unit] = {}
+    units: dict[str, Unit] = {}
     for unit in description.unitDefinitions:
         base = unit.baseUnit
         if base is not None:
             exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
-            found[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
-    return found
+            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
+    return units
 
 
 def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:

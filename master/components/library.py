@@ -38,9 +38,9 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
 
 def load_component(name: str, fmu: str, folder: Path = Path(), in_process: bool = False) -> Component:
     """A component: an FMU, or, where asked for and possible, its model stepped in process."""
-    found = locate(fmu, folder)
-    if isinstance(found, Path):
-        return FmuComponent(name, found, user_cache())
+    source = locate(fmu, folder)
+    if isinstance(source, Path):
+        return FmuComponent(name, source, user_cache())
     if in_process:
-        return TwinComponent(name, found.model)
-    return FmuComponent(name, cached(found), user_cache(), origin=fmu)
+        return TwinComponent(name, source.model)
+    return FmuComponent(name, cached(source), user_cache(), origin=fmu)

@@ -12,9 +12,10 @@ import numpy as np
 
 from touchdown.fmus.description import causality
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Causality, Component, Kind, Variability, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot
+from touchdown.modelkit.variables import Scalar
 
 
 def _variable(slot: Slot) -> Variable:
@@ -23,9 +24,9 @@ def _variable(slot: Slot) -> Variable:
     return Variable(
         name=slot.variable.name,
         reference=slot.index,
-        kind=Kind.REAL if spec.kind == "real" else Kind.INTEGER,
-        causality=Causality(role),
-        variability=Variability(variability),
+        kind=Kind.REAL if spec.kind is Scalar.REAL else Kind.INTEGER,
+        causality=role,
+        variability=variability,
         unit=spec.unit,
         minimum=spec.minimum if spec.minimum is not None else spec.above,
         maximum=spec.maximum,

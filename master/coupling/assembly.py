@@ -60,14 +60,14 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
 def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Component]) -> list[Connection]:
     """All that the scene attaches, senses and connects, checked."""
     attached = [attachment(pair, components) for pair in scene.attach]
-    found = [c for a in attached for c in port_connections(a, components, scheme)]
-    found += [c for pair in scene.sense for c in sensor_connections(pair, components)]
-    found += [connection(wire, components) for wire in scene.connect]
-    check_connections(found, components)
-    for c in found:
+    connections = [c for a in attached for c in port_connections(a, components, scheme)]
+    connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    connections += [connection(wire, components) for wire in scene.connect]
+    check_connections(connections, components)
+    for c in connections:
         if c.input in scene.components[c.target].set:
             raise TouchdownError(f"{c.target_name} cannot be set: it is connected to {c.source_name}")
-    return found
+    return connections
 
 
 def _settings(component: Component, spec: ComponentSpec, scheme: Scheme) -> dict[str, float]:

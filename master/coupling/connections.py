@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale
-from touchdown.master.components.component import Causality, Component, Kind, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.contract import (
     FORCE,
     LOAD,
@@ -27,6 +27,7 @@ from touchdown.master.components.contract import (
 )
 from touchdown.master.scene.scene import Wire
 from touchdown.master.scene.schemes import Scheme
+from touchdown.modelkit.variables import Causality
 
 GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be
 
@@ -150,9 +151,9 @@ class Way:
 
     def needed(self, variable: str, what: str) -> Connection:
         """Of a variable that both must have; raises TouchdownError, about `what`, where one has not."""
-        found = self.connection(variable)
-        if found is not None:
-            return found
+        crossing = self.connection(variable)
+        if crossing is not None:
+            return crossing
         lacking = self._lacking(variable) or self.target
         kind = "motion" if variable in MOTION else "load"
         raise TouchdownError(
@@ -178,8 +179,8 @@ def port_connections(
         for variable in variables:
             if variable in NEEDED:
                 yield way.needed(variable, f"attach {a.title}")
-            elif (found := way.connection(variable)) is not None:
-                yield found
+            elif (crossing := way.connection(variable)) is not None:
+                yield crossing
     if scheme.modes:
         yield from _mode_connections(motion, load)
 

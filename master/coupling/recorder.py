@@ -17,14 +17,14 @@ import numpy as np
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.components.component import Component, Variable
+from touchdown.master.components.component import NUMBERS, Component, Variable
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.variables import Causality
 
 BLOCK = 4096  # rows held before they are written
 TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
-RECORDED = ("output", "local")  # causalities
-KINDS = ("Real", "Integer")
+RECORDED = (Causality.OUTPUT, Causality.LOCAL)
 
 
 class Recorder:
@@ -40,7 +40,9 @@ class Recorder:
         self.kept_at_end: dict[str, list[str]] = {}
         for name, component in components.items():
             given = [
-                v.name for v in component.variables.values() if v.causality in RECORDED and v.kind in KINDS
+                v.name
+                for v in component.variables.values()
+                if v.causality in RECORDED and v.kind in NUMBERS
             ]
             chosen = [v for v in given if _begins(f"{name}.{v}", run.record)]
             self.names[name] = [v for v in chosen if run.record_arrays or "[" not in v]

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from touchdown.master.components.component import Causality, Component, Kind
+from touchdown.master.components.component import Component, Kind
 from touchdown.master.components.contract import LOAD, SLOPE
 from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.steppers.stepper import Stepper
+from touchdown.modelkit.variables import Causality
 
 ACTIVE = "active"  # an output; 0: the component does nothing any more but for the load it still gives
 

@@ -106,8 +106,10 @@ class System:
             values: dict[str, float] = {}
             for source in dict.fromkeys(c.source for c in mine):
                 theirs = [c for c in mine if c.source == source]
-                found = self.components[source].read([c.output for c in theirs])
-                values |= {c.input: scaled(value, c.scale) for c, value in zip(theirs, found, strict=True)}
+                outputs = self.components[source].read([c.output for c in theirs])
+                values |= {
+                    c.input: scaled(value, c.scale) for c, value in zip(theirs, outputs, strict=True)
+                }
             self.components[target].set(values)
 
     def _live(self) -> list[Connection]:
@@ -119,5 +121,5 @@ class System:
     def _lay_out(self) -> None:
         """Give everything that is exchanged its place, as it is exchanged from now on."""
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
-        found = lay_out(self.components, self._live(), attachments)
-        self.signals, self.position, self.intakes = found.signals, found.position, found.intakes
+        layout = lay_out(self.components, self._live(), attachments)
+        self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes

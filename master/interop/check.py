@@ -11,11 +11,12 @@ from fmpy.validation import validate_fmu
 
 from touchdown.fmus.build import cached
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.library import locate
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
 from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.variables import Causality
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
@@ -29,19 +30,19 @@ def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | Non
     it calls the variables of the contract. Raises TouchdownError where there is nothing to check
     (missing, damaged, no co-simulation here).
     """
-    found = locate(name)
-    path = found if isinstance(found, Path) else cached(found)
+    source = locate(name)
+    path = source if isinstance(source, Path) else cached(source)
     component = FmuComponent("checked", path, user_cache())
     report = Report(name)
     try:
         component.rename(names or {})
-        found = validate_fmu(str(path))
-        if not found:
+        complaints = validate_fmu(str(path))
+        if not complaints:
             report.lines.append("valid FMI 2.0 for co-simulation")
         elif role is None:
-            report.problems += found
+            report.problems += complaints
         else:  # what this master does not need
-            report.lines += [f"not valid FMI 2.0: {problem}" for problem in found]
+            report.lines += [f"not valid FMI 2.0: {problem}" for problem in complaints]
         check_ports(component, report)
         if role is not None:
             check_role(component, role, report)
@@ -59,11 +60,13 @@ def _dry_run(component: Component, report: Report) -> None:
     outputs = [
         v.name
         for v in component.variables.values()
-        if v.causality == "output" and v.kind in ("Real", "Integer")
+        if v.causality is Causality.OUTPUT and v.kind in NUMBERS
     ]
     settable = [v for v in component.variables.values() if v.settable and v.start is not None]
     fed = [f"{port}.{suffix}" for port in ports(component) for suffix in ("y", "vy", "fy")]
-    fed = [n for n in fed if n in component.variables and component.variable(n).causality == "input"]
+    fed = [
+        n for n in fed if n in component.variables and component.variable(n).causality is Causality.INPUT
+    ]
     try:
         component.set({v.name: v.start for v in settable if v.start is not None})
         component.bind(fed, np.zeros(0), [])

@@ -20,10 +20,12 @@ from xml.etree.ElementTree import fromstring, tostring
 from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import NUMBERS
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.variables import Causality
 
 SEQUENTIAL = {"gauss-seidel": True, "jacobi": False}  # how a container steps, by a scheme's sequence
 DESCRIPTION = "modelDescription.xml"
@@ -103,9 +105,9 @@ def _fill(container: Any, system: System, sequential: bool) -> None:
         for variable, value in zip(chosen, component.read(chosen), strict=True):
             container.add_start_value(f"{name}.fmu", component.own_name(variable), repr(value))
         for variable in component.variables.values():
-            given = variable.causality == "output"
-            given = given or (variable.causality == "local" and "[" not in variable.name)
-            if given and variable.kind in ("Real", "Integer") and (name, variable.name) not in linked:
+            given = variable.causality is Causality.OUTPUT
+            given = given or (variable.causality is Causality.LOCAL and "[" not in variable.name)
+            if given and variable.kind in NUMBERS and (name, variable.name) not in linked:
                 own = component.own_name(variable.name)
                 container.add_output(f"{name}.fmu", own, f"{name}.{own}")
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from touchdown.master.components.component import Causality, Component, Kind, Variable
+from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.contract import (
     FORCE,
     LOAD,
@@ -25,6 +25,7 @@ from touchdown.master.components.contract import (
     UNITS,
 )
 from touchdown.modelkit.ports import MODES
+from touchdown.modelkit.variables import Causality
 
 TAKING = (Causality.INPUT,)
 GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
@@ -63,17 +64,17 @@ class Report:
 
 def ports(component: Component) -> dict[str, Side]:
     """Sides of a component's ports, by the ports' names."""
-    found: dict[str, Side] = {}
+    sides: dict[str, Side] = {}
     for variable in component.variables.values():
         port, _, suffix = variable.name.rpartition(".")
         if not port or port.endswith("]"):  # modes belong to their seat
             continue
         if variable.causality is Causality.INPUT and suffix in POSITION:
             loaded = any(f"{port}.{load}" in component.variables for load in FORCE)
-            found[port] = Side.BEARING if loaded else Side.SENSOR
+            sides[port] = Side.BEARING if loaded else Side.SENSOR
         elif variable.causality is Causality.INPUT and suffix in FORCE:
-            found[port] = Side.BODY
-    return found
+            sides[port] = Side.BODY
+    return sides
 
 
 @dataclass(frozen=True)
@@ -97,10 +98,10 @@ ROLES = {
 
 def check_ports(component: Component, report: Report) -> None:
     """Check every port that a component has."""
-    found = ports(component)
-    if not found:
+    sides = ports(component)
+    if not sides:
         report.lines.append("no port of a bearing or a body: it can only be connected variable by variable")
-    for port, side in found.items():
+    for port, side in sides.items():
         if side is Side.SENSOR:
             report.lines.append(f"port {port}: of a sensor")
         else:
@@ -110,13 +111,13 @@ def check_ports(component: Component, report: Report) -> None:
 def check_role(component: Component, role: str, report: Report) -> None:
     """Check what a component needs beyond the ports it has to be that (a key of ROLES)."""
     wanted = ROLES[role]
-    found = ports(component)
-    for port in (*wanted.ports, *(p for p in wanted.optional if p in found)):
-        if port not in found:
+    sides = ports(component)
+    for port in (*wanted.ports, *(p for p in wanted.optional if p in sides)):
+        if port not in sides:
             _check_port(component, port, wanted.side, report)
-        elif found[port] is not wanted.side:
-            report.problems.append(f"port {port} is of a {found[port]}, not of a {wanted.side}")
-    seats = [p for p, side in found.items() if side is wanted.side and _spins(component, p)]
+        elif sides[port] is not wanted.side:
+            report.problems.append(f"port {port} is of a {sides[port]}, not of a {wanted.side}")
+    seats = [p for p, side in sides.items() if side is wanted.side and _spins(component, p)]
     if not wanted.ports and not seats:
         report.problems.append(
             f"no port of a {wanted.side} that spins; {wanted.title} needs for each of its seats, called A "

@@ -57,10 +57,10 @@ def examine() -> Iterator[Finding]:
 
 def command_line() -> str:
     """How a host without Python is started so that it loads the FMUs. Raises LinkError where it cannot."""
-    found = interpreter()
-    packages = shlex.quote(":".join(found.packages))
+    python = interpreter()
+    packages = shlex.quote(":".join(python.packages))
     return (
-        f"LD_PRELOAD={shlex.quote(found.library)} PYTHONHOME={shlex.quote(found.prefix)} "
+        f"LD_PRELOAD={shlex.quote(python.library)} PYTHONHOME={shlex.quote(python.prefix)} "
         f"PYTHONPATH={packages} HOST"
     )
 
@@ -147,4 +147,4 @@ def _verdict(path: Path, done: subprocess.CompletedProcess[str]) -> str:
     if done.returncode:
         told = said or done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
         return f"{path} failed while {stage}: {told[0 if said else -1]}"
-    return "" if stage == "ending" else f"{path} ended while {stage}"
+    return "" if stage == trial.Stage.ENDING else f"{path} ended while {stage}"

@@ -7,6 +7,7 @@ stage it enters and what the FMU logs, so that a crash, too, is known by its pla
 from __future__ import annotations
 
 import sys
+from enum import StrEnum
 from typing import Any
 
 from fmpy import calloc, free, read_model_description
@@ -22,6 +23,16 @@ STEPS, STEP = 10, 1e-5  # s
 STAGE, LOG = "stage: ", "log: "
 
 
+class Stage(StrEnum):
+    """What the process is at."""
+
+    LOADING = "loading"
+    INITIALISING = "initialising"
+    STEPPING = "stepping"
+    FREEING = "freeing"
+    ENDING = "ending"
+
+
 def say(text: str) -> None:
     """One line, out before anything may crash."""
     print(" ".join(text.split()), flush=True)
@@ -34,11 +45,11 @@ def callbacks() -> fmi2CallbackFunctions:
         if status > 1:
             say(LOG + message.decode("utf-8", "replace"))
 
-    found = fmi2CallbackFunctions()
-    found.logger = fmi2CallbackLoggerTYPE(log)
-    found.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
-    found.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
-    return found
+    functions = fmi2CallbackFunctions()
+    functions.logger = fmi2CallbackLoggerTYPE(log)
+    functions.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+    functions.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+    return functions
 
 
 def main() -> None:
@@ -47,7 +58,7 @@ def main() -> None:
     description = read_model_description(folder, validate=False)
     assert description.coSimulation is not None
     kept = callbacks()
-    say(STAGE + "loading")
+    say(STAGE + Stage.LOADING)
     fmu = FMU2Slave(
         guid=description.guid,
         modelIdentifier=description.coSimulation.modelIdentifier,
@@ -55,17 +66,17 @@ def main() -> None:
         instanceName="trial",
     )
     fmu.instantiate(callbacks=kept, loggingOn=True)
-    say(STAGE + "initialising")
+    say(STAGE + Stage.INITIALISING)
     fmu.setupExperiment(startTime=0.0)
     fmu.enterInitializationMode()
     fmu.exitInitializationMode()
-    say(STAGE + "stepping")
+    say(STAGE + Stage.STEPPING)
     for k in range(STEPS):
         fmu.doStep(k * STEP, STEP)
-    say(STAGE + "freeing")
+    say(STAGE + Stage.FREEING)
     fmu.terminate()
     fmu.freeInstance()
-    say(STAGE + "ending")
+    say(STAGE + Stage.ENDING)
 
 
 if __name__ == "__main__":

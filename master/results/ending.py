@@ -10,14 +10,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from touchdown.master.components.component import Component, Variable
+from touchdown.master.components.component import NUMBERS, Component, Variable
 from touchdown.master.coupling.connections import Attachment, Connection, full
 from touchdown.master.coupling.system import System
 from touchdown.master.results.recording import Recording
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.variables import Causality
 
-KEPT = ("output", "local", "parameter", "calculatedParameter")  # causalities
-KINDS = ("Real", "Integer")
+KEPT = (
+    Causality.OUTPUT,
+    Causality.LOCAL,
+    Causality.PARAMETER,
+    Causality.CALCULATED_PARAMETER,
+)
 HOUSING = "housing.x"  # what a bearing knows of the housing it moves with
 
 
@@ -108,7 +113,7 @@ def ending(system: System) -> Ending:
 
 
 def _last_values(component: Component) -> LastValues:
-    names = [v.name for v in component.variables.values() if v.causality in KEPT and v.kind in KINDS]
+    names = [v.name for v in component.variables.values() if v.causality in KEPT and v.kind in NUMBERS]
     return LastValues(dict(component.variables), dict(zip(names, component.read(names), strict=True)))
 
 

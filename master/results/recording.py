@@ -47,11 +47,11 @@ class Recording:
 
     def columns(self) -> list[tuple[str, str]]:
         """(COMPONENT.VARIABLE, unit) of everything recorded."""
-        found: list[tuple[str, str]] = []
+        columns: list[tuple[str, str]] = []
         for component, group in self._file.items():
             if isinstance(group, h5py.Group) and component != END:
-                found += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
-        return found
+                columns += [(f"{component}.{name}", str(d.attrs["units"])) for name, d in group.items()]
+        return columns
 
     def about(self) -> dict[str, object]:
         """What was run: title, scene, version, scheme, macro_step_s."""

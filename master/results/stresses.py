@@ -32,25 +32,25 @@ def kept_instant(component: Teller) -> float | None:
 def along(component: Teller, variable: str) -> tuple[list[int], list[float]]:
     """Nodes, and the values there of one of their variables (SI)."""
     pattern = re.compile(rf"node\[(\d+)\]\.{re.escape(variable)}")
-    found = {int(m[1]): m[0] for m in map(pattern.fullmatch, component.variables) if m}
-    nodes = sorted(found)
-    return nodes, component.read([found[node] for node in nodes]) if nodes else []
+    names = {int(m[1]): m[0] for m in map(pattern.fullmatch, component.variables) if m}
+    nodes = sorted(names)
+    return nodes, component.read([names[node] for node in nodes]) if nodes else []
 
 
 def stress_figures(system: Readable, outcome: Outcome) -> dict[str, object]:
     """Figures of all components that report stresses; None where there was no stress."""
     names = stressed(system)
-    found: dict[str, object] = {}
+    figures: dict[str, object] = {}
     for name in names:
         tail = f"_{name}" if len(names) > 1 else ""
         component = system.components[name]
-        figures = _peaks(component, outcome.zero) | _kept(component, outcome.zero)
-        found |= {f"{key}{tail}": value for key, value in figures.items()}
-    return found
+        own = _peaks(component, outcome.zero) | _kept(component, outcome.zero)
+        figures |= {f"{key}{tail}": value for key, value in own.items()}
+    return figures
 
 
 def _peaks(component: Teller, zero: float) -> dict[str, object]:
-    found: dict[str, object] = {}
+    figures: dict[str, object] = {}
     for kind in KINDS:
         names = [f"stress.peak_{kind}{tail}" for tail in ("", "_node", "_time")]
         keys = [f"peak_{kind}_stress{tail}" for tail in ("_MPa", "_node", "_time_s")]
@@ -59,20 +59,20 @@ def _peaks(component: Teller, zero: float) -> dict[str, object]:
         value, node, time = component.read(names)
         there = value > 0.0
         values = (MPA * value, node, time - zero) if there else (None, None, None)
-        found |= dict(zip(keys, values, strict=True))
-    return found
+        figures |= dict(zip(keys, values, strict=True))
+    return figures
 
 
 def _kept(component: Teller, zero: float) -> dict[str, object]:
     time = kept_instant(component)
-    found: dict[str, object] = {"kept_stress_time_s": None if time is None else time - zero}
+    figures: dict[str, object] = {"kept_stress_time_s": None if time is None else time - zero}
     for kind in KINDS:
         for axis in "xy":
             key = f"kept_{kind}_{axis}"
             nodes, values = along(component, f"{kind}_{axis}")
             if time is None or not nodes:
-                found |= {f"{key}_MPa": None, f"{key}_node": None}
+                figures |= {f"{key}_MPa": None, f"{key}_node": None}
                 continue
             value, node = max(zip(map(abs, values), nodes, strict=True), key=lambda pair: pair[0])
-            found |= {f"{key}_MPa": MPA * value, f"{key}_node": node}
-    return found
+            figures |= {f"{key}_MPa": MPA * value, f"{key}_node": node}
+    return figures

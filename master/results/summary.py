@@ -79,45 +79,45 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
 
 def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
     """All figures of a run; None where something did not happen or was too short to tell."""
-    found: dict[str, object] = {
+    figures: dict[str, object] = {
         "scene": scene.name,
         "completed": outcome.ended is Ended.COMPLETED,
     }
     if outcome.ended is not Ended.COMPLETED:
-        found["stopped_because"] = outcome.reason
+        figures["stopped_because"] = outcome.reason
     seats = touchdown_seats(system)
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
-        found |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
+        figures |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
         with suppress(NotRecordedError):
             orbit = _orbit_figures(system, a, outcome, recording)
-            found |= {f"{key}{tail}": value for key, value in orbit.items()}
-            found |= _whirl_figures(system, a, seat_name(a, seats), recording)
+            figures |= {f"{key}{tail}": value for key, value in orbit.items()}
+            figures |= _whirl_figures(system, a, seat_name(a, seats), recording)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         seat = next(a for a in seats if a.body == name)
-        found[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(seat.motion("omega"))
-    found |= stress_figures(system, outcome)
-    found |= outcome.coupling
-    found |= _run_figures(scene, system, outcome, recording)
-    return found
+        figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(seat.motion("omega"))
+    figures |= stress_figures(system, outcome)
+    figures |= outcome.coupling
+    figures |= _run_figures(scene, system, outcome, recording)
+    return figures
 
 
 def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
     component = system.components[a.bearing]
-    found: dict[str, object] = {}
+    figures: dict[str, object] = {}
     touched = component.read(["contact.first_time"])[0] != -1.0
     for figure in FIGURES:
         if figure.variable not in component.variables:
             continue
         value = component.read([figure.variable])[0]
         if not touched or (figure.missing is not None and value == figure.missing):
-            found[figure.key] = None
+            figures[figure.key] = None
         elif isinstance(value, int):
-            found[figure.key] = value
+            figures[figure.key] = value
         else:
-            found[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
-    return found
+            figures[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
+    return figures
 
 
 def _orbit_figures(
@@ -141,8 +141,8 @@ def _orbit_figures(
     if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
         last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
         loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
-    found: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
-    return found if loaded is None else {"loaded_balls_mean": loaded} | found
+    figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
+    return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
 
 
 def relative_orbit(system: Readable, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
@@ -186,13 +186,13 @@ def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Record
     radius = None if whirl.radius is None else 1e6 * whirl.radius
     force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
     episodes = [_episode_figures(a, episode, recording) for episode in whirl.episodes]
-    found = (whirl.words, whirl.revolutions, radius, whirl.frequency, force, episodes)
-    return {f"{key}{tail}": value for tail, value in zip(tails, found, strict=True)}
+    values = (whirl.words, whirl.revolutions, radius, whirl.frequency, force, episodes)
+    return {f"{key}{tail}": value for tail, value in zip(tails, values, strict=True)}
 
 
 def _episode_figures(a: Attachment, episode: Episode, recording: Recording) -> dict[str, object]:
     return {
-        "direction": episode.direction,
+        "direction": episode.direction.value,
         "from_s": episode.start,
         "to_s": episode.end,
         "revolutions": episode.revolutions,

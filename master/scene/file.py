@@ -147,14 +147,14 @@ def _toml(path: Path, what: str) -> dict[str, Any]:
 
 def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """`base` with `changes` put in, nested tables likewise, unless they name another FMU."""
-    found = dict(base)
+    merged = dict(base)
     for key, value in changes.items():
-        there, given = entries(found.get(key)), entries(value)
+        there, given = entries(merged.get(key)), entries(value)
         if there is None or given is None or "fmu" in given:
-            found[key] = value
+            merged[key] = value
         else:
-            found[key] = _over(there, given)
-    return found
+            merged[key] = _over(there, given)
+    return merged
 
 
 def _wires(value: object, where: str) -> tuple[Wire, ...]:

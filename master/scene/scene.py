@@ -135,9 +135,9 @@ class Scene:
 
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""
-        found = asdict(self)
-        found["run"]["scheme"] = self.run.scheme.name
-        return found
+        values = asdict(self)
+        values["run"]["scheme"] = self.run.scheme.name
+        return values
 
 
 def _source(fmu: str) -> str:

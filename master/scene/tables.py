@@ -19,10 +19,10 @@ def entries(value: object) -> Mapping[str, Any] | None:
 
 def table(value: object, where: str) -> Mapping[str, Any]:
     """A table of whatever is in it."""
-    found = entries(value)
-    if found is None:
+    mapping = entries(value)
+    if mapping is None:
         raise TouchdownError(f"{where} must be a table")
-    return found
+    return mapping
 
 
 def items(value: object) -> list[object] | None:
@@ -32,22 +32,22 @@ def items(value: object) -> list[object] | None:
 
 def texts(value: object) -> list[str] | None:
     """A list of text; None where it is no list, or holds something else."""
-    found = items(value)
-    if found is None or not all(isinstance(item, str) for item in found):
+    listed = items(value)
+    if listed is None or not all(isinstance(item, str) for item in listed):
         return None
-    return cast(list[str], found)
+    return cast(list[str], listed)
 
 
 def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
     """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
-    found: dict[str, object] = {}
+    dotted: dict[str, object] = {}
     for key, value in table.items():
         inner = entries(value)
         if inner is not None:
-            found |= flat(inner, f"{prefix}{key}.")
+            dotted |= flat(inner, f"{prefix}{key}.")
         else:
-            found[f"{prefix}{key}"] = value
-    return found
+            dotted[f"{prefix}{key}"] = value
+    return dotted
 
 
 def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:
@@ -60,10 +60,10 @@ def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str)
 def pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
     """A list of pairs of dotted names."""
     listed = items(value)
-    found = [] if listed is None else [_pair(item) for item in listed]
-    if listed is None or None in found:
+    parsed = [] if listed is None else [_pair(item) for item in listed]
+    if listed is None or None in parsed:
         raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
-    return tuple(pair for pair in found if pair is not None)
+    return tuple(pair for pair in parsed if pair is not None)
 
 
 def _pair(value: object) -> tuple[str, str] | None:

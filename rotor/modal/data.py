@@ -101,14 +101,8 @@ def prepare(
     acceleration. Raises ModelError where there are not so many modes.
     """
     kept = chosen_basis(shaft, modes, residual)
-    shape = kept.deflections([s.node for s in shaft.stations])
-    stiffness = kept.omega**2
-    static = static_forces(shaft, gravity)
-    weight = np.zeros(len(stiffness))
-    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
-    slots, slot = _slots(shape)
     return Derived(
-        modes=len(stiffness),
+        modes=len(kept.omega),
         stations=len(shaft.stations),
         sensors=len(shaft.sensors),
         nodes=shaft.nodes,
@@ -116,21 +110,40 @@ def prepare(
         inertia=shaft.polar_inertia,
         damping_ratio=damping_ratio,
         position=_room(shaft.positions(), MOST_NODES),
-        stiffness=_room(stiffness, MOST_MODES),
-        damping=_room(2.0 * damping_ratio * kept.omega, MOST_MODES),
-        weight=_room(weight, MOST_MODES),
-        sag=_room(_sag(shape, stiffness, static), MOST_MODES),
-        shape=_room(shape, MOST_STATIONS, MOST_MODES),
-        sensor_shape=_room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
-        inv_m=_room(np.sum(shape**2, axis=1), MOST_STATIONS),
-        static_fy=_room(static, MOST_STATIONS),
-        slots=_room(slots, MOST_STATIONS),
-        slot=_room(slot, MOST_STATIONS, MOST_MODES),
-        lumped=_room(np.sum(slot >= 0, axis=1) > slots, MOST_STATIONS),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),
         stress=_stress_rows(shaft, kept, 1.0 if acceleration else 0.0),
+        **_of_modes(shaft, kept, damping_ratio),
+        **_of_stations(shaft, kept, gravity),
     )
+
+
+def _of_modes(shaft: Shaft, kept: Basis, damping_ratio: float) -> dict[str, np.ndarray]:
+    """What `Derived` holds of each mode by itself."""
+    weight = np.zeros(len(kept.omega))
+    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
+    return {
+        "stiffness": _room(kept.omega**2, MOST_MODES),
+        "damping": _room(2.0 * damping_ratio * kept.omega, MOST_MODES),
+        "weight": _room(weight, MOST_MODES),
+    }
+
+
+def _of_stations(shaft: Shaft, kept: Basis, gravity: float) -> dict[str, np.ndarray]:
+    """What `Derived` holds of the stations and sensors, and the sag between the stations that hold."""
+    shape = kept.deflections([s.node for s in shaft.stations])
+    static = static_forces(shaft, gravity)
+    slots, slot = _slots(shape)
+    return {
+        "sag": _room(_sag(shape, kept.omega**2, static), MOST_MODES),
+        "shape": _room(shape, MOST_STATIONS, MOST_MODES),
+        "sensor_shape": _room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
+        "inv_m": _room(np.sum(shape**2, axis=1), MOST_STATIONS),
+        "static_fy": _room(static, MOST_STATIONS),
+        "slots": _room(slots, MOST_STATIONS),
+        "slot": _room(slot, MOST_STATIONS, MOST_MODES),
+        "lumped": _room(np.sum(slot >= 0, axis=1) > slots, MOST_STATIONS),
+    }
 
 
 def _sag(shape: np.ndarray, stiffness: np.ndarray, forces: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ class Value:
 
 def values(element: Element, folder: Path, where: str) -> list[Value]:
     """What the bindings of a component or a system give, later ones over earlier ones."""
-    found: dict[str, Value] = {}
+    by_name: dict[str, Value] = {}
     for binding in xml.children(element, "ssd:ParameterBindings/ssd:ParameterBinding"):
         given = _set(binding, folder, where)
         prefix = binding.get("prefix", "")
@@ -37,8 +37,8 @@ def values(element: Element, folder: Path, where: str) -> list[Value]:
         mapping = xml.child(binding, "ssd:ParameterMapping")
         if mapping is not None:
             given = list(_mapped(given, mapping, folder, where))
-        found |= {value.name: value for value in given}
-    return list(found.values())
+        by_name |= {value.name: value for value in given}
+    return list(by_name.values())
 
 
 def _set(binding: Element, folder: Path, where: str) -> list[Value]:

@@ -52,46 +52,46 @@ def read(path: Path) -> Scene:
     """The scene in a package (.ssp). Raises TouchdownError where it is broken or cannot be run."""
     cache = user_cache()
     folder = unpack(path, cache, PACKAGE)
-    found = structure.read(folder, str(path))
-    sides = {name: Side(*interface(part.path, cache)) for name, part in found.parts.items()}
-    settings = _settings(found, sides, str(path))
+    system = structure.read(folder, str(path))
+    sides = {name: Side(*interface(part.path, cache)) for name, part in system.parts.items()}
+    settings = _settings(system, sides, str(path))
     scene = Scene(
         name=path.stem,
-        title=found.title,
-        about=found.scene.get("about", ""),
-        components={name: _component(found, name, settings[name]) for name in found.parts},
+        title=system.title,
+        about=system.scene.get("about", ""),
+        components={name: _component(system, name, settings[name]) for name in system.parts},
         connect=tuple(
-            _wire(found, link, sides, str(path)) for link in found.links if link.start and link.end
+            _wire(system, link, sides, str(path)) for link in system.links if link.start and link.end
         ),
-        zero=found.scene.get("zero"),
-        energy_scale=tuple(found.scene.get("energy_scale", "").split()),
+        zero=system.scene.get("zero"),
+        energy_scale=tuple(system.scene.get("energy_scale", "").split()),
     )
-    return _with_run(scene, found, sides, str(path))
+    return _with_run(scene, system, sides, str(path))
 
 
-def _component(found: Structure, name: str, settings: Mapping[str, float]) -> ComponentSpec:
-    names = found.names.get(name, {})
-    given = {_here(found, name, variable): value for variable, value in settings.items()}
+def _component(system: Structure, name: str, settings: Mapping[str, float]) -> ComponentSpec:
+    names = system.names.get(name, {})
+    given = {_here(system, name, variable): value for variable, value in settings.items()}
     return ComponentSpec(
-        str(found.parts[name].path.absolute()),
+        str(system.parts[name].path.absolute()),
         {variable: value for variable, value in given.items() if variable not in SCHEME_SETS},
-        every=found.every(name),
+        every=system.every(name),
         names=names,
     )
 
 
-def _here(found: Structure, component: str, variable: str) -> str:
+def _here(system: Structure, component: str, variable: str) -> str:
     """The name by which an FMU's variable goes in the scene."""
-    own = {own: here for here, own in found.names.get(component, {}).items()}
+    own = {own: here for here, own in system.names.get(component, {}).items()}
     return own.get(variable, variable)
 
 
-def _with_run(scene: Scene, found: Structure, sides: Mapping[str, Side], where: str) -> Scene:
+def _with_run(scene: Scene, system: Structure, sides: Mapping[str, Side], where: str) -> Scene:
     """`scene` with how to run it, as far as the package says it."""
-    settings: dict[str, object] = {f"run.{k}": found.scene[k] for k in RUN_KEYS if k in found.scene}
-    if found.macro_step is not None:
-        settings["run.macro_step"] = found.macro_step
-    if found.stop is not None:
+    settings: dict[str, object] = {f"run.{k}": system.scene[k] for k in RUN_KEYS if k in system.scene}
+    if system.macro_step is not None:
+        settings["run.macro_step"] = system.macro_step
+    if system.stop is not None:
         zero = 0.0
         if scene.zero:
             head, _, tail = scene.zero.partition(".")
@@ -100,66 +100,66 @@ def _with_run(scene: Scene, found: Structure, sides: Mapping[str, Side], where: 
             own = scene.components[head].names.get(tail, tail)
             start = sides[head].variable(own, f"{where}: zero").start
             zero = float(str(scene.components[head].set.get(tail, start or 0.0)))
-        settings["run.duration"] = round(found.stop - zero, DIGITS)
+        settings["run.duration"] = round(system.stop - zero, DIGITS)
     return scene.set(settings)
 
 
 # -- values ------------------------------------------------------------------------------------------------
 
 
-def _settings(found: Structure, sides: Mapping[str, Side], where: str) -> dict[str, dict[str, float]]:
+def _settings(system: Structure, sides: Mapping[str, Side], where: str) -> dict[str, dict[str, float]]:
     """By component: what the bindings set, in the units of its variables.
 
     The system's bindings are above those of its components. Start values of inputs that another
     component feeds are left out: initialisation hands them over.
     """
-    settings: dict[str, dict[str, float]] = {name: {} for name in found.parts}
-    fed = {(link.end, link.input) for link in found.links if link.start is not None}
-    for component, value in _bound(found, where):
+    settings: dict[str, dict[str, float]] = {name: {} for name in system.parts}
+    fed = {(link.end, link.input) for link in system.links if link.start is not None}
+    for component, value in _bound(system, where):
         if (component, value.name) not in fed:
             what = f"{where}: component {component}, {value.name}"
-            settings[component][value.name] = _number(found, sides[component], value, what)
+            settings[component][value.name] = _number(system, sides[component], value, what)
     return settings
 
 
-def _bound(found: Structure, where: str) -> Iterator[tuple[str, Value]]:
+def _bound(system: Structure, where: str) -> Iterator[tuple[str, Value]]:
     """Component and value of every binding, those that are above others after them."""
-    for name, part in found.parts.items():
+    for name, part in system.parts.items():
         yield from ((name, value) for value in part.values)
-    outer = [link for link in found.links if link.start is None and link.end is not None]
-    given = {value.name: value for value in found.values}
+    outer = [link for link in system.links if link.start is None and link.end is not None]
+    given = {value.name: value for value in system.values}
     for link in outer:
         if link.output not in given:
             raise TouchdownError(
                 f"{where}: {link.title}: nothing feeds the system's connector {link.output}; bind a value "
                 "to it or remove the connection"
             )
-    for value in found.values:
+    for value in system.values:
         for link in outer:
             if link.output == value.name and link.end is not None:
                 scale = then(value.scale, link.scale)
                 yield link.end, replace(value, name=link.input, scale=scale)
         head, _, tail = value.name.partition(".")
-        if head in found.parts:
+        if head in system.parts:
             yield head, replace(value, name=tail)
         elif value.name not in {link.output for link in outer}:
             raise TouchdownError(
                 f"{where}: a binding of the system sets {value.name}, which is neither COMPONENT.VARIABLE "
-                f"nor a connector that feeds one; {one_of(head, found.parts)}"
+                f"nor a connector that feeds one; {one_of(head, system.parts)}"
             )
 
 
-def _number(found: Structure, side: Side, value: Value, where: str) -> float:
+def _number(system: Structure, side: Side, value: Value, where: str) -> float:
     """A bound value in the unit of its variable."""
     variable = side.variable(value.name, where)
     first = None
     if value.convert:
-        source = _unit(value.unit, (value.units or {}, found.units, side.units))
-        first = _conversion(source, _unit(variable.unit, (side.units, found.units)), where)
+        source = _unit(value.unit, (value.units or {}, system.units, side.units))
+        first = _conversion(source, _unit(variable.unit, (side.units, system.units)), where)
     return scaled(value.number, then(first, value.scale))
 
 
-def _wire(found: Structure, link: Link, sides: Mapping[str, Side], where: str) -> Wire:
+def _wire(system: Structure, link: Link, sides: Mapping[str, Side], where: str) -> Wire:
     """A connection, with the conversion between its ends' units before its own transformation."""
     ends: list[_Named] = []
     names: list[str] = []
@@ -167,9 +167,9 @@ def _wire(found: Structure, link: Link, sides: Mapping[str, Side], where: str) -
         assert part is not None
         side = sides[part]
         variable = side.variable(name, f"{where}: {link.title}")
-        unit = found.parts[part].units.get(name) or variable.unit
-        ends.append(_unit(unit, (found.units, side.units)))
-        names.append(f"{part}.{_here(found, part, name)}")
+        unit = system.parts[part].units.get(name) or variable.unit
+        ends.append(_unit(unit, (system.units, side.units)))
+        names.append(f"{part}.{_here(system, part, name)}")
     if link.convert:
         scale = then(_conversion(ends[0], ends[1], f"{where}: {link.title}"), link.scale)
     else:

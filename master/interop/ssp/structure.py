@@ -98,7 +98,7 @@ def read(folder: Path, where: str) -> Structure:
 def _parts(system: Element, folder: Path, where: str) -> dict[str, Part]:
     if xml.child(system, "ssd:SignalDictionaries") is not None:
         raise TouchdownError(f"{where} has signal dictionaries, which are not supported; connect directly")
-    found: dict[str, Part] = {}
+    parts: dict[str, Part] = {}
     elements = xml.child(system, "ssd:Elements")
     for element in elements if elements is not None else ():
         kind = element.tag.rpartition("}")[2]
@@ -106,12 +106,12 @@ def _parts(system: Element, folder: Path, where: str) -> dict[str, Part]:
         if kind != "Component":
             what = "nested systems are" if kind == "System" else "that kind of element is"
             raise TouchdownError(f"{where} holds the {kind} {name}; {what} not supported, only FMUs are")
-        if name in found:
+        if name in parts:
             raise TouchdownError(f"{where} has two components {name}")
-        found[name] = _part(element, name, folder, f"{where}: component {name}")
-    if not found:
+        parts[name] = _part(element, name, folder, f"{where}: component {name}")
+    if not parts:
         raise TouchdownError(f"{where} has no components")
-    return found
+    return parts
 
 
 def _part(element: Element, name: str, folder: Path, where: str) -> Part:
@@ -136,7 +136,7 @@ def _part(element: Element, name: str, folder: Path, where: str) -> Part:
 
 
 def _links(system: Element, parts: Mapping[str, Part], where: str) -> list[Link]:
-    found: list[Link] = []
+    links: list[Link] = []
     for element in xml.children(system, "ssd:Connections/ssd:Connection"):
         link = Link(
             start=element.get("startElement"),
@@ -151,8 +151,8 @@ def _links(system: Element, parts: Mapping[str, Part], where: str) -> list[Link]
                 raise TouchdownError(
                     f"{where}: {link.title}: there is no component {part}; {one_of(part, parts)}"
                 )
-        found.append(link)
-    return found
+        links.append(link)
+    return links
 
 
 def _experiment(root: Element, where: str) -> tuple[float | None, float | None]:
@@ -177,8 +177,8 @@ def _annotation(element: Element, kind: str, path: str) -> Element | None:
 
 
 def _names(note: Element | None, where: str) -> dict[str, dict[str, str]]:
-    found: dict[str, dict[str, str]] = {}
+    names: dict[str, dict[str, str]] = {}
     for name in xml.children(note, "touchdown:Name") if note is not None else ():
         component, here, own = (xml.required(name, key, where) for key in ("component", "name", "own"))
-        found.setdefault(component, {})[here] = own
-    return found
+        names.setdefault(component, {})[here] = own
+    return names

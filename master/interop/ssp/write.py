@@ -17,7 +17,7 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import Unit
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import Component, Kind
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.coupling.connections import Connection
 from touchdown.master.coupling.simulation import open_system
@@ -70,7 +70,7 @@ def write_package(scene: Scene, path: Path, outputs_only: bool = False) -> Writt
 def _resources(system: System) -> dict[str, tuple[str, Path]]:
     """By component: the FMU's place in the package, and its path. Equal FMUs are packed once."""
     places: dict[bytes, str] = {}
-    found: dict[str, tuple[str, Path]] = {}
+    files: dict[str, tuple[str, Path]] = {}
     for name, component in system.components.items():
         assert isinstance(component, FmuComponent)
         content = component.path.read_bytes()
@@ -78,8 +78,8 @@ def _resources(system: System) -> dict[str, tuple[str, Path]]:
             stem = component.path.stem
             same = [p for p in places.values() if p.startswith(f"{RESOURCES}/{stem}")]
             places[content] = f"{RESOURCES}/{stem}{f'_{len(same) + 1}' if same else ''}.fmu"
-        found[name] = places[content], component.path
-    return found
+        files[name] = places[content], component.path
+    return files
 
 
 # -- SystemStructure.ssd -----------------------------------------------------------------------------------
@@ -150,8 +150,15 @@ def _component(
     for variable in dict.fromkeys([*taken, *given, *settings]):
         _connector(connectors, component, variable, units)
     values = {**settings, **dict(zip(starts, component.read(starts), strict=True))}
-    if not values:
-        return element
+    if values:
+        _parameters(element, component, values, units)
+    return element
+
+
+def _parameters(
+    element: Element, component: Component, values: Mapping[str, float], units: Mapping[str, Unit]
+) -> None:
+    """A binding of the element with a set of `values` (SI) by variable."""
     binding = SubElement(SubElement(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
     parameter_set = SubElement(
         SubElement(binding, "ssd:ParameterValues"),
@@ -162,9 +169,8 @@ def _component(
     for variable, value in values.items():
         parameter = SubElement(parameters, "ssv:Parameter", {"name": component.own_name(variable)})
         kind, details = _type(component, variable, units)
-        number = repr(float(value)) if kind == "Real" else str(int(value))
+        number = repr(float(value)) if kind is Kind.REAL else str(int(value))
         SubElement(parameter, f"ssv:{kind}", {"value": number, **details})
-    return element
 
 
 def _step_hint(element: Element, step: float) -> None:
@@ -186,21 +192,21 @@ def _connector(connectors: Element, component: Component, name: str, units: Mapp
     SubElement(element, f"ssc:{kind}", details)
 
 
-def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[str, dict[str, str]]:
+def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[Kind, dict[str, str]]:
     """A variable's type, and its unit where it is one of `units`."""
     variable = component.variable(name)
     unit = variable.unit or ""
-    known = variable.kind == "Real" and unit in units and component.units.get(unit) == units[unit]
+    known = variable.kind is Kind.REAL and unit in units and component.units.get(unit) == units[unit]
     return variable.kind, {"unit": unit} if known else {}
 
 
 def _units(system: System) -> dict[str, Unit]:
     """Units by name that the FMUs define; where two differ, the first."""
-    found: dict[str, Unit] = {}
+    units: dict[str, Unit] = {}
     for component in system.components.values():
         for name, unit in component.units.items():
-            found.setdefault(name, unit)
-    return dict(sorted(found.items()))
+            units.setdefault(name, unit)
+    return dict(sorted(units.items()))
 
 
 def _unit_definitions(root: Element, units: Mapping[str, Unit]) -> None:

@@ -87,7 +87,7 @@ def transformation(element: Element, where: str) -> Scale | None:
 
 def unit_definitions(element: Element, path: str, where: str) -> dict[str, Unit]:
     """The units defined at `path`, by name."""
-    found: dict[str, Unit] = {}
+    units: dict[str, Unit] = {}
     for unit in children(element, f"{path}/ssc:Unit"):
         base = child(unit, "ssc:BaseUnit")
         if base is not None:
@@ -97,8 +97,8 @@ def unit_definitions(element: Element, path: str, where: str) -> dict[str, Unit]
             if factor == 0.0:
                 raise TouchdownError(f"{where}: unit {name} has the factor 0")
             offset = number(base, "offset", f"{where}: unit {name}", 0.0)
-            found[name] = Unit({s: n for s, n in exponents.items() if n}, factor, offset)
-    return found
+            units[name] = Unit({s: n for s, n in exponents.items() if n}, factor, offset)
+    return units
 
 
 def inside(folder: Path, source: str, where: str) -> Path:

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.ending import Finished
-from touchdown.master.results.figures.style import BLUE, COLOURS, TIME, line, sized
+from touchdown.master.results.figures.style import BLUE, COLOURS, TIME, WIDTH, sized, thinned
 from touchdown.master.results.summary import energy_total
 
 STYLES = ("-", "--", ":", "-.")  # one per component
@@ -26,12 +26,12 @@ def energy(figure: FigureBase, run: Finished) -> list[Axes]:
                 change = values - values[0]
                 if np.any(change):
                     label = f"{name} {variable.partition('.')[2]}"
-                    line(flows, time, change, colour, label, style)
+                    flows.plot(*thinned(time, change), style, color=colour, lw=WIDTH, label=label)
     flows.set_ylabel("change since the start [J]")
     flows.legend(fontsize="small")
     total = energy_total(system, recording)
     assert total is not None
-    line(check, time, total - total[0], BLUE, "sum of all")
+    check.plot(*thinned(time, total - total[0]), color=BLUE, lw=WIDTH, label="sum of all")
     check.set_ylabel("energy balance [J]")
     check.set_title("sum of all energies: zero where nothing is lost or made")
     for axes in (flows, check):

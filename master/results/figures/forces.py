@@ -16,9 +16,9 @@ from touchdown.master.results.figures.style import (
     TIME,
     Curve,
     beginning,
-    line,
     present,
     sized,
+    thinned,
     within,
     zooms,
 )
@@ -56,7 +56,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         for axes, span in zip(row, spans, strict=True):
             part = within(time, span)
             for c, v in zip(curves, values, strict=True):
-                line(axes, time[part], v[part], c.colour, c.label)
+                axes.plot(*thinned(time[part], v[part]), color=c.colour, lw=c.width, label=c.label)
             axes.set_xlim(*span)
             axes.ticklabel_format(useOffset=False)
         row[0].set_ylabel(f"{label} [N]")

@@ -20,9 +20,9 @@ from touchdown.master.results.figures.style import (
     TIME,
     Curve,
     beginning,
-    line,
     present,
     sized,
+    thinned,
     within,
     zooms,
 )
@@ -88,7 +88,8 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     for axes, span in zip(row, spans, strict=True):
         part = within(time, span)
         for c in curves:
-            line(axes, time[part], values[c.label][part], c.colour, c.label, width=c.width)
+            shown = thinned(time[part], values[c.label][part])
+            axes.plot(*shown, color=c.colour, lw=c.width, label=c.label)
         whole = span == (beginning(time), float(time[-1]))
         zoomed = whole and int(np.sum(settled)) > 1
         if zoomed:
@@ -136,15 +137,15 @@ def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
 
 
 def _rings(system: Readable, recording: Recording, a: Attachment) -> list[Track]:
-    found: list[Track] = []
+    tracks: list[Track] = []
     if f"{a.bearing}.ring.x" in recording:
         x, y = (UM * recording[f"{a.bearing}.ring.{axis}"] for axis in "xy")
-        found.append(Track("inner ring", ORANGE, x, y))
+        tracks.append(Track("inner ring", ORANGE, x, y))
     port = housing_port(system, a)
     if port is not None:
         x, y = (UM * recording[f"{port}.{axis}"] for axis in "xy")
-        found.append(Track("outer ring", GREEN, x, y))
-    return found
+        tracks.append(Track("outer ring", GREEN, x, y))
+    return tracks
 
 
 def _cage(recording: Recording, a: Attachment) -> list[Track]:
@@ -157,8 +158,8 @@ def _cage(recording: Recording, a: Attachment) -> list[Track]:
 def _sync(run: Finished, a: Attachment) -> float:
     """When the ring first turned with the rotor (s from the zero); the run's end where it did not."""
     zero = run.system.value(run.scene.zero) if run.scene.zero else 0.0
-    found = run.system.value(f"{a.bearing}.ring.sync_time") - zero
-    return found if found > 0.0 else float(run.recording.time[-1])
+    sync = run.system.value(f"{a.bearing}.ring.sync_time") - zero
+    return sync if sync > 0.0 else float(run.recording.time[-1])
 
 
 def _zoom(axes: Axes, values: list[np.ndarray]) -> None:

@@ -42,12 +42,12 @@ def spectrum(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     """Amplitude of the ring's horizontal velocity for each window, with its rotor speed (Figs 28, 29)."""
     recording = run.recording
     time = recording.time
-    found = _spectra(recording, a)
+    spectra = _spectra(recording, a)
     pendulum = _pendulum(recording, a)
     panels = sized(figure, 13, 9.5).subplots(2, 1)
     for axes, limit in zip(panels, (LOW, HIGH), strict=True):
         end = min(limit, 0.5 / interval(time))
-        _draw(axes, found, end)
+        _draw(axes, spectra, end)
         if limit == LOW and pendulum is not None:
             _mark_harmonics(axes, pendulum, end)
         axes.set_xlabel("frequency [Hz]")
@@ -82,10 +82,10 @@ def _pendulum(recording: Recording, a: Attachment) -> float | None:
     return dominant_frequency(recording.time[settled], x[settled])
 
 
-def _draw(axes: Axes, found: list[Spectrum], end: float) -> None:
+def _draw(axes: Axes, spectra: list[Spectrum], end: float) -> None:
     largest = 0.0
     lowest = math.inf
-    for k, (label, frequency, amplitude) in enumerate(found):
+    for k, (label, frequency, amplitude) in enumerate(spectra):
         part = (frequency > 0.0) & (frequency <= end)
         f, v = _peaks(frequency[part], amplitude[part])
         axes.semilogy(f, v, color=COLOURS[k % len(COLOURS)], lw=0.8, label=label)

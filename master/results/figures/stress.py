@@ -7,7 +7,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.ending import Finished, Readable, Teller
-from touchdown.master.results.figures.style import BLUE, GREY, ORANGE, PURPLE, TIME, beginning, line, sized
+from touchdown.master.results.figures.style import (
+    BLUE,
+    GREY,
+    ORANGE,
+    PURPLE,
+    TIME,
+    WIDTH,
+    beginning,
+    sized,
+    thinned,
+)
 from touchdown.master.results.stresses import KINDS, MPA, along, kept_instant
 
 PLANES = (("x", "horizontal (x)", BLUE), ("y", "vertical (y)", ORANGE))
@@ -64,7 +74,8 @@ def _draw_history(axes: Axes, run: Finished, name: str, kind: str, zero: float) 
     if f"{name}.stress.{kind}" in recording:
         shown = time >= beginning(time)
         values = MPA * recording[f"{name}.stress.{kind}"]
-        line(axes, time[shown], values[shown], BLUE, "largest along the rotor")
+        history = thinned(time[shown], values[shown])
+        axes.plot(*history, color=BLUE, lw=WIDTH, label="largest along the rotor")
     names = [f"stress.peak_{kind}{tail}" for tail in ("", "_time", "_node")]
     if all(n in component.variables for n in names):
         peak, at, node = component.read(names)

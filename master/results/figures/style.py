@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -14,6 +13,7 @@ from touchdown.master.results.recording import Recording
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#666666"
 BLACK = "#000000"
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, GREY)
+WIDTH = 0.8  # pt, of a line
 MOST_POINTS = 20_000  # drawn per line; peaks are kept
 LAST = 0.05  # s, the last zoom of a run
 TIME = "time from the shutdown [s]"
@@ -27,7 +27,7 @@ class Curve:
     variable: str
     label: str
     colour: str
-    width: float = 0.8
+    width: float = WIDTH
 
 
 def present(recording: Recording, bearing: str, curves: tuple[Curve, ...]) -> list[Curve]:
@@ -47,18 +47,16 @@ def zooms(time: np.ndarray, first: float) -> list[tuple[float, float]]:
     return list(dict.fromkeys(spans))
 
 
-def line(
-    axes: Axes, x: np.ndarray, y: np.ndarray, colour: str, label: str, style: str = "-", width: float = 0.8
-) -> None:
-    """A line of at most MOST_POINTS points that keeps each stretch's smallest and largest value."""
-    if len(x) > MOST_POINTS:
-        size = -(-len(x) // (MOST_POINTS // 2))
-        count = len(x) // size
-        blocks = y[: count * size].reshape(count, size)
-        index = np.sort(np.stack([blocks.argmin(1), blocks.argmax(1)], 1), axis=1)
-        index = (index + np.arange(count)[:, None] * size).ravel()
-        x, y = x[index], y[index]
-    axes.plot(x, y, style, color=colour, lw=width, label=label)
+def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """At most MOST_POINTS points of a line (n,): each stretch's smallest and largest value."""
+    if len(x) <= MOST_POINTS:
+        return x, y
+    size = -(-len(x) // (MOST_POINTS // 2))
+    count = len(x) // size
+    blocks = y[: count * size].reshape(count, size)
+    index = np.sort(np.stack([blocks.argmin(1), blocks.argmax(1)], 1), axis=1)
+    index = (index + np.arange(count)[:, None] * size).ravel()
+    return x[index], y[index]
 
 
 def roomy() -> ConstrainedLayoutEngine:

@@ -32,7 +32,7 @@ def stretches(angle: np.ndarray, back: float) -> list[Stretch]:
 
     They follow one another from extreme to extreme. Each is at least `back` long.
     """
-    found: list[Stretch] = []
+    ways: list[Stretch] = []
     low = high = begun = best = sign = 0
     for i in _turning_points(angle):
         if sign == 0:
@@ -43,11 +43,11 @@ def stretches(angle: np.ndarray, back: float) -> list[Stretch]:
         elif sign * (angle[i] - angle[best]) > 0.0:
             best = i
         elif sign * (angle[best] - angle[i]) >= back:
-            found.append(stretch(angle, begun, best))
+            ways.append(stretch(angle, begun, best))
             begun, best, sign = best, i, -sign
     if sign:
-        found.append(stretch(angle, begun, best))
-    return found
+        ways.append(stretch(angle, begun, best))
+    return ways
 
 
 def _turning_points(angle: np.ndarray) -> list[int]:

@@ -29,14 +29,14 @@ def to_and_fro(march: March) -> bool:
     return any(turn > 0.0 for turn in advanced) and any(turn < 0.0 for turn in advanced)
 
 
-def is_swing(time: np.ndarray, angle: np.ndarray, found: list[Stretch], i: int) -> bool:
-    """Whether stretch i of `found` is one way of a swing: it turns back into a like one, and slowly.
+def is_swing(time: np.ndarray, angle: np.ndarray, ways: list[Stretch], i: int) -> bool:
+    """Whether stretch i of `ways` is one way of a swing: it turns back into a like one, and slowly.
 
     time: s, of each of `angle` (rad). Where the recording cuts a swing short it need not turn back.
     """
-    whole = found[i]
-    before = found[i - 1] if i > 0 else None
-    after = found[i + 1] if i + 1 < len(found) else None
+    whole = ways[i]
+    before = ways[i - 1] if i > 0 else None
+    after = ways[i + 1] if i + 1 < len(ways) else None
     if abs(whole.turn) >= FURTHEST or not _is_like(before, whole, after):
         return False
     shares = zip((before, after), _last_parts(time, angle, whole), strict=True)

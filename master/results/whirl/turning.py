@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
@@ -16,6 +17,13 @@ GRAVITY = 9.81  # m/s2, for the scale of a pendulum's period
 BACK = TURN / 4.0  # friction and rattle turn a whirl back by less, a swing by more
 NEARLY = 0.75 * TURN  # a free swing's one side, half a turn at most, and half as much again
 CREEP = 0.25  # of the pendulum's frequency
+
+
+class Direction(StrEnum):
+    """Of a whirl: as the rotor spins, or against it."""
+
+    FORWARD = "forward"
+    BACKWARD = "backward"
 
 
 @dataclass(frozen=True)
@@ -37,18 +45,19 @@ class Turning:
         """How many, without a sign."""
         return abs(self.stretch.turn) / TURN
 
-    def direction(self, spin: float) -> str:
-        """ "forward" as the rotor spins (rad/s; 0 as above 0), or "backward"."""
-        return "forward" if self.stretch.turn * (-1.0 if spin < 0.0 else 1.0) > 0.0 else "backward"
+    def direction(self, spin: float) -> Direction:
+        """As the rotor spins (rad/s; 0 as above 0), or against it."""
+        along = self.stretch.turn * (-1.0 if spin < 0.0 else 1.0) > 0.0
+        return Direction.FORWARD if along else Direction.BACKWARD
 
 
 def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
     """All of a row of contacts, in their order."""
     time = orbit.time[march.rows]
     pendulum = TURN * math.sqrt(orbit.clearance / GRAVITY)
-    found = stretches(march.angle, BACK)
-    for i, whole in enumerate(found):
-        if abs(whole.turn) < NEARLY or is_swing(time, march.angle, found, i):
+    ways = stretches(march.angle, BACK)
+    for i, whole in enumerate(ways):
+        if abs(whole.turn) < NEARLY or is_swing(time, march.angle, ways, i):
             continue
         parts = [p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= NEARLY]
         for part in parts:

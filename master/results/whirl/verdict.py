@@ -32,6 +32,7 @@ NEARLY and CREEP in `turning`, LOOPS in `remarks`.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 
 import numpy as np
 
@@ -39,16 +40,28 @@ from touchdown.master.results.whirl.contacts import Orbit, marches
 from touchdown.master.results.whirl.remarks import on_circling, on_turnings
 from touchdown.master.results.whirl.stretches import period, times
 from touchdown.master.results.whirl.swings import to_and_fro
-from touchdown.master.results.whirl.turning import Turning, turnings
+from touchdown.master.results.whirl.turning import Direction, Turning, turnings
 
 WAIT = 0.5  # periods from a whirl's end to the recording's end: it still whirls
+
+
+class Verdict(StrEnum):
+    """What a journal does, as reports word it."""
+
+    NONE = "none"
+    PENDULUM = "pendulum"
+    FORWARD = "forward whirl"
+    BACKWARD = "backward whirl"
+
+
+WHIRLING = {Direction.FORWARD: Verdict.FORWARD, Direction.BACKWARD: Verdict.BACKWARD}
 
 
 @dataclass(frozen=True)
 class Episode:
     """An unbroken whirl."""
 
-    direction: str  # "forward" or "backward"
+    direction: Direction
     start: float  # s
     end: float  # s
     revolutions: float
@@ -57,16 +70,16 @@ class Episode:
     goes_on: bool  # at the end of the recording
 
     @property
-    def verdict(self) -> str:
-        """ "forward whirl" or "backward whirl"."""
-        return f"{self.direction} whirl"
+    def verdict(self) -> Verdict:
+        """Forward or backward whirl."""
+        return WHIRLING[self.direction]
 
 
 @dataclass(frozen=True)
 class Whirl:
     """Verdict on an orbit, with all whirls in their order; a remark does not change the verdict."""
 
-    verdict: str  # "none", "pendulum", "forward whirl" or "backward whirl"
+    verdict: Verdict
     episodes: tuple[Episode, ...] = ()
     remark: str = field(default="", compare=False)
 
@@ -110,7 +123,7 @@ class Whirl:
         """For a report: "no whirl", "pendulum", "sustained forward whirl", "no whirl, partial rub"..."""
         if self.episodes:
             return f"{'sustained' if self.sustained else 'transient'} {self.verdict}"
-        said = "no whirl" if self.verdict == "none" else self.verdict
+        said = "no whirl" if self.verdict is Verdict.NONE else self.verdict
         return f"{said}, {self.remark}" if self.remark else said
 
 
@@ -136,8 +149,8 @@ def classify(
         return Whirl(decisive.verdict, episodes)
     remark = on_turnings(turned, spin)
     if any(to_and_fro(march) for march in rows):
-        return Whirl("pendulum", remark=remark)
-    return Whirl("none", remark=remark or on_circling(orbit, rows))
+        return Whirl(Verdict.PENDULUM, remark=remark)
+    return Whirl(Verdict.NONE, remark=remark or on_circling(orbit, rows))
 
 
 def _decisive(episodes: tuple[Episode, ...]) -> Episode | None:
