@@ -18,7 +18,7 @@ from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.drop.reference import POSITION
 from touchdown.master.studies.schemes import compare as work_precision
-from touchdown.master.studies.schemes.compare import Asked, Comparison, Row, compare_schemes, pieces
+from touchdown.master.studies.schemes.compare import Alarm, Asked, Comparison, Row, compare_schemes, pieces
 from touchdown.master.studies.schemes.order import Order
 from touchdown.master.studies.schemes.report import advice, report_lines
 
@@ -80,7 +80,7 @@ def made(disk: Comparison, *rows: Row) -> Comparison:
     return Comparison(**{**vars(disk), "rows": rows})
 
 
-def good(name: str, wall: float, error: float, ledger: str = "") -> Row:
+def good(name: str, wall: float, error: float, ledger: Alarm = Alarm.NONE) -> Row:
     return Row(name, 1e-5, {"position": error}, wall, ledger)
 
 
@@ -92,8 +92,8 @@ def test_the_cheapest_that_is_good_enough_is_recommended(disk: Comparison) -> No
 
 
 def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:
-    slow, warned = good("slow", 3.0, 1e-9), good("warned", 1.0, 1e-9, "warns")
-    stopped = good("stopped", 0.1, 1e-9, "stops")
+    slow, warned = good("slow", 3.0, 1e-9), good("warned", 1.0, 1e-9, Alarm.WARNS)
+    stopped = good("stopped", 0.1, 1e-9, Alarm.STOPS)
     assert made(disk, slow, warned, stopped).recommended() is slow
     assert made(disk, warned, stopped).recommended() is warned
     assert made(disk, stopped).recommended() is None
