@@ -24,7 +24,7 @@ def warm_up() -> None:
 def models() -> None:
     """Start and step each model in process."""
     from touchdown.fmus.recipes import names, recipe
-    from touchdown.modelkit.model import Instance
+    from touchdown.modelkit.instance import Instance
 
     for name in names():
         instance = Instance(recipe(name).model)
