@@ -136,7 +136,7 @@ def test_an_editable_install_shows_one_name(wheels: Mapping[str, Path]) -> None:
 SCRIPT = """
 import json
 import bearings, master, rotor, tests
-import touchdown, touchdown.bearings.catalogue, touchdown.rotor.rotor_file
+import touchdown, touchdown.bearings.catalogue, touchdown.rotor.file
 from touchdown.master.cli import main
 assert main(["scenes"]) == 0
 print(json.dumps({

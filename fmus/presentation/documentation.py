@@ -15,7 +15,7 @@ from touchdown.fmus.link import Interpreter
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import ROOT
 from touchdown.fmus.version import VERSION
-from touchdown.modelkit.model import Slot, slots
+from touchdown.modelkit.model import Model, Slot, slots
 from touchdown.modelkit.variables import Causality
 
 SOURCE = "O. Halminen, Multibody models for examination of touchdown bearing systems (LUT, 2016)"
@@ -52,7 +52,7 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
 def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]:
     """What stands below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
-    own, *parts = _documented(recipe.script)
+    own, *parts = _documented(recipe.model)
     body = [
         f"<p>{_plain(model.about)}.</p>",
         *_prose(own),
@@ -72,10 +72,9 @@ def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]
 # -- prose -------------------------------------------------------------------------------------------
 
 
-def _documented(script: str) -> list[str]:
-    """Docstrings of the module that declares the script's model, and of the parts that one imports."""
-    own = next(name for name in _imports(script) if name.startswith(PHYSICS))
-    text = _source(own)
+def _documented(model: Model) -> list[str]:
+    """Docstrings of the module that declares the model's kernels, and of the parts that one imports."""
+    text = _source(model.advance.__module__)
     parts = (name for name in _imports(text) if name.startswith(PHYSICS))
     return [_docstring(text), *(_docstring(_source(name)) for name in parts)]
 
