@@ -9,7 +9,9 @@ was run: title, scene, version, scheme, macro_step_s.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
@@ -19,12 +21,12 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.components.component import NUMBERS, Component, Variable
 from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.variables import Causality
+from touchdown.modelkit.variables import REPORTED
 
 BLOCK = 4096  # rows held before they are written
 TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
-RECORDED = (Causality.OUTPUT, Causality.LOCAL)
+REFUSED = (OSError, RuntimeError)  # what h5py raises where the disk is full: writing, flushing, closing
 
 
 class Recorder:
@@ -42,7 +44,7 @@ class Recorder:
             given = [
                 v.name
                 for v in component.variables.values()
-                if v.causality in RECORDED and v.kind in NUMBERS
+                if v.causality in REPORTED and v.kind in NUMBERS
             ]
             chosen = [v for v in given if _begins(f"{name}.{v}", run.record)]
             self.names[name] = [v for v in chosen if run.record_arrays or "[" not in v]
@@ -96,54 +98,74 @@ class Recorder:
             column += len(values)
         self._filled += 1
         if self._filled == BLOCK:
-            try:
-                self._write()
-            except OSError as error:
-                self._filled = 0
-                raise TouchdownError(f"cannot write {self.path}: {error}; make room for it") from None
+            problem = self._written()
+            if problem:
+                raise TouchdownError(problem)
 
     def rest(self, names: Iterable[str]) -> None:
         """The values of these components change no more."""
         for name in names:
             self._resting[name] = np.array(self._readers[name]())
 
-    def _write(self) -> None:
-        n = self._filled
-        if n:
+    def _written(self) -> str:
+        """Write the rows held; returns what went wrong, or "". Rows that find no room are given up."""
+        n, self._filled = self._filled, 0
+        if not n:
+            return ""
+        try:
+            self._resize(self.rows + n)
             for column, dataset in enumerate((self._time, *self._datasets)):
-                dataset.resize((self.rows + n,))
                 dataset[self.rows :] = self._block[:n, column]
-            self.rows += n
-            self._filled = 0
             self._file.flush()
+        except REFUSED as error:
+            self._give_up()
+            return self._problem(error)
+        self.rows += n
+        return ""
+
+    def _resize(self, rows: int) -> None:
+        for dataset in (self._time, *self._datasets):
+            dataset.resize((rows,))
+
+    def _give_up(self) -> None:
+        """Go back to the rows before: HDF5 forgets what it could not write, so that it can close the file."""
+        with suppress(*REFUSED):
+            self._resize(self.rows)
+            self._file.flush()
+
+    def _problem(self, error: Exception) -> str:
+        known = isinstance(error, OSError) and error.errno
+        why = os.strerror(error.errno) if known else " ".join(str(error).split())
+        return f"cannot write {self.path}: {why}; make room for it"
 
     def _write_end(self) -> None:
         for name, variables in self.kept_at_end.items():
             if variables:
                 group = self._file.require_group(f"{END}/{name}")
-                for variable, value in zip(variables, self._components[name].read(variables), strict=True):
-                    group.attrs[variable] = float(value)
+                with suppress(TouchdownError):  # one that failed may answer no more
+                    values = self._components[name].read(variables)
+                    for variable, value in zip(variables, values, strict=True):
+                        group.attrs[variable] = float(value)
 
     def close(self) -> str:
         """Write what is left; returns what went wrong, or ""."""
-        problem = ""
+        problem = self._written()
         try:
-            self._write()
-            self._write_end()
-        except OSError as error:
-            problem = f"cannot write {self.path}: {error}; make room for it"
-        finally:
-            self._filled = 0
+            if not problem:
+                self._write_end()
             self._file.close()
+        except REFUSED as error:
+            problem = problem or self._problem(error)
         return problem
 
 
 def _created(path: Path) -> h5py.File:
-    """A new file at `path`; who reads an older one there goes on reading that."""
+    """A new file at `path`, or where a link there leads; who reads an older one goes on reading that."""
     try:
-        path.unlink(missing_ok=True)
-        return h5py.File(path, "w", libver="latest")
-    except OSError as error:
+        there = path.resolve()
+        there.unlink(missing_ok=True)
+        return h5py.File(there, "w", libver="latest")
+    except REFUSED as error:
         raise TouchdownError(f"cannot write {path}: {error}; choose another folder with -o") from None
 
 

@@ -21,18 +21,25 @@ def dataset(recording: Recording) -> xarray.Dataset:
 
 
 def _column(recording: Recording, name: str) -> xarray.Variable:
-    cached = indexing.MemoryCachedArray(_Column(recording, name))
+    cached = indexing.MemoryCachedArray(indexing.LazilyIndexedArray(_Column(recording, name)))
     return xarray.Variable("time", cached, recording.about_column(name))
 
 
 class _Column(BackendArray):
-    """A column in its file."""
+    """A column in its file. A pickled one carries its values, and needs no file."""
 
     def __init__(self, recording: Recording, name: str) -> None:
         self._recording = recording
         self._name = name
         self.shape = recording.time.shape
         self.dtype = np.dtype(float)
+
+    def __deepcopy__(self, memo: object) -> _Column:
+        """Itself: it does not change."""
+        return self
+
+    def __reduce__(self) -> tuple[type, tuple[np.ndarray]]:
+        return indexing.NumpyIndexingAdapter, (self._recording[self._name],)
 
     def __getitem__(self, key: indexing.ExplicitIndexer) -> np.ndarray:
         return indexing.explicit_indexing_adapter(

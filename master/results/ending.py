@@ -10,19 +10,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component, Variable
 from touchdown.master.coupling.connections import Attachment, Connection, full
 from touchdown.master.coupling.system import System
 from touchdown.master.results.recording import Recording
 from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.variables import Causality
 
-KEPT = (
-    Causality.OUTPUT,
-    Causality.LOCAL,
-    Causality.PARAMETER,
-    Causality.CALCULATED_PARAMETER,
-)
 HOUSING = "housing.x"  # what a bearing knows of the housing it moves with
 
 
@@ -68,13 +62,13 @@ class Readable(Protocol):
 
 @dataclass(frozen=True)
 class LastValues:
-    """What a component gave in the end."""
+    """What a component gave in the end: the values of all its numbers, or of none where it refused."""
 
-    variables: Mapping[str, Variable]
+    variables: Mapping[str, Variable]  # those that have a value
     values: Mapping[str, float]
 
     def read(self, names: Sequence[str]) -> list[float]:
-        """Values of outputs, local variables and parameters, integers as such."""
+        """Values of real and integer variables, integers as such."""
         return [self.values[name] for name in names]
 
 
@@ -89,7 +83,7 @@ class Ending:
     def __contains__(self, name: str) -> bool:
         """Whether there is COMPONENT.VARIABLE."""
         component, _, variable = name.partition(".")
-        return component in self.components and variable in self.components[component].variables
+        return component in self.components and variable in self.components[component].values
 
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE."""
@@ -113,8 +107,11 @@ def ending(system: System) -> Ending:
 
 
 def _last_values(component: Component) -> LastValues:
-    names = [v.name for v in component.variables.values() if v.causality in KEPT and v.kind in NUMBERS]
-    return LastValues(dict(component.variables), dict(zip(names, component.read(names), strict=True)))
+    numbers = {name: v for name, v in component.variables.items() if v.kind in NUMBERS}
+    try:
+        return LastValues(numbers, dict(zip(numbers, component.read(list(numbers)), strict=True)))
+    except TouchdownError:  # one that failed may answer nothing more
+        return LastValues({}, {})
 
 
 def housing_port(system: Readable, a: Attachment) -> str | None:

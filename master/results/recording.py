@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -16,11 +19,22 @@ class NotRecordedError(TouchdownError):
 
 
 class Recording:
-    """A recorded run, read back from the file at `path`; `owner` is kept for as long as it is read."""
+    """A recorded run, read back from the file at `path`; `owner` is kept for as long as it is read.
+
+    It stays that run's where another is recorded there later, or the file goes. Raises TouchdownError where
+    there is no file, or it cannot be read.
+    """
 
     def __init__(self, path: Path, owner: object = None) -> None:
+        self._path = path.absolute()
         self._owner = owner
-        self._file = h5py.File(path, "r")
+        with _reading(path):
+            self._file = h5py.File(path, "r")
+            self._age = os.stat(path).st_mtime_ns
+            self._measure()
+
+    def _measure(self) -> None:
+        """Find how many rows there are, and their times."""
         sizes: list[int] = []
         self._file.visititems(
             lambda _, item: sizes.append(len(item)) if isinstance(item, h5py.Dataset) else None
@@ -29,13 +43,32 @@ class Recording:
         self.time = np.asarray(self._file[TIME])[: self._rows]
 
     def __contains__(self, name: str) -> bool:
-        return self._key(name) in self._file
+        return self._dataset(name) is not None
+
+    def _dataset(self, name: str) -> h5py.Dataset | None:
+        """The dataset of COMPONENT.VARIABLE; None where there is none."""
+        found = self._file.get(self._key(name))
+        return found if isinstance(found, h5py.Dataset) else None
+
+    def __deepcopy__(self, memo: object) -> Recording:
+        """Itself: it does not change."""
+        return self
+
+    def __reduce__(self) -> tuple[Callable[[Path, int], Recording], tuple[Path, int]]:
+        """Pickled as its path; unpickled where that is still this run's."""
+        if self._owner is not None:
+            raise TouchdownError(
+                "a result in a temporary folder cannot be pickled; give the run a folder to keep it in"
+            )
+        return _reopened, (self._path, self._age)
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Values of COMPONENT.VARIABLE. Raises NotRecordedError where there are none."""
-        if name not in self:
+        dataset = self._dataset(name)
+        if dataset is None:
             raise NotRecordedError(f"{name} was not recorded; see run.record")
-        return np.asarray(self._file[self._key(name)])[: self._rows]
+        with _reading(self._path):
+            return np.asarray(dataset)[: self._rows]
 
     def at_end(self, name: str) -> float:
         """Last value of COMPONENT.VARIABLE, also of an array's element. Raises NotRecordedError."""
@@ -70,6 +103,24 @@ class Recording:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+
+def _reopened(path: Path, age: int) -> Recording:
+    """The recording at `path`, which was written at `age` (ns)."""
+    recording = Recording(path)
+    if recording._age != age:
+        recording.close()
+        raise TouchdownError(f"{path} is of another run by now; run this one into a folder of its own")
+    return recording
+
+
+@contextmanager
+def _reading(path: Path) -> Generator[None]:
+    """Raise TouchdownError where the file at `path` cannot be read; h5py raises either of the two."""
+    try:
+        yield
+    except (OSError, RuntimeError) as error:
+        raise TouchdownError(f"cannot read {path}: {' '.join(str(error).split())}") from None
 
 
 def _plain(value: object) -> object:

@@ -7,12 +7,13 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from touchdown.master.common.ended import Ended
+from touchdown.master.common.several import several
 from touchdown.master.results.ending import Ending, Finished
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.summary import table
@@ -58,6 +59,7 @@ class Result:
     """
 
     scene: Scene
+    recording: Recording  # stays open, and this run's, whatever becomes of the file
     folder: Path  # a temporary one, for as long as the result is in use, where none was asked for
     summary: dict[str, object]
     ending: Ending
@@ -65,8 +67,6 @@ class Result:
     stopped_because: str = ""
     warnings: list[str] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
-    scratch: Scratch | None = None
-
     @cached_property
     def data(self) -> xarray.Dataset:
         """All that was recorded: COMPONENT.VARIABLE over `time` (s from the scene's zero), in SI.
@@ -75,17 +75,17 @@ class Result:
         """
         from touchdown.master.results.dataset import dataset
 
-        return dataset(self._recording)
+        return dataset(self.recording)
 
-    def to_pandas(self, names: Iterable[str] | None = None) -> pandas.DataFrame:
+    def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
         """What was recorded as COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
 
         Raises TouchdownError for what was not recorded.
         """
         import pandas
 
-        recording = self._recording
-        chosen = [name for name, _ in recording.columns()] if names is None else names
+        recording = self.recording
+        chosen = [name for name, _ in recording.columns()] if names is None else several(names)
         columns = {name: recording[name] for name in chosen}
         return pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
 
@@ -97,11 +97,14 @@ class Result:
         return Plot(self._finished)
 
     def _finished(self) -> Finished:
-        return Finished(self.scene, self.ending, self._recording)
+        return Finished(self.scene, self.ending, self.recording)
 
-    @cached_property
-    def _recording(self) -> Recording:
-        return Recording(self.folder / RECORDING, self.scratch)
+    def __getstate__(self) -> dict[str, object]:
+        """Pickled with its fields, without data that were looked at.
+
+        Raises TouchdownError where its folder is a temporary one, gone with this result.
+        """
+        return {part.name: getattr(self, part.name) for part in fields(self)}
 
     @property
     def _headline(self) -> str:

@@ -13,7 +13,6 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.coupling.system import System
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
@@ -46,16 +45,35 @@ def run_scene(
         try:
             with _Bar(scene, progress) as show:
                 outcome = simulate(scene, system, folder / RECORDING, show)
-            summary, drawn = _write_results(scene, system, outcome, folder, csv, pictures)
             told = ending(system)
+            recording = _reopened(folder / RECORDING, scratch, outcome)
+            summary = summarise(scene, system, outcome, recording)
+            drawn = _write_results(Finished(scene, told, recording), summary, folder, csv, pictures)
         except OSError as error:
             raise TouchdownError(
                 f"cannot write to {folder}: {error}; choose another folder with -o"
             ) from None
         finally:
             system.close()
-    warnings = _warnings(scene, outcome)
-    return Result(scene, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn, scratch)
+    return Result(
+        scene,
+        recording,
+        folder,
+        summary,
+        told,
+        outcome.ended,
+        outcome.reason,
+        _warnings(scene, outcome),
+        drawn,
+    )
+
+
+def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
+    """What was recorded. Raises TouchdownError where it cannot be read, with what stopped the run if so."""
+    try:
+        return Recording(path, owner)
+    except TouchdownError as error:
+        raise TouchdownError(outcome.reason or str(error)) from None
 
 
 def _warnings(scene: Scene, outcome: Outcome) -> list[str]:
@@ -69,24 +87,19 @@ def _warnings(scene: Scene, outcome: Outcome) -> list[str]:
 
 
 def _write_results(
-    scene: Scene, system: System, outcome: Outcome, folder: Path, csv: bool, pictures: bool
-) -> tuple[dict[str, object], list[Path]]:
-    """summary.json, and on request result.csv and pictures; returns the figures and the pictures."""
-    recording = Recording(folder / RECORDING)
-    try:
-        summary = summarise(scene, system, outcome, recording)
-        resolved = json.dumps(scene.resolved(), indent=2, default=str)
-        (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
-        (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-        if csv:
-            write_csv(recording, folder / "result.csv")
-        if not pictures:
-            return summary, []
-        from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
+    run: Finished, summary: dict[str, object], folder: Path, csv: bool, pictures: bool
+) -> list[Path]:
+    """scene.json, summary.json, and on request result.csv and pictures, which are returned."""
+    resolved = json.dumps(run.scene.resolved(), indent=2, default=str)
+    (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
+    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+    if csv:
+        write_csv(run.recording, folder / "result.csv")
+    if not pictures:
+        return []
+    from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
 
-        return summary, draw_all(Finished(scene, system, recording), folder)
-    finally:
-        recording.close()
+    return draw_all(run, folder)
 
 
 def make_writable(folder: Path) -> None:
@@ -105,7 +118,8 @@ class _Bar:
         self._bar = tqdm(
             total=scene.run.duration,
             disable=not shown,
-            bar_format="{desc} {percentage:3.0f}%|{bar:24}| {n:.3f} of {total:.3f} s"
+            # tqdm's widget for notebooks stands in for exactly {bar}
+            bar_format="{desc} {percentage:3.0f}%|{bar}| {n:.3f} of {total:.3f} s"
             "{postfix}, left {remaining}",
             desc=scene.name,
             mininterval=0.2,

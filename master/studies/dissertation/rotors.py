@@ -14,7 +14,6 @@ from pathlib import Path
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import lines as tallest
 from touchdown.master.results.spectra import on_grid, waterfall
@@ -145,10 +144,9 @@ def run_down(folder: Path) -> list[str]:
     if result.ended is not Ended.COMPLETED:
         raise TouchdownError(f"rotor1-waterfall stopped: {result.stopped_because}")
     lines = [f"9000 to {result.summary['rotor_speed_end_rpm']:.0f} rpm in 16 s (source: 7780)"]
-    recording = Recording(result.folder / "result.h5")
+    recording = result.recording
     rows = on_grid(recording.time) & (recording.time >= -1e-9)
     spectrum = waterfall(recording.time[rows], recording["rotor.A.vx"][rows])
-    recording.close()
     for part, name in ((0, "first"), (-1, "last")):
         low, high = (
             ", ".join(f"{line:.1f}" for line, _ in tallest(spectrum[0], spectrum[2][part], *band))
