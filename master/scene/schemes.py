@@ -27,6 +27,15 @@ from touchdown.modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
 class Scheme:
     """One way of coupling.
 
+    `order` says how a bearing carries the bodies' motion through a macro step: 0 held, 1 by their
+    velocity, 2 by their acceleration, 3 as an interface model that its own load moves. With `slopes`
+    the first moment of its load crosses beside the mean; with `modes` it carries a flexible rotor's
+    elastic modes; with `lead` it hands over the load of the step to come. `sequence` names the stepper.
+    The errors of motion and ledger fall with macro step ** `error_order` (0: a tolerance sets them),
+    from which a shorter step is proposed when the ledger stops a run; `bears` is how many radians the
+    journal may swing on its contact within a macro step, from which `touchdown advise` takes its step.
+    `compare` and `stability` fit the last two.
+
     >>> touchdown.load("rotor1-9000").run.scheme.title
     'bodies carried with their modes, mean and slope'
     """

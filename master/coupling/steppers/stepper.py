@@ -40,8 +40,11 @@ class Stepper(ABC):
     def step(self, number: int, time: float, step: float) -> None:
         """Take macro step `number` (from 0), from `time` by `step` (s).
 
-        Raises TouchdownError where a component, or the coupling, cannot go on.
+        Raises TouchdownError where a component, or the coupling, cannot go on. One of your own calls, for
+        each name in self.system.order, self.system.feed(name), then step(time, step) and pull() of
+        self.system.components[name]; or it extends a step of the project's, such as GaussSeidel's.
         """
+        raise NotImplementedError(f"{type(self).__name__} must say how it steps")
 
     def follow(self) -> None:  # noqa: B027 - most have nothing to do
         """Components were retired: find what is used where it now stands."""

@@ -98,5 +98,5 @@ def _label_columns(
     top: list[Axes], bottom: list[Axes], spans: list[tuple[float, float]], whole: tuple[float, float]
 ) -> None:
     for head, foot, span in zip(top, bottom, spans, strict=True):
-        head.set_title("whole run" if span == whole else f"{span[0]:g} s to {span[1]:g} s")
+        head.set_title("whole run" if span == whole else f"{round(span[0], 9):g} s to {span[1]:g} s")
         foot.set_xlabel(TIME)
