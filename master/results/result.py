@@ -67,6 +67,7 @@ class Result:
     stopped_because: str = ""
     warnings: list[str] = field(default_factory=list)
     pictures: list[Path] = field(default_factory=list)
+
     @cached_property
     def data(self) -> xarray.Dataset:
         """All that was recorded: COMPONENT.VARIABLE over `time` (s from the scene's zero), in SI.
