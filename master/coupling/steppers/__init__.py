@@ -52,5 +52,11 @@ def registered() -> dict[str, type[Stepper]]:
 
 
 def stepper(system: System, run: RunSpec) -> Stepper:
-    """What steps `system` by the scheme of `run`."""
-    return SEQUENCES[run.scheme.sequence](system, run)
+    """What steps `system` by the scheme of `run`. Raises TouchdownError where this process has it not."""
+    name = run.scheme.sequence
+    if name not in SEQUENCES:
+        raise TouchdownError(
+            f"this process does not know the sequence {name}; put its stepper at the top of a module that "
+            "can be imported, and register it from there"
+        )
+    return SEQUENCES[name](system, run)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import pickle
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling import steppers
-from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.scene import schemes
+from touchdown.master.scene.schemes import Scheme
 
 Task = TypeVar("Task")
 Value = TypeVar("Value")
@@ -19,33 +18,25 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Carrying(Generic[Task, Value]):
-    """Work for other processes, which first register what was registered here."""
+    """Work for other processes, which first register what was registered here, as far as they can have it."""
 
     work: Callable[[Task], Value]
-    registered: bytes  # pickled schemes and steppers: those that cannot be had there fail with the task
+    schemes: Sequence[Scheme]
+    steppers: Mapping[str, bytes]  # pickled, by sequence
 
     def __call__(self, task: Task) -> Value:
-        sequences, own = pickle.loads(self.registered)
-        for sequence, stepper in sequences.items():
-            steppers.register(sequence, stepper)
-        for scheme in own:
+        for sequence, pickled in self.steppers.items():
+            with suppress(AttributeError, ImportError):  # a notebook's: a run that needs it says so
+                steppers.register(sequence, pickle.loads(pickled))
+        for scheme in self.schemes:
             schemes.register(scheme)
         return self.work(task)
 
 
 def carrying(work: Callable[[Task], Value]) -> Carrying[Task, Value]:
-    """`work` with what is registered now. Raises TouchdownError for a stepper no other process can have."""
-    own = steppers.registered()
-    for stepper in own.values():
-        _require_importable(stepper)
-    return Carrying(work, pickle.dumps((own, schemes.registered())))
-
-
-def _require_importable(stepper: type[Stepper]) -> None:
-    main = sys.modules["__main__"]
-    typed = stepper.__module__ == "__main__" and not hasattr(main, "__file__")  # in a notebook, a shell
-    if typed or "<locals>" in stepper.__qualname__:
-        raise TouchdownError(
-            f"other processes cannot import the stepper {stepper.__qualname__}; put it at the top of a "
-            "module of its own, and import it from there"
-        )
+    """`work` with what is registered now."""
+    pickled: dict[str, bytes] = {}
+    for sequence, stepper in steppers.registered().items():
+        with suppress(AttributeError, pickle.PicklingError):  # of a class inside a function
+            pickled[sequence] = pickle.dumps(stepper)
+    return Carrying(work, schemes.registered(), pickled)
