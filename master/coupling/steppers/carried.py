@@ -18,7 +18,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Carrying(Generic[Task, Value]):
-    """Work for other processes, which first register what was registered here, as far as they can have it."""
+    """Work for other processes, which first register what was registered here, as far as they can."""
 
     work: Callable[[Task], Value]
     schemes: Sequence[Scheme]
