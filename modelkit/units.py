@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from numbers import Real
 
 # unit as written: (factor, SI unit)
 SCALES: dict[str, tuple[float, str]] = {
@@ -40,7 +41,7 @@ def units_of(unit: str) -> list[str]:
 
 def to_si(value: object, unit: str | None, name: str) -> float:
     """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+    if isinstance(value, bool) or not isinstance(value, (Real, str)):
         raise UnitError(f"{name} = {value!r} is not a number; write a number or text like '0.3 mm'")
     if not isinstance(value, str):
         number, written = float(value), ""

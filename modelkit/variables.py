@@ -34,9 +34,6 @@ class Causality(StrEnum):
     INDEPENDENT = "independent"
 
 
-REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what a component tells at every step
-
-
 class Variability(StrEnum):
     """When FMI 2.0's variables may change."""
 

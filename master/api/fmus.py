@@ -9,18 +9,22 @@ from pathlib import Path
 from touchdown.fmus import build as builder
 from touchdown.fmus.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
-from touchdown.master.api import scenes
+from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
+from touchdown.master.common.several import several
 from touchdown.master.components.library import locate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
 
 
 def build(
-    fmus: Iterable[scenes.Path] = (), folder: scenes.Path = "build", *, link_python: bool = False
+    fmus: PathLike | Iterable[PathLike] | None = None,
+    folder: PathLike = "build",
+    *,
+    link_python: bool = False,
 ) -> list[Path]:
-    """Build FMUs of the project's by name, or of rotors by the paths of their files; none named: all.
+    """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
 
     Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine.
     Raises TouchdownError for an unknown name, and where the folder cannot be written.
@@ -28,7 +32,7 @@ def build(
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
     """
-    recipes = [_recipe(os.fspath(fmu)) for fmu in fmus] or [_recipe(name) for name in names()]
+    recipes = [_recipe(os.fspath(fmu)) for fmu in (names() if fmus is None else several(fmus))]
     try:
         linked = interpreter() if link_python else None
         with writing_to(Path(folder)):
@@ -37,7 +41,7 @@ def build(
         raise TouchdownError(str(error)) from None
 
 
-def check(fmu: scenes.Path, role: str | None = None, names: Mapping[str, str] | None = None) -> Report:
+def check(fmu: PathLike, role: str | None = None, names: Mapping[str, str] | None = None) -> Report:
     """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run.
 
     role: "bearing", "rotor", "amb" or "housing", whether it can stand in for one; names: what it calls the

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from touchdown.master.api import scenes
+from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
@@ -41,6 +41,10 @@ class Rotor(Shaft):
     >>> rotor = touchdown.Rotor("Plain shaft", 8 * (shaft,), stations=ends)
     >>> rotor.frequencies(modes=3).round(1)  # Hz; translation and tilt come first
     array([  0. ,   0. , 284.2])
+    >>> print(rotor.report(modes=3))
+    Plain shaft
+      mass                    7.8716 kg
+    ...
     >>> rotor == touchdown.Rotor.load(rotor.save("plain.toml"))
     True
     >>> scene = touchdown.load("rotor1-9000").swap(rotor=rotor)
@@ -51,7 +55,7 @@ class Rotor(Shaft):
             object.__setattr__(self, part, tuple(getattr(self, part)))
 
     @classmethod
-    def load(cls, name_or_path: scenes.Path) -> Rotor:
+    def load(cls, name_or_path: PathLike) -> Rotor:
         """A rotor of the project's by name, or the one in a file (.toml).
 
         Raises TouchdownError where there is no such rotor, or its file has a mistake.
@@ -82,7 +86,7 @@ class Rotor(Shaft):
         """Pictures: `plot.modes()`, `plot.campbell()`, `plot.rest()`, each of which returns its axes."""
         return RotorPlot(lambda: described(self, SPEED, MODES))
 
-    def save(self, path: scenes.Path) -> Path:
+    def save(self, path: PathLike) -> Path:
         """Write it as a rotor file (.toml); returns the path.
 
         Raises TouchdownError for what such a file cannot hold, and where it cannot be written.
@@ -112,8 +116,20 @@ class Rotor(Shaft):
         except ModelError as error:
             raise TouchdownError(str(error)) from None
 
+    def report(self, speed: float = SPEED, modes: int = MODES) -> str:
+        """All its figures as a table: inertias, places, frequencies, how it lies on its seats.
+
+        speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0:
+        all). Raises TouchdownError where there are not so many.
+        """
+        return report_text(described(self, speed, modes))
+
     def __repr__(self) -> str:
-        return report_text(described(self, SPEED, MODES))
+        stations = ", ".join(f"{station.name} at node {station.node}" for station in self.stations)
+        return (
+            f"<Rotor {self.title}: {len(self.elements)} elements, {self.nodes} nodes, {self.mass:.5g} kg, "
+            f"{self.positions()[-1]:.5g} m, stations: {stations or 'none'}>"
+        )
 
 
 class RotorPlot:
@@ -143,9 +159,9 @@ class RotorPlot:
         """
         from touchdown.master.results.figures.style import drawable
         from touchdown.master.studies.rotor.figure import rest
-        from touchdown.master.studies.rotor.report import NO_REST
+        from touchdown.master.studies.rotor.report import TO_REST
 
         portrait = self._portrait()
         if portrait.rest is None:
-            raise TouchdownError(NO_REST.replace("no rest.png: it", "this picture"))
+            raise TouchdownError(f"this picture {TO_REST}")
         return rest(drawable(figure), portrait)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from touchdown.master.api import scenes
-from touchdown.master.api.scenes import as_scene
+from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.scene import Scene
 
 
 def run(
-    scene: scenes.Path | Scene,
-    folder: scenes.Path | None = None,
+    scene: PathLike | Scene,
+    folder: PathLike | None = None,
     *,
     in_process: bool = False,
     csv: bool = False,

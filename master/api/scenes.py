@@ -8,7 +8,7 @@ from touchdown.master.interop import scenes as anywhere
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.scene import Scene
 
-Path = str | os.PathLike[str]
+PathLike = str | os.PathLike[str]
 
 
 def scenes() -> dict[str, str]:
@@ -20,7 +20,7 @@ def scenes() -> dict[str, str]:
     return {name: load(name).title for name in shipped()}
 
 
-def load(name_or_path: Path) -> Scene:
+def load(name_or_path: PathLike) -> Scene:
     """A scene of the project's by name, or of yours by the path of a .toml or an SSP package (.ssp).
 
     Raises TouchdownError where there is none, or it has a mistake.
@@ -32,6 +32,6 @@ def load(name_or_path: Path) -> Scene:
     return anywhere.find_scene(os.fspath(name_or_path))
 
 
-def as_scene(scene: Path | Scene) -> Scene:
+def as_scene(scene: PathLike | Scene) -> Scene:
     """The scene itself, or the one of that name or path."""
     return scene if isinstance(scene, Scene) else load(scene)

@@ -14,8 +14,9 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
 
     With a `stepper`, a subclass of Stepper or of one of the project's, the scheme's `sequence` is the name
     it gets; without, `sequence` names one there is. Raises TouchdownError where the name of the scheme or
-    of the new sequence is taken, where there is no such sequence, or a value cannot be. Processes that a
-    sweep starts know a scheme that the script registers outside `if __name__ == "__main__":`.
+    of the new sequence is another's, where there is no such sequence, or a value cannot be; registering
+    the same again is no mistake. Processes that a sweep starts know it too, where they can import the
+    stepper: from a script or a module, not from a notebook.
 
     >>> mean_and_slope = touchdown.Scheme(
     ...     name="velocity-slope", title="velocity extrapolated, mean and slope",
@@ -33,10 +34,8 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
             f"scheme {scheme.name}: there is no sequence {scheme.sequence}; "
             f"{one_of(scheme.sequence, known)}, or give a stepper"
         )
-    if stepper is not None and scheme.sequence in known:
-        raise TouchdownError(
-            f"scheme {scheme.name}: there is a sequence {scheme.sequence} already; name it otherwise"
-        )
+    if stepper is not None:
+        steppers.check(scheme.sequence, stepper)
     schemes.register(scheme)
     if stepper is not None:
         steppers.register(scheme.sequence, stepper)

@@ -1,14 +1,16 @@
-"""Arguments that may be several."""
+"""Arguments of which there may be several."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from typing import TypeVar
+from typing import TypeVar, cast
 
-Name = TypeVar("Name", bound="str | os.PathLike[str]")
+Item = TypeVar("Item")
 
 
-def several(given: Name | Iterable[Name]) -> list[Name]:
-    """All that are given; a single text or path is one, not its letters."""
-    return [given] if isinstance(given, (str, os.PathLike)) else list(given)
+def several(given: Item | Iterable[Item]) -> list[Item]:
+    """All that are given; a number, a text or a path is one by itself."""
+    if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable):
+        return [cast(Item, given)]
+    return list(cast(Iterable[Item], given))

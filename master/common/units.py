@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.modelkit import units
@@ -37,6 +38,13 @@ def then(first: Scale | None, second: Scale | None) -> Scale | None:
 def scaled(value: float, scale: Scale | None) -> float:
     """`value` under a scale."""
     return value if scale is None else scale[0] * value + scale[1]
+
+
+def plain(value: object) -> object:
+    """A number of numpy's as one of Python's, anything else as it is."""
+    if isinstance(value, (bool, int, float)) or not isinstance(value, Real):
+        return value
+    return int(value) if isinstance(value, Integral) else float(value)
 
 
 def to_si(value: object, unit: str | None, name: str) -> float:

@@ -30,6 +30,7 @@ class Kind(StrEnum):
     ENUMERATION = "Enumeration"
 
 
+REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
 NUMBERS = (Kind.REAL, Kind.INTEGER)  # what is recorded and kept
 SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 

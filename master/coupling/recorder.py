@@ -10,6 +10,7 @@ was run: title, scene, version, scheme, macro_step_s.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -19,9 +20,8 @@ import numpy as np
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.components.component import NUMBERS, Component, Variable
+from touchdown.master.components.component import NUMBERS, REPORTED, Component, Variable
 from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.variables import REPORTED
 
 BLOCK = 4096  # rows held before they are written
 TIME = "time"
@@ -128,14 +128,14 @@ class Recorder:
             dataset.resize((rows,))
 
     def _give_up(self) -> None:
-        """Go back to the rows before: HDF5 forgets what it could not write, so that it can close the file."""
+        """Go back to the rows before: HDF5, which writes the rest when Python exits, would crash there."""
         with suppress(*REFUSED):
             self._resize(self.rows)
             self._file.flush()
 
     def _problem(self, error: Exception) -> str:
-        known = isinstance(error, OSError) and error.errno
-        why = os.strerror(error.errno) if known else " ".join(str(error).split())
+        number = re.search(r"errno = (\d+)", str(error))  # HDF5's message has it among much else
+        why = os.strerror(int(number[1])) if number else " ".join(str(error).split())
         return f"cannot write {self.path}: {why}; make room for it"
 
     def _write_end(self) -> None:

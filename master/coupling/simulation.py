@@ -9,6 +9,7 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
@@ -120,7 +121,15 @@ def macro_steps(duration: float, step: float) -> int:
     return math.ceil(duration / step - 1e-6)
 
 
-def energy_scale(scene: Scene, system: System) -> float:
+class Values(Protocol):
+    """What knows the values of variables."""
+
+    def value(self, name: str) -> float:
+        """Value of COMPONENT.VARIABLE."""
+        ...
+
+
+def energy_scale(scene: Scene, system: Values) -> float:
     """Product of the scene's energy_scale variables (J); 0 where it names none."""
     return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
 

@@ -81,12 +81,14 @@ class Ending:
     connections: Sequence[Connection]
 
     def __contains__(self, name: str) -> bool:
-        """Whether there is COMPONENT.VARIABLE."""
+        """Whether it has the value of COMPONENT.VARIABLE."""
         component, _, variable = name.partition(".")
         return component in self.components and variable in self.components[component].values
 
     def value(self, name: str) -> float:
-        """Value of COMPONENT.VARIABLE."""
+        """Value of COMPONENT.VARIABLE. Raises TouchdownError where there is none."""
+        if name not in self:
+            raise TouchdownError(f"there is no value of {name}; it is no number, or was not told")
         component, _, variable = name.partition(".")
         return self.components[component].values[variable]
 

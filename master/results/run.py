@@ -47,7 +47,7 @@ def run_scene(
                 outcome = simulate(scene, system, folder / RECORDING, show)
             told = ending(system)
             recording = _reopened(folder / RECORDING, scratch, outcome)
-            summary = summarise(scene, system, outcome, recording)
+            summary = summarise(scene, told, outcome, recording)
             drawn = _write_results(Finished(scene, told, recording), summary, folder, csv, pictures)
         except OSError as error:
             raise TouchdownError(

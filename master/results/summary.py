@@ -12,7 +12,6 @@ from scipy.signal import get_window
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, energy_scale
-from touchdown.master.coupling.system import System
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.stresses import stress_figures
@@ -77,7 +76,7 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
     return a.body_port if alone else f"{a.body}_{a.body_port}"
 
 
-def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
+def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recording) -> dict[str, object]:
     """All figures of a run; None where something did not happen or was too short to tell."""
     figures: dict[str, object] = {
         "scene": scene.name,
@@ -96,7 +95,8 @@ def summarise(scene: Scene, system: System, outcome: Outcome, recording: Recordi
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         seat = next(a for a in seats if a.body == name)
-        figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(seat.motion("omega"))
+        speed = seat.motion("omega")
+        figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
     figures |= stress_figures(system, outcome)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
@@ -260,8 +260,11 @@ def energy_total(system: Readable, recording: Recording) -> np.ndarray | None:
     return np.sum(parts, axis=0) if parts else None
 
 
-def _run_figures(scene: Scene, system: System, outcome: Outcome, recording: Recording) -> dict[str, object]:
-    scale = energy_scale(scene, system)
+def _run_figures(
+    scene: Scene, system: Readable, outcome: Outcome, recording: Recording
+) -> dict[str, object]:
+    known = all(name in system for name in scene.energy_scale)
+    scale = energy_scale(scene, system) if known else 0.0
     total = energy_total(system, recording)
     balance = None
     if total is not None and scale > 0.0:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
-from touchdown.master.scene.tables import beginnings, refuse_unknown, switch, whole
+from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
 
 
 @dataclass(frozen=True)
@@ -36,21 +34,22 @@ def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
 
 
 def _scheme(value: object, name: str) -> Scheme:
-    return value if isinstance(value, Scheme) else scheme(str(value))
+    if not isinstance(value, Scheme):
+        return scheme(str(value))
+    if SCHEMES.get(value.name) != value:
+        raise TouchdownError(f"{name} = {value.name} is not registered; give it to register_scheme first")
+    return value
 
 
 def _above_zero(unit: str) -> Callable[[object, str], float]:
     def read(value: object, name: str) -> float:
-        number = to_si(value, unit, name)
-        if number <= 0.0 or not math.isfinite(number):
-            raise TouchdownError(f"{name} = {value} must be above 0")
-        return number
+        return above_zero(value, unit, name)
 
     return read
 
 
 def _steps_above_zero(value: object, name: str) -> int:
-    _above_zero("1")(value, name)
+    above_zero(value, "1", name)
     return whole(value, name)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import Scale
+from touchdown.master.common.units import Scale, plain
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.tables import whole
 
@@ -38,7 +38,9 @@ class Wire(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Scene:
-    """Everything a run needs. It never changes: `set` and `swap` make copies.
+    """Everything a run needs. `set` and `swap` make copies, which share what they do not change.
+
+    Its tables, such as `components`, are to be read: what is written into them is not checked.
 
     >>> scene = touchdown.load("disk-caged-simplified")
     >>> scene.set({"rotor.speed": "12000 rpm", "run.duration": "10 ms"}).swap(bearing="simplified_cageless")
@@ -87,7 +89,7 @@ class Scene:
         elif tail == "every":
             changed = replace(spec, every=whole(value, name))
         else:
-            changed = replace(spec, set={**spec.set, tail: value})
+            changed = replace(spec, set={**spec.set, tail: plain(value)})
         return replace(self, components={**self.components, head: changed})
 
     def swap(self, /, **fmus: str | os.PathLike[str]) -> Scene:

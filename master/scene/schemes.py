@@ -73,8 +73,11 @@ DEFAULT = "interface"
 
 
 def register(scheme: Scheme) -> None:
-    """Let scenes name `scheme`. Raises TouchdownError where its name is taken, or a value cannot be."""
-    if scheme.name in SCHEMES:
+    """Let scenes name `scheme`, which may be known already.
+
+    Raises TouchdownError where its name is another's, or a value cannot be.
+    """
+    if SCHEMES.get(scheme.name, scheme) != scheme:
         raise TouchdownError(f"there is a scheme {scheme.name} already; give this one another name")
     orders = (HOLD, VELOCITY, ACCELERATION, MODEL)
     if scheme.order not in orders:
@@ -82,6 +85,11 @@ def register(scheme: Scheme) -> None:
     if not scheme.bears > 0.0:
         raise TouchdownError(f"scheme {scheme.name}: bears = {scheme.bears} must be above 0")
     _schemes[scheme.name] = scheme
+
+
+def registered() -> list[Scheme]:
+    """Those that are not the project's own."""
+    return [scheme for scheme in SCHEMES.values() if scheme not in _OWN]
 
 
 def scheme(name: str) -> Scheme:

@@ -88,6 +88,14 @@ def references(value: object, where: str) -> tuple[str, ...]:
     return tuple(reference(item, where) for item in listed)
 
 
+def above_zero(value: object, unit: str, name: str) -> float:
+    """A number above 0 in the SI unit `unit`."""
+    number = to_si(value, unit, name)
+    if number <= 0.0:
+        raise TouchdownError(f"{name} = {value} must be above 0")
+    return number
+
+
 def whole(value: object, name: str) -> int:
     """A number of macro steps."""
     number = to_si(value, "1", name)

@@ -30,8 +30,9 @@ from touchdown.master.interop.ssp.names import (
     STEP_ANNOTATION,
 )
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.variables import Causality
 
-KINDS = ("input", "output", "parameter", "calculatedParameter")
+CONNECTED = (Causality.INPUT, Causality.OUTPUT, Causality.PARAMETER, Causality.CALCULATED_PARAMETER)
 START_VALUES = "initialValues"  # name of every component's parameter set: tools apply sets by name
 
 
@@ -182,7 +183,7 @@ def _step_hint(element: Element, step: float) -> None:
 
 def _connector(connectors: Element, component: Component, name: str, units: Mapping[str, Unit]) -> None:
     causality = component.variable(name).causality
-    if causality not in KINDS:
+    if causality not in CONNECTED:
         raise TouchdownError(
             f"{component.name}.{name} has the causality {causality}, and SSP connects outputs only; "
             "take it out of the scene's connect"

@@ -22,9 +22,8 @@ SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 BEYOND = 2.0  # times the speed asked for: its end
-NO_REST = (
-    "no rest.png: it needs two stations or more, at different nodes, that are not in levitated_at, "
-    "for the rotor to lie on"
+TO_REST = (
+    "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
 )
 
 
@@ -135,7 +134,7 @@ def _frequencies(portrait: Portrait) -> list[str]:
 def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
     """How the rotor lies on its seats."""
     if rest is None:
-        return [f"  {NO_REST}"]
+        return [f"  no rest.png: it {TO_REST}"]
     names = [" = ".join(s.name for s in shaft.stations if s.node == node and _is_seat(shaft, s.name))
              for node in sorted(set(seats(shaft)))]  # fmt: skip
     forces = ", ".join(f"{n} {f:.4g} N" for n, f in zip(names, rest.reactions, strict=True))

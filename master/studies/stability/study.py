@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.processes import TaskOutcome, run_all
+from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.studies.stability.report import Study, write_tables
 from touchdown.master.studies.stability.trials import Case, Finding, Right, examine, reference
 
@@ -37,13 +38,13 @@ def study_stability(
     done() after each reference and each finding. After Ctrl-C what is there is written, and the rest is
     INTERRUPTED. Starts processes: see `touchdown.master.common.processes`.
     """
-    rights, failed = _parted([case.name for case in cases], run_all(reference, cases, jobs, done))
+    rights, failed = _parted([case.name for case in cases], run_all(carrying(reference), cases, jobs, done))
     tasks: list[Task] = []
     if not _interrupted(failed):
         begun = [case for case in cases if case.name in rights]
         tasks = [Task(case, scheme, rights[case.name]) for case in begun for scheme in schemes]
     pairs = [(task.case.name, task.scheme) for task in tasks]
-    findings, lost = _parted(pairs, run_all(_examine, tasks, jobs, done))
+    findings, lost = _parted(pairs, run_all(carrying(_examine), tasks, jobs, done))
     failed |= {f"{case} with {scheme}": outcome for (case, scheme), outcome in lost.items()}
     why = {what: outcome.reason for what, outcome in failed.items()}
     study = Study(cases, schemes, rights, findings, why, _interrupted(failed))

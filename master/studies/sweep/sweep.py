@@ -11,6 +11,7 @@ from pathlib import Path
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.processes import run_all
 from touchdown.master.coupling.simulation import open_system
+from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.results.run import make_writable, run_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep.report import Member, write_table
@@ -65,7 +66,7 @@ def sweep(
     ]
     members = [
         outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
-        for task, outcome in zip(tasks, run_all(_run_task, tasks, jobs, done), strict=True)
+        for task, outcome in zip(tasks, run_all(carrying(_run_task), tasks, jobs, done), strict=True)
     ]
     write_table(members, folder / "sweep.csv")
     return members

@@ -6,6 +6,7 @@ import argparse
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import named_progress
 from touchdown.master.scene.schemes import SCHEMES, scheme
 from touchdown.master.verbs.arguments import (
     above_zero,
@@ -17,7 +18,6 @@ from touchdown.master.verbs.arguments import (
     results_folder,
     settings,
 )
-from touchdown.master.verbs.screen import named_progress
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (

@@ -6,8 +6,8 @@ import argparse
 from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import bar_over
 from touchdown.master.verbs.arguments import add_output, add_quiet, count, results_folder
-from touchdown.master.verbs.screen import progress
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
@@ -36,7 +36,7 @@ def execute(options: argparse.Namespace) -> int:
         raise TouchdownError(f"--duration {options.duration} must be above 0 s")
     folder = results_folder(options)
     total = members * (len(SCENES) + (len(OPTIONS) if options.options else 0))
-    with progress(total, "drops", options.quiet) as bar:
+    with bar_over(total, "drops", options.quiet) as bar:
         text = compare_bearings(duration, members, options.options, folder, bar.update)
     print(text, end="")
     print(f"results in {folder}")

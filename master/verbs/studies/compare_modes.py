@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import bar_over
 from touchdown.master.verbs.arguments import (
     add_output,
     add_quiet,
@@ -13,7 +14,7 @@ from touchdown.master.verbs.arguments import (
     results_folder,
     settings,
 )
-from touchdown.master.verbs.screen import progress, warn
+from touchdown.master.verbs.screen import warn
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = ("touchdown compare-modes rotor1-9000 --modes 5,20",)
@@ -56,7 +57,7 @@ def execute(options: argparse.Namespace) -> int:
         if value is not None and not value > 0.0:
             raise TouchdownError(f"{name} = {value:g} s must be above 0")
     folder = results_folder(options, f"modes-{chosen.name}")
-    with progress(runs(modes), "drops", options.quiet) as bar:
+    with bar_over(runs(modes), "drops", options.quiet) as bar:
         comparison = compare_modes(chosen, modes, step, duration, bar.update)
     write_report(comparison, folder)
     print("\n".join(report_lines(comparison)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from touchdown.master.common.progress import bar_over
 from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, count, results_folder
-from touchdown.master.verbs.screen import progress
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
@@ -31,7 +31,7 @@ def execute(options: argparse.Namespace) -> int:
     members = count(options.ensemble, "--ensemble")
     jobs = count(options.jobs, "--jobs")
     folder = results_folder(options)
-    with progress(runs(members), "drops", options.quiet) as bar:
+    with bar_over(runs(members), "drops", options.quiet) as bar:
         text = compare_rotors(members, folder, options.long, jobs, bar.update)
     print(text, end="")
     print(f"results in {folder}")

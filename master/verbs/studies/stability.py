@@ -6,9 +6,10 @@ import argparse
 from pathlib import Path
 
 from touchdown.master.common.errors import STOPPED, TouchdownError
+from touchdown.master.common.progress import bar_over
 from touchdown.master.scene.schemes import SCHEMES, scheme
 from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, count, results_folder
-from touchdown.master.verbs.screen import broken_off, complain, progress
+from touchdown.master.verbs.screen import broken_off, complain
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = ("touchdown stability --cases bounce,mass-1 --schemes hold,interface -o runs/stability",)
@@ -34,7 +35,7 @@ def execute(options: argparse.Namespace) -> int:
     schemes = [scheme(name).name for name in _names(options.schemes, "--schemes")] or list(SCHEMES)
     jobs = count(options.jobs, "--jobs")
     folder = results_folder(options)
-    with progress(size(cases, schemes), "searches", options.quiet) as bar:
+    with bar_over(size(cases, schemes), "searches", options.quiet) as bar:
         study = study_stability(cases, schemes, folder, jobs, bar.update)
     print("\n".join(report_lines(study)))
     print(f"results in {folder}")

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 
 from touchdown.master.common.errors import STOPPED
+from touchdown.master.common.progress import bar_over
 from touchdown.master.verbs.arguments import (
     add_jobs,
     add_output,
@@ -15,7 +16,7 @@ from touchdown.master.verbs.arguments import (
     count,
     settings,
 )
-from touchdown.master.verbs.screen import broken_off, complain, progress, warn
+from touchdown.master.verbs.screen import broken_off, complain, warn
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
@@ -62,7 +63,7 @@ def execute(options: argparse.Namespace) -> int:
     jobs = count(options.jobs, "--jobs")
     folder = options.output or Path("runs") / f"sweep-{chosen.name}"
     execution = Execution(options.in_process, options.keep)
-    with progress(size(variations), "runs", options.quiet) as bar:
+    with bar_over(size(variations), "runs", options.quiet) as bar:
         members = sweep(chosen, variations, folder, jobs, execution, bar.update)
     figures, complaints = picked(members, options.pick)
     print("\n".join([table(members, figures), *verdict_lines(members)]))

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +18,8 @@ import touchdown
 from touchdown.master.coupling import steppers
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene import schemes
+from touchdown.master.studies.schemes import compare
+from touchdown.master.studies.schemes.compare import Asked
 
 SCENE = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
 
@@ -88,6 +93,7 @@ def test_set_and_swap_make_copies() -> None:
         (lambda: touchdown.run(SCENE.set({"rotor.sped": 1.0}), in_process=True), "did you mean speed"),
         (lambda: SCENE.swap(bering="bushing"), "has no component bering; did you mean bearing"),
         (lambda: SCENE.set({"run.scheme": "interfac"}), "unknown scheme interfac; did you mean interface"),
+        (lambda: SCENE.set({"run.scheme": TWICE}), "twice is not registered; give it to register_scheme"),
         (lambda: touchdown.sweep(SCENE, {}), "nothing varies"),
         (lambda: touchdown.build(["bushin"]), "did you mean bushing"),
         (lambda: touchdown.check("bushin"), "did you mean bushing"),
@@ -143,6 +149,7 @@ def test_a_scheme_of_one_s_own_runs_a_scene() -> None:
         ({"name": "interface"}, Twice, "there is a scheme interface already"),
         ({"sequence": "jacobi"}, Twice, "there is a sequence jacobi already"),
         ({"sequence": "jacoby"}, None, "there is no sequence jacoby; did you mean jacobi"),
+        ({}, 5, "5 is no subclass of Stepper"),
         ({"order": 7}, Twice, "order = 7 must be one of"),
         ({"bears": 0.0}, Twice, "bears = 0.0 must be above 0"),
     ],
@@ -150,12 +157,118 @@ def test_a_scheme_of_one_s_own_runs_a_scene() -> None:
 def test_a_scheme_that_cannot_be_is_refused_whole(
     changed: dict[str, object], stepper: type[touchdown.Stepper] | None, says: str
 ) -> None:
-    from dataclasses import replace
-
     before = set(schemes.SCHEMES), set(steppers.SEQUENCES)
     with pytest.raises(touchdown.TouchdownError, match=says):
         touchdown.register_scheme(replace(TWICE, **changed), stepper)
     assert (set(schemes.SCHEMES), set(steppers.SEQUENCES)) == before
+
+
+class Refusing(GaussSeidel):
+    """Never used: another class."""
+
+
+@pytest.mark.usefixtures("registries")
+def test_a_scheme_may_be_registered_again_as_a_notebook_s_cell_does() -> None:
+    touchdown.register_scheme(TWICE, Twice)
+    again = type("Twice", (GaussSeidel,), {"__module__": Twice.__module__})
+    touchdown.register_scheme(TWICE, again)
+    assert steppers.SEQUENCES["twice"] is again
+    with pytest.raises(touchdown.TouchdownError, match="there is a sequence twice already"):
+        touchdown.register_scheme(TWICE, Refusing)
+    with pytest.raises(touchdown.TouchdownError, match="there is a scheme twice already"):
+        touchdown.register_scheme(replace(TWICE, bears=0.5), Twice)
+
+
+@pytest.mark.usefixtures("registries")
+def test_processes_cannot_have_a_stepper_of_a_function() -> None:
+    class Inner(GaussSeidel):
+        """Of this test."""
+
+    touchdown.register_scheme(TWICE, Inner)
+    members = touchdown.sweep(SCENE, {"run.scheme": ["twice", "hold"]}, in_process=True)
+    assert "put its stepper at the top of a module" in members[0].failed
+    assert not members[1].failed
+
+
+OWN_SCHEME = """
+import sys
+import touchdown
+from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
+
+class Mine(GaussSeidel):
+    pass
+
+if __name__ == "__main__":
+    scheme = touchdown.Scheme(
+        name="mine", title="own", order=3, slopes=True, modes=True, error_order=3, bears=1.0,
+        sequence="mine",
+    )
+    touchdown.register_scheme(scheme, Mine)
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
+    for member in touchdown.sweep(scene, {"run.scheme": "mine"}, in_process=True, jobs=1):
+        print(member.failed, member.summary["scheme"])
+"""
+
+
+def test_processes_of_a_sweep_know_schemes_of_one_s_own(tmp_path: Path) -> None:
+    (tmp_path / "own.py").write_text(OWN_SCHEME, encoding="utf-8")
+    made = subprocess.run(
+        [sys.executable, tmp_path / "own.py"], capture_output=True, text=True, check=False
+    )
+    assert made.stdout == " mine\n", made.stderr
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    settings = {"rotor.speed": np.int64(900), "rotor.y": np.float32(1e-5), "run.record_every": np.int64(3)}
+    scene = SCENE.set(settings)
+    assert scene.run.record_every == 3
+    assert (
+        json.loads(json.dumps(scene.resolved(), default=str))["components"]["rotor"]["set"]["speed"] == 900
+    )
+    members = touchdown.sweep(
+        scene, {"rotor.speed": np.linspace(800.0, 900.0, 2), "run.scheme": "hold"}, in_process=True, jobs=1
+    )
+    assert [member.settings["rotor.speed"] for member in members] == [800.0, 900.0]
+    assert not any(member.failed for member in members)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[Asked]:
+    """What comparisons are asked for, instead of being made."""
+    found: list[Asked] = []
+    monkeypatch.setattr(compare, "compare_schemes", lambda scene, asked, begin: found.append(asked))
+    return found
+
+
+def test_a_single_one_is_one(asked: list[Asked], tmp_path: Path) -> None:
+    touchdown.compare(SCENE, "hold", 2e-5)
+    touchdown.compare(SCENE, ["hold", "hold"], np.array([2e-5, 1e-5]))
+    assert [one.schemes for one in asked] == [("hold",), ("hold",)]
+    assert [one.steps for one in asked] == [(2e-5,), (2e-5, 1e-5)]
+    assert touchdown.build("bushing", tmp_path) == [tmp_path / "bushing.fmu"]
+    assert touchdown.build([], tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"macro_steps": [0]}, "macro_steps = 0 must be above 0"),
+        ({"macro_steps": -1e-5}, "macro_steps = -1e-05 must be above 0"),
+        ({"macro_steps": []}, "a macro step at least"),
+        ({"schemes": []}, "needs a scheme"),
+        ({"duration": 0}, "duration = 0 must be above 0"),
+    ],
+)
+def test_a_comparison_that_cannot_be(given: dict[str, Any], says: str) -> None:
+    with pytest.raises(touchdown.TouchdownError, match=says):
+        touchdown.compare(SCENE, **given)
+
+
+def test_a_rotor_shows_itself_without_its_modes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("touchdown.master.api.rotor.described", None)
+    steel = touchdown.Element(length=0.1, outer_diameter=0.04, modulus=0.0, density=7830.0, poisson=0.3)
+    shaft = touchdown.Rotor("bad", (steel, steel), stations=(touchdown.Station("A", 7),))
+    assert repr(shaft) == "<Rotor bad: 2 elements, 3 nodes, 1.9679 kg, 0.2 m, stations: A at node 7>"
 
 
 @pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])

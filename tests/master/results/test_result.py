@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import gc
 import json
+import pickle
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import open_system
+from touchdown.master.results import run
 from touchdown.master.results.figures.plot import Plot
 from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.recording import NotRecordedError, Recording
@@ -80,6 +86,9 @@ def test_columns_as_pandas_has_them(detailed: Result) -> None:
     assert set(detailed.to_pandas()) == set(detailed.data)
     with pytest.raises(NotRecordedError, match=r"rotor\.A\.z was not recorded"):
         detailed.to_pandas(["rotor.A.z"])
+    with pytest.raises(NotRecordedError, match=r"rotor was not recorded"):
+        detailed.to_pandas(["rotor"])
+    assert list(detailed.to_pandas("rotor.A.x")) == ["rotor.A.x"]
 
 
 def test_a_temporary_folder_lasts_as_long_as_its_data() -> None:
@@ -92,6 +101,86 @@ def test_a_temporary_folder_lasts_as_long_as_its_data() -> None:
     del column
     gc.collect()
     assert not folder.exists()
+
+
+def test_a_result_stays_its_own_run_s(tmp_path: Path) -> None:
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-3})
+    first = run_scene(scene, tmp_path, in_process=True, pictures=False)
+    kept = pickle.dumps(first)
+    np.testing.assert_array_equal(pickle.loads(kept).data["rotor.A.y"], first.data["rotor.A.y"])
+    assert len(pickle.dumps(first)) == len(kept)  # without the data that were looked at
+    run_scene(scene.set({"run.duration": 2e-3}), tmp_path, in_process=True, pictures=False)
+    assert float(first.data["time"][-1]) == pytest.approx(1e-3)
+    with pytest.raises(TouchdownError, match="is of another run by now"):
+        pickle.loads(kept)
+    shutil.rmtree(tmp_path)
+    assert first.to_pandas("rotor.A.x").size == first.data.sizes["time"]
+    with pytest.raises(TouchdownError, match="cannot read"):
+        pickle.loads(kept)
+
+
+def test_a_result_in_a_temporary_folder_is_not_pickled(detailed: Result) -> None:
+    with pytest.raises(TouchdownError, match="give the run a folder"):
+        pickle.dumps(detailed)
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        lambda d: d.isel(time=[1, 5, 3]),
+        lambda d: d.isel(time=slice(4, 40, 3)).isel(time=[0, 2]),
+        lambda d: d.isel(time=-1),
+        lambda d: d.sel(time=[1e-3, 2e-3], method="nearest"),
+        lambda d: d.sel(time=slice(1e-3, 2e-3)),
+        lambda d: d[{"time": d["time"].values > 5e-3}],
+        lambda d: d.where(d["rotor.A.y"] < -1e-4, drop=True),
+        lambda d: d.interp(time=[1.1e-3, 2.7e-3]),
+        lambda d: d.copy(deep=True),
+        lambda d: pickle.loads(pickle.dumps(d)),
+        lambda d: pickle.loads(pickle.dumps(d)).isel(time=[2, 1]),
+        lambda d: d.load().rolling(time=3).mean(),
+    ],
+)
+def test_data_are_looked_at_as_in_memory(look: Callable[..., Any], detailed: Result) -> None:
+    names = ["rotor.A.y", "bearing.contact.force"]
+    frame = detailed.to_pandas(names)
+    memory = xarray.Dataset({n: ("time", frame[n].to_numpy()) for n in names}, {"time": frame.index})
+    xarray.testing.assert_equal(look(replace(detailed).data[names]), look(memory))
+
+
+def test_what_the_ending_knows_has_a_value(detailed: Result) -> None:
+    scene_input = "bearing.journal.omega"
+    assert scene_input in detailed.ending
+    for name, component in detailed.ending.components.items():
+        assert all(detailed.ending.value(f"{name}.{v}") is not None for v in component.variables)
+    assert "rotor.nothing" not in detailed.ending
+    with pytest.raises(TouchdownError, match=r"no value of rotor\.nothing"):
+        detailed.ending.value("rotor.nothing")
+
+
+@pytest.mark.parametrize("failing", ["rotor", "bearing"])
+def test_a_component_that_answers_nothing_after_it_failed(
+    failing: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise TouchdownError("it answers no more")
+
+    def fail(time: float, step: float) -> None:
+        if time > 1e-3:
+            monkeypatch.setattr(component, "read", refuse)
+            raise TouchdownError("it broke")
+        stepped(time, step)
+
+    scene = load_scene("disk-caged-detailed").set({"run.duration": 2e-3})
+    system = open_system(scene, in_process=True)
+    component = system.components[failing]
+    stepped = component.step
+    monkeypatch.setattr(component, "step", fail)
+    monkeypatch.setattr(run, "open_system", lambda *_: system)
+    result = run_scene(scene, None, in_process=True)
+    assert (result.ended, result.stopped_because) == (Ended.STOPPED, "it broke")
+    assert len(result.data["time"]) > 5
+    assert not result.ending.components[failing].values
 
 
 def test_it_tells_how_the_run_ended(detailed: Result) -> None:

@@ -16,7 +16,7 @@ import pytest
 from commands import SCENE, SHORT, Command, Ended
 from places import COMMAND
 
-from touchdown.master.common.errors import STOPPED
+from touchdown.master.common.errors import FAILED, STOPPED
 
 PATIENCE = 120.0  # s; a test that waits longer has failed
 
@@ -35,6 +35,29 @@ def test_a_folder_that_cannot_be_written(command: Command, tmp_path: Path):
 def test_a_result_that_cannot_be_written(name: str, run: Command, tmp_path: Path):
     (tmp_path / "out" / name).mkdir(parents=True)
     assert name in run(SCENE, *SHORT, "--csv").line
+
+
+LIMITED = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]),) * 2)
+from touchdown.master.cli import main
+sys.exit(main(sys.argv[2:]))
+"""
+
+
+@pytest.mark.parametrize("room", [20_000, 800_000])  # too little for the first block, for the end
+def test_a_disk_that_runs_full(room: int, tmp_path: Path):
+    """HDF5 holds what it could not write, and must not crash over it at the end."""
+    settings = ("--set", "run.duration=0.1", "--set", "run.record_every=1")
+    arguments = ("run", SCENE, *settings, "--in-process", "--no-pictures", "--quiet", "-o", str(tmp_path))
+    made = subprocess.run(
+        [sys.executable, "-c", LIMITED, str(room), *arguments], capture_output=True, text=True, check=False
+    )
+    assert made.returncode in (FAILED, STOPPED), made.stderr
+    assert made.stderr == (
+        f"touchdown: cannot write {tmp_path / 'result.h5'}: File too large; make room for it\n"
+    )
 
 
 # -- runs that stop ----------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor.figure import campbell, modes, rest
-from touchdown.master.studies.rotor.report import NO_REST, report, report_text
+from touchdown.master.studies.rotor.report import TO_REST, report, report_text
 from touchdown.rotor.file import find, shipped
 from touchdown.rotor.portrait import Portrait, portrait
 
@@ -165,7 +165,7 @@ def test_without_two_seats_the_rotor_does_not_lie(stations: str, tmp_path: Path)
     head, _, tail = stations.rpartition("[stations]")
     path.write_text(head + PLAIN + (f"[stations]{tail}" if tail else ""), encoding="utf-8")
     found = report(str(path), tmp_path)
-    assert NO_REST in found.text
+    assert TO_REST in found.text
     assert [p.name for p in found.pictures] == ["campbell.png", "modes.png"]
     assert not (tmp_path / "rest.png").exists()
 
