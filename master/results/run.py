@@ -55,17 +55,8 @@ def run_scene(
             ) from None
         finally:
             system.close()
-    return Result(
-        scene,
-        recording,
-        folder,
-        summary,
-        told,
-        outcome.ended,
-        outcome.reason,
-        _warnings(scene, outcome),
-        drawn,
-    )
+    warnings = _warnings(scene, outcome)
+    return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 
 def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
