@@ -32,13 +32,21 @@ class Rotor(Shaft):
     """A flexible rotor: beam elements in their order, and what sits at the nodes between them.
 
     Nodes count from 1. Stations are the nodes that bearings hold; those in `levitated_at` carry the rotor
-    before it drops. Lengths in m, all in SI. A scene takes it in place of an FMU.
+    before it drops. Lengths in m, all in SI. A scene takes it in place of an FMU, if it has the stations and
+    sensors that the scene attaches to, by name.
 
     >>> shaft = touchdown.Element(
     ...     length=0.1, outer_diameter=0.04, modulus=207e9, density=7830.0, poisson=0.3
     ... )
-    >>> ends = touchdown.Station("A", 1), touchdown.Station("B", 9)
-    >>> rotor = touchdown.Rotor("Plain shaft", 8 * (shaft,), stations=ends)
+    >>> def stations(**nodes):
+    ...     return [touchdown.Station(name, node) for name, node in nodes.items()]
+    >>> rotor = touchdown.Rotor(
+    ...     "Plain shaft",
+    ...     8 * (shaft,),
+    ...     stations=stations(A=1, B=9, amb_A=3, amb_B=7),
+    ...     sensors=stations(sensor_A=3, sensor_B=7),
+    ...     levitated_at=["amb_A", "amb_B"],
+    ... )
     >>> rotor.frequencies(modes=3).round(1)  # Hz; translation and tilt come first
     array([  0. ,   0. , 284.2])
     >>> print(rotor.report(modes=3))

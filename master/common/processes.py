@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -43,6 +44,7 @@ def run_all(
     A task that raises has failed, and one whose process dies; the others go on. After Ctrl-C those that
     have not ended are INTERRUPTED. A script that calls it needs `if __name__ == "__main__":`.
     """
+    _refuse_importing_script()
     ended: dict[int, TaskOutcome[Value]] = {}
     jobs = max(1, min(jobs, len(tasks)))
     try:
@@ -56,6 +58,19 @@ def run_all(
     except KeyboardInterrupt:
         pass
     return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
+
+
+def _refuse_importing_script() -> None:
+    """End this process with one line where it only imports the script that starts processes.
+
+    A process that is started imports the caller's script; one without the guard would start processes
+    again, which Python refuses with a page of traceback for each.
+    """
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        sys.exit(
+            "touchdown: processes that run beside each other import the script that starts them; put what "
+            'it does under if __name__ == "__main__":'
+        )
 
 
 def _run_pool(

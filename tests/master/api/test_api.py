@@ -218,6 +218,24 @@ def test_processes_of_a_sweep_know_schemes_of_one_s_own(tmp_path: Path) -> None:
     assert made.stdout == " mine\n", made.stderr
 
 
+UNGUARDED = """
+import touchdown
+scene = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
+members = touchdown.sweep(scene, {"rotor.speed": 900.0}, in_process=True, jobs=1)
+print([member.failed for member in members])
+"""
+
+
+def test_a_sweep_in_a_script_without_the_guard_says_so(tmp_path: Path) -> None:
+    (tmp_path / "bare.py").write_text(UNGUARDED, encoding="utf-8")
+    made = subprocess.run(
+        [sys.executable, tmp_path / "bare.py"], capture_output=True, text=True, check=False
+    )
+    assert made.stdout == "['its process died']\n"
+    assert 'put what it does under if __name__ == "__main__":' in made.stderr
+    assert "Traceback" not in made.stderr
+
+
 def test_numbers_of_numpy_are_numbers() -> None:
     settings = {"rotor.speed": np.int64(900), "rotor.y": np.float32(1e-5), "run.record_every": np.int64(3)}
     scene = SCENE.set(settings)
