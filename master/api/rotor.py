@@ -32,8 +32,8 @@ class Rotor(Shaft):
     """A flexible rotor: beam elements in their order, and what sits at the nodes between them.
 
     Nodes count from 1. Stations are the nodes that bearings hold; those in `levitated_at` carry the rotor
-    before it drops. Lengths in m, all in SI. A scene takes it in place of an FMU, if it has the stations and
-    sensors that the scene attaches to, by name.
+    before it drops. Lengths in m, all in SI. A scene takes it in place of an FMU, if it has the stations
+    and sensors that the scene attaches to, by name.
 
     >>> shaft = touchdown.Element(
     ...     length=0.1, outer_diameter=0.04, modulus=207e9, density=7830.0, poisson=0.3
