@@ -120,12 +120,20 @@ class _Bar:
         if self._bar.disable:
             return lambda time, residual: None
 
+        self._bar.set_postfix_str("compiling what is new")
+        begun: float | None = None  # s, simulated, from which the speed counts
+
         def show(time: float, residual: float) -> None:
-            if time > self._bar.n:
-                speed = self._bar.format_dict["elapsed"] / time
-                text = f"{speed:.2f} s per simulated s, ledger {residual:.1e}"
-                self._bar.set_postfix_str(text, refresh=False)
-                self._bar.update(min(time, self._bar.total) - self._bar.n)
+            nonlocal begun
+            if begun is None or time <= 0.0:  # what is compiled is so in the first steps
+                begun = max(time, 0.0)
+                self._bar.unpause()
+                self._bar.n = self._bar.initial = begun
+                return
+            speed = self._bar.format_dict["elapsed"] / (time - begun)
+            text = f"{speed:.2f} s per simulated s, ledger {residual:.1e}"
+            self._bar.set_postfix_str(text, refresh=False)
+            self._bar.update(min(time, self._bar.total) - self._bar.n)
 
         return show
 
