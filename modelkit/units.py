@@ -26,7 +26,7 @@ SCALES: dict[str, tuple[float, str]] = {
 }  # fmt: skip
 
 
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])")
+NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])|(nan|inf)\b)", re.IGNORECASE)
 MICRO = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
 
 
