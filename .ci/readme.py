@@ -22,10 +22,10 @@ ROOT = Path(__file__).resolve().parents[1]
 def blocks() -> list[list[str]]:
     """Commands of each ```sh block of the README."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    found = re.findall(r"^```(sh|python)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    fenced = re.findall(r"^```(sh|python)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     return [
         [f".venv/bin/python -c {shlex.quote(block)}"] if kind == "python" else block.splitlines()
-        for kind, block in found
+        for kind, block in fenced
     ]
 
 

@@ -16,11 +16,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import seat
-from modelkit import dopri
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import (
+from touchdown.bearings import seat
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import (
     FlexibleSeatMotion,
     Interface,
     Load,
@@ -28,9 +27,10 @@ from modelkit.ports import (
     MountReaction,
     PointMotion,
     SeatReaction,
+    StaticLoad,
 )
-from modelkit.status import BAD_INPUT, OK
-from modelkit.variables import group, integer, real
+from touchdown.modelkit.status import BAD_INPUT, OK
+from touchdown.modelkit.variables import group, integer, real
 
 SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N
@@ -53,11 +53,8 @@ class Parameters:
 
 
 @dataclass(frozen=True)
-class HeldMotion(FlexibleSeatMotion):
+class HeldMotion(StaticLoad, FlexibleSeatMotion):
     """Motion of the journal, and what it takes to hold it."""
-
-    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here", constant=True)
-    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here", constant=True)
 
 
 @dataclass(frozen=True)
@@ -95,15 +92,16 @@ MEMORY = seat.bearing_memory(Parameters, Outputs, FY + 1, hidden=Hidden, inputs=
 
 @kernel
 def _limited(force, limit):
+    """The force, cut off at +-`limit` (both N)."""
     return min(max(force, -limit), limit)
 
 
 @kernel
-def _law(t, y, m):
-    """Force the control asks for (N), t seconds into the macro step."""
+def _law(t, q, m):
+    """Force the control asks for (x and y, N), t seconds into the macro step."""
     p, j, u = m.p, m.u.journal, m.u.sensor
-    ex, ey = y[seat.JX] - y[seat.HX], y[seat.JY] - y[seat.HY]
-    ux, uy = y[seat.JVX] - y[seat.HVX], y[seat.JVY] - y[seat.HVY]
+    ex, ey = q[seat.JX] - q[seat.HX], q[seat.JY] - q[seat.HY]
+    ux, uy = q[seat.JVX] - q[seat.HVX], q[seat.JVY] - q[seat.HVY]
     if p.sensed == 1:  # what the sensor saw at the restart, moved on as the journal moved
         ux, uy = ux + u.vx - j.vx, uy + u.vy - j.vy
         t += m.s.since
@@ -114,57 +112,60 @@ def _law(t, y, m):
 
 
 @kernel
-def react(t, y, dy, m):
-    """Load of the control, zero after the shutdown."""
+def react(t, q, dq, m):
+    """`Load` of the control (N), zero after the shutdown; sets dq of its work (W) and lag (N/s)."""
     p = m.p
-    dy[SUPPLIED], dy[FX], dy[FY] = 0.0, 0.0, 0.0
+    dq[SUPPLIED], dq[FX], dq[FY] = 0.0, 0.0, 0.0
     if t > m.s.span:
         return Load(0.0, 0.0, 0.0, 0.0, 0.0)
-    fx, fy = _law(t, y, m)
+    fx, fy = _law(t, q, m)
     if p.bandwidth > 0.0:
-        dy[FX], dy[FY] = p.bandwidth * (fx - y[FX]), p.bandwidth * (fy - y[FY])
-        fx, fy = y[FX], y[FY]
-    dy[SUPPLIED] = fx * (y[seat.JVX] - y[seat.HVX]) + fy * (y[seat.JVY] - y[seat.HVY])
+        dq[FX], dq[FY] = p.bandwidth * (fx - q[FX]), p.bandwidth * (fy - q[FY])
+        fx, fy = q[FX], q[FY]
+    dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
     return Load(fx, fy, 0.0, -fx, -fy)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Everything the bearing integrates within a macro step."""
-    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def observe(t, y, m):
-    """Nothing to watch."""
+def observe(t, q, m):
+    """Nothing to watch at t (s)."""
 
 
 @kernel
 def ready(m, since):
-    """Find how long it still acts in the stretch that begins at m.time."""
+    """Find how long (s) it acts in the stretch that begins at m.time, `since` (s) after the inputs."""
     left = m.p.shutdown_time - m.time
     m.s.span = -1.0 if left <= ROUNDING else min(left, 2.0 * m.half)
     m.s.since = since
 
 
 @kernel
-def report(y, m):
-    """Work supplied, and whether it is over: no load left in the last macro step, nor to come."""
-    m.o.supplied = y[SUPPLIED]
+def report(q, m):
+    """Work supplied (J), and whether it is over: no load left in the last macro step, nor to come."""
+    m.o.supplied = q[SUPPLIED]
     m.o.active = 0 if m.s.span < 0.0 else 1
 
 
 @kernel
 def start(words):
-    """Find the static load that the seat reports, and hand it over until the first step is taken."""
+    """Find the static load that the seat reports, and hand it over until the first step is taken.
+
+    words: the memory, in 8-byte words.
+    """
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
+    seat.take_inputs(m.q, m)
     j = m.u.journal
     m.o.load_x, m.o.load_y = j.static_fx, j.static_fy
     if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
         m.o.load_x = -j.ax_free / j.inv_m
         m.o.load_y = -j.ay_free / j.inv_m
-    m.y[FX], m.y[FY] = m.o.load_x, m.o.load_y
+    m.q[FX], m.q[FY] = m.o.load_x, m.o.load_y
     seat.begin(react, report, m)
     if m.p.shutdown_time > m.time:
         m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
@@ -173,13 +174,13 @@ def start(words):
 
 @kernel
 def _integrate_for(m, work, span):
-    tolerance = m.p.interface.tolerance
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+    """`seat.integrate` over `span` (s), with load or without; work: (8, m.n) or wider."""
+    return seat.integrate(rhs, observe, m, work, span)
 
 
 @kernel
 def integrate(m, work, step):
-    """Advance the state by `step` (s): with load up to the shutdown, then free."""
+    """Advance m.q by `step` (s): with load up to the shutdown, then free. As `seat.integrate`."""
     acting = m.s.span
     h, status, evaluations = m.h, OK, 0
     if acting > 0.0:
@@ -193,15 +194,15 @@ def integrate(m, work, step):
 
 
 @kernel
-def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u at time t (s)."""
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N) under the motion m.u at time t (s)."""
     m.s.span = 1.0 if t < m.p.shutdown_time else -1.0
-    seat.instant(react, 0.0, y, dy, m)
+    seat.instant(react, 0.0, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step."""
+    """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     j, u = m.u.journal, m.u.sensor
     if not math.isfinite(u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy):

@@ -10,22 +10,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import seat
-from bearings.contact import ContactLaw, damped, elastic_energy
-from bearings.friction import FrictionLaw, prepared, problem
-from bearings.journal_contact import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared, problem
+from touchdown.bearings.contact.journal import (
     RATE_FROM,
     ContactMemory,
     ContactReport,
+    Touched,
+    note,
     swing_rate,
     touch,
     watch_contact,
 )
-from modelkit import dopri
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
-from modelkit.variables import group, real
+from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_energy
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from touchdown.modelkit.variables import group, real
 
 LOSS = seat.INSIDE
 
@@ -65,74 +66,69 @@ class Hidden:
 
     seat: seat.SeatMemory = group(seat.SeatMemory)
     contact: ContactMemory = group(ContactMemory)
-    normal: float = real(0.0, "N", "normal force at the last evaluation")
-    indentation: float = real(0.0, "m", "indentation at the last evaluation")
-    rate: float = real(0.0, "m/s", "its rate")
+    touched: Touched = group(Touched)
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
 
 
 @kernel
-def react(t, y, dy, m):
-    """Load on journal and housing; inside there is only the heat."""
-    p, s = m.p, m.s
-    bore = seat.housing_motion(y)
-    j = touch(seat.journal_motion(y), bore, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
-    s.normal, s.indentation, s.rate = j.normal, j.indentation, j.rate
-    dy[LOSS] = j.loss
+def react(t, q, dq, m):
+    """`Load` on journal and housing (N, N m); inside there is only the heat, whose rate (W) goes to dq."""
+    p = m.p
+    bore = seat.housing_motion(q)
+    j = touch(seat.journal_motion(q), bore, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
+    note(m.s.touched, j)
+    dq[LOSS] = j.loss
     return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Everything the bearing integrates within a macro step."""
-    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def observe(t, y, m):
-    """Peaks and the first contact, after each accepted micro-step."""
-    s = m.s
-    touched = (s.normal, s.indentation, s.rate)
-    watch_contact(m.time + t, seat.journal_motion(y), touched, m.o.contact, s.contact)
+def observe(t, q, m):
+    """Peaks and the first contact, after each accepted micro-step, t (s) into the macro step."""
+    watch_contact(m.time + t, seat.journal_motion(q), m.s.touched, m.o.contact, m.s.contact)
 
 
 @kernel
-def report(y, m):
-    """Outputs wanted once per macro step."""
-    c, s = m.o.contact, m.s
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
+    c, s = m.o.contact, m.s.touched
     c.force, c.indentation = s.normal, s.indentation
-    c.sliding = y[seat.JW] * m.p.journal_radius
+    c.sliding = q[seat.JW] * m.p.journal_radius
     m.o.energy.potential = elastic_energy(s.indentation, m.p.contact)
-    m.o.energy.dissipated = y[LOSS]
+    m.o.energy.dissipated = q[LOSS]
 
 
 @kernel
 def start(words):
-    """Nothing inside."""
+    """Nothing inside; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
+    seat.take_inputs(m.q, m)
     m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
     seat.begin(react, report, m)
 
 
 @kernel
 def integrate(m, work, span):
-    """Advance the state by `span` (s)."""
-    tolerance = m.p.interface.tolerance
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    return seat.integrate(rhs, observe, m, work, span)
 
 
 @kernel
-def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u."""
-    seat.instant(react, t, y, dy, m)
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u."""
+    seat.instant(react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step."""
+    """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     return seat.advance(react, integrate, report, words, m, work, time, step)
 

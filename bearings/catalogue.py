@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bearings.balls import BallSet
-from bearings.ring import Ring
+from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.ring import Ring
 
 
 @dataclass(frozen=True)

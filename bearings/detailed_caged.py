@@ -3,7 +3,7 @@
 Inner ring, balls and cage have three coordinates each, the outer ring has the housing's two, its rotation
 is fixed: with nine balls 36 coordinates and one constraint. Contacts: journal and ring, ball and inner
 race, ball and outer race, ball and cage. The rotation of the outer ring is eliminated; see
-`bearings.augmented` for the form with a Lagrange multiplier.
+`bearings.rolling.bodies.augmented` for the form with a Lagrange multiplier.
 """
 
 from __future__ import annotations
@@ -13,28 +13,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ball_bodies, cage, ring, seat
-from bearings.ball_bodies import (
-    MOST_STATES,
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, Coordinates
+from touchdown.bearings.rolling.bodies import cage, outputs
+from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesDerived,
     BallBodiesMemory,
     BallBodiesOutputs,
     BallBodiesParameters,
+    derived,
+    problem,
+)
+from touchdown.bearings.rolling.bodies.races import race_contacts
+from touchdown.bearings.rolling.bodies.state import (
+    MOST_STATES,
+    ball_weights,
     drift,
     fastest,
-    forecast,
-    race_contacts,
+    place,
+    ring_weights,
 )
-from bearings.balls import MOST_BALLS, BallContacts, Coordinates
-from bearings.contact import ContactLaw, abreast, damped
-from bearings.friction import FrictionLaw, prepared
-from bearings.friction import problem as friction_problem
-from bearings.rolling import starts_from, state_constants
-from modelkit import dopri, verlet
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Load
-from modelkit.variables import array, group, real
+from touchdown.bearings.rolling.declarations import starts_from, state_constants
+from touchdown.bearings.rolling.micro_step import leapfrog
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Load
+from touchdown.modelkit.variables import array, group, real
 
 
 @dataclass(frozen=True)
@@ -80,49 +89,49 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 
 @kernel
-def react(t, y, dy, m):
-    """Derivative of ring, balls and cage, and the load on journal and housing."""
-    j = ring.journal_on_ring(y, m, m.s.step * m.d.bore_grip)
-    inner, outer = race_contacts(y, dy, m)
-    loss = cage.pocket_contacts(y, dy, m)
-    ring.accelerate(y, dy, m, j, inner)
-    dy[ring.LOSS] = j.loss + inner.loss + outer.loss + loss
+def react(t, q, dq, m):
+    """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
+    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
+    inner, outer = race_contacts(q, dq, m)
+    rubbing = cage.pocket_contacts(q, dq, m)
+    ring.accelerate(q, dq, m, j, inner)
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Everything the bearing integrates within a macro step."""
-    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def observe(t, y, m):
-    """Peaks and events, after each accepted micro-step."""
-    ring.watch(t, y, m)
-    ball_bodies.watch(m, m.o.pockets)
+def observe(t, q, m):
+    """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
+    ring.watch(t, q, m)
+    outputs.watch(m, m.o.pockets)
 
 
 @kernel
-def report(y, m):
-    """Outputs wanted once per macro step."""
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
-    ring.report(y, m, m.d.inner_radius)
-    kinetic, potential = ball_bodies.report(y, m, False)
-    ball_bodies.state_contacts(o.pockets, m.s.side, p.balls)
-    of_cage, weight = cage.report(y, m)
-    stored = ball_bodies.stored(m.s.side, m.d.cage_contact, count)
-    ring.report_energy(y, m, kinetic + of_cage, potential + weight + stored, p.ring.inertia)
+    ring.report(q, m, m.d.inner_radius)
+    kinetic, potential = outputs.report(q, m, neighbours=False)
+    outputs.state_contacts(o.pockets, m.s.side, p.balls)
+    of_cage, weight = cage.report(q, m)
+    stored = outputs.stored(m.s.side, m.d.cage_contact, count)
+    ring.report_energy(q, m, kinetic + of_cage, potential + weight + stored, p.ring.inertia)
 
 
 @kernel
 def start(words):
-    """Ring, balls and cage at rest, the first ball at its angle."""
+    """Ring, balls and cage at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
-    ring.place(m.y, m.d.rest_x, m.d.rest_y)
-    ball_bodies.place(m.y, m)
-    cage.place(m.y, m)
+    seat.take_inputs(m.q, m)
+    ring.place(m.q, m.d.rest_x, m.d.rest_y)
+    place(m.q, m)
+    cage.place(m.q, m)
     m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
@@ -130,26 +139,22 @@ def start(words):
 
 @kernel
 def integrate(m, work, span):
-    """Advance the state by `span` (s)."""
-    p, longest = m.p, m.d.micro_step
-    if longest > 0.0:
-        status, evaluations = verlet.integrate(
-            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
-        )
-        return m.h, status, evaluations
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    if m.d.micro_step > 0.0:
+        return leapfrog(rhs, drift, fastest, observe, m, work, span)
+    return seat.integrate(rhs, observe, m, work, span)
 
 
 @kernel
-def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u, friction as it stands."""
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m.s.step = 0.0
-    seat.instant(react, t, y, dy, m)
+    seat.instant(react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step."""
+    """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
     return seat.advance(react, integrate, report, words, m, rows, time, step)
@@ -163,7 +168,7 @@ def derive(p: Parameters) -> Derived:
     of_ball = 1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia
     of_cage = 1.0 / p.cage.mass + b.pitch_radius**2 / inertia
     side = abreast(p.cage_contact, b.rows)
-    fields = ball_bodies.derived(p, side, min(b.ball_mass, p.cage.mass))
+    fields = derived(p, side, min(b.ball_mass, p.cage.mass))
     return Derived(
         **fields,  # type: ignore[arg-type]
         cage_contact=damped(side, min(b.ball_mass, p.cage.mass)),
@@ -191,14 +196,12 @@ def check(p: Parameters) -> str | None:
             f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
             f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
         )
-    return ball_bodies.problem(p) or friction_problem(p.cage_friction, "cage_friction")
+    return problem(p) or friction_problem(p.cage_friction, "cage_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    return seat.weights(
-        ball_bodies.ring_weights(p) + ball_bodies.ball_weights(p.balls.count) + cage.cage_weights(p.balls)
-    )
+    return seat.weights(ring_weights(p) + ball_weights(p.balls.count) + cage.cage_weights(p.balls))
 
 
 MODEL = Model(

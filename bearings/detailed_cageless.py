@@ -4,8 +4,8 @@ Inner ring and balls have three coordinates each, the outer ring has the housing
 fixed: with 17 balls 57 coordinates and one constraint. Contacts: journal and ring, ball and inner race,
 ball and outer race, each ball and the next.
 
-The rotation of the outer ring is eliminated; `bearings.augmented` holds it by a Lagrange multiplier
-instead (2.18-2.28), as a check. Balls are counted around the bearing and do not pass each other.
+The rotation of the outer ring is eliminated; `bearings.rolling.bodies.augmented` holds it by a Lagrange
+multiplier instead (2.18-2.28), as a check. Balls are counted around the bearing and do not pass each other.
 """
 
 from __future__ import annotations
@@ -15,36 +15,44 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ball_bodies, ring, seat
-from bearings.ball_bodies import (
-    MOST_STATES,
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.pair import OUTSIDE, Place, press
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_state import part
+from touchdown.bearings.rolling.balls import BallContacts, Coordinates, FreeBallSet
+from touchdown.bearings.rolling.bodies import outputs
+from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesDerived,
     BallBodiesMemory,
     BallBodiesOutputs,
     BallBodiesParameters,
+    derived,
+    problem,
+)
+from touchdown.bearings.rolling.bodies.races import race_contacts
+from touchdown.bearings.rolling.bodies.side import note, note_apart
+from touchdown.bearings.rolling.bodies.state import (
+    MOST_STATES,
     X,
     Y,
     ball_motion,
+    ball_weights,
     drift,
     fastest,
-    forecast,
-    note,
-    note_apart,
-    part,
+    place,
     push,
-    race_contacts,
+    ring_weights,
 )
-from bearings.balls import BallContacts, Coordinates, FreeBallSet
-from bearings.contact import ContactLaw, abreast, damped
-from bearings.friction import FrictionLaw, prepared
-from bearings.friction import problem as friction_problem
-from bearings.pair import OUTSIDE, Place, press
-from bearings.rolling import starts_from, state_constants
-from modelkit import dopri, verlet
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Load
-from modelkit.variables import group, real
+from touchdown.bearings.rolling.declarations import starts_from, state_constants
+from touchdown.bearings.rolling.micro_step import leapfrog
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Load
+from touchdown.modelkit.variables import group, real
 
 
 @dataclass(frozen=True)
@@ -86,16 +94,16 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 
 @kernel
-def _neighbour_contacts(y, dy, m):
-    """Each ball against the next; adds to the balls' derivatives, returns the heat (W)."""
+def _neighbour_contacts(q, dq, m):
+    """Each ball in q against the next; adds to the balls' derivatives in dq, returns the heat (W)."""
     p, d = m.p, m.d
     count, apart = p.balls.count, 2.0 * d.ball_radius
     grip = m.s.step * d.side_grip
     loss = 0.0
-    x, z = part(y, X, m), part(y, Y, m)
+    x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):
         k = b + 1 if b + 1 < count else 0
-        ex, ey = x[k] - x[b], z[k] - z[b]
+        ex, ey = x[k] - x[b], y[k] - y[b]
         square = ex * ex + ey * ey
         if square >= apart * apart:
             note_apart(m.s.side, b)
@@ -103,57 +111,57 @@ def _neighbour_contacts(y, dy, m):
         distance = math.sqrt(square)
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
-        this, following = ball_motion(y, b, m), ball_motion(y, k, m)
+        this, following = ball_motion(q, b, m), ball_motion(q, k, m)
         c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, grip)
         note(m.s.side, b, c, at.indentation, d.ball_contact)
-        push(dy, k, c.fx, c.fy, c.first_moment, m)
-        push(dy, b, -c.fx, -c.fy, c.second_moment, m)
+        push(dq, k, c.fx, c.fy, c.first_moment, m)
+        push(dq, b, -c.fx, -c.fy, c.second_moment, m)
         loss += c.loss
     return loss
 
 
 @kernel
-def react(t, y, dy, m):
-    """Derivative of ring and balls, and the load on journal and housing."""
-    j = ring.journal_on_ring(y, m, m.s.step * m.d.bore_grip)
-    inner, outer = race_contacts(y, dy, m)
-    loss = _neighbour_contacts(y, dy, m)
-    ring.accelerate(y, dy, m, j, inner)
-    dy[ring.LOSS] = j.loss + inner.loss + outer.loss + loss
+def react(t, q, dq, m):
+    """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
+    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
+    inner, outer = race_contacts(q, dq, m)
+    rubbing = _neighbour_contacts(q, dq, m)
+    ring.accelerate(q, dq, m, j, inner)
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Everything the bearing integrates within a macro step."""
-    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def observe(t, y, m):
-    """Peaks and events, after each accepted micro-step."""
-    ring.watch(t, y, m)
-    ball_bodies.watch(m, m.o.neighbours)
+def observe(t, q, m):
+    """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
+    ring.watch(t, q, m)
+    outputs.watch(m, m.o.neighbours)
 
 
 @kernel
-def report(y, m):
-    """Outputs wanted once per macro step."""
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
-    ring.report(y, m, m.d.inner_radius)
-    kinetic, potential = ball_bodies.report(y, m, neighbours=True)
-    ball_bodies.state_contacts(o.neighbours, m.s.side, p.balls)
-    stored = ball_bodies.stored(m.s.side, m.d.ball_contact, count)
-    ring.report_energy(y, m, kinetic, potential + stored, p.ring.inertia)
+    ring.report(q, m, m.d.inner_radius)
+    kinetic, potential = outputs.report(q, m, neighbours=True)
+    outputs.state_contacts(o.neighbours, m.s.side, p.balls)
+    stored = outputs.stored(m.s.side, m.d.ball_contact, count)
+    ring.report_energy(q, m, kinetic, potential + stored, p.ring.inertia)
 
 
 @kernel
 def start(words):
-    """Ring and balls at rest, the first ball at its angle."""
+    """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    seat.take_inputs(m.y, m)
-    ring.place(m.y, m.d.rest_x, m.d.rest_y)
-    ball_bodies.place(m.y, m)
+    seat.take_inputs(m.q, m)
+    ring.place(m.q, m.d.rest_x, m.d.rest_y)
+    place(m.q, m)
     m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
@@ -161,26 +169,22 @@ def start(words):
 
 @kernel
 def integrate(m, work, span):
-    """Advance the state by `span` (s)."""
-    p, longest = m.p, m.d.micro_step
-    if longest > 0.0:
-        status, evaluations = verlet.integrate(
-            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
-        )
-        return m.h, status, evaluations
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, p.interface.tolerance)
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    if m.d.micro_step > 0.0:
+        return leapfrog(rhs, drift, fastest, observe, m, work, span)
+    return seat.integrate(rhs, observe, m, work, span)
 
 
 @kernel
-def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u, friction as it stands."""
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m.s.step = 0.0
-    seat.instant(react, t, y, dy, m)
+    seat.instant(react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step."""
+    """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
     return seat.advance(react, integrate, report, words, m, rows, time, step)
@@ -190,7 +194,7 @@ def derive(p: Parameters) -> Derived:
     """Stiffness and masses from geometry, and where everything starts."""
     b = p.balls
     side = abreast(p.ball_contact, b.rows)
-    fields = ball_bodies.derived(p, side, 0.5 * b.ball_mass)
+    fields = derived(p, side, 0.5 * b.ball_mass)
     return Derived(
         **fields,  # type: ignore[arg-type]
         ball_contact=damped(side, b.ball_mass),
@@ -208,12 +212,12 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return ball_bodies.problem(p) or friction_problem(p.ball_friction, "ball_friction")
+    return problem(p) or friction_problem(p.ball_friction, "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:
     """Error weights of the state."""
-    return seat.weights(ball_bodies.ring_weights(p) + ball_bodies.ball_weights(p.balls.count))
+    return seat.weights(ring_weights(p) + ball_weights(p.balls.count))
 
 
 MODEL = Model(

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import body
-from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import Energy, MountLoad, MountState
-from modelkit.variables import group, real
+from touchdown.modelkit import body
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.ports import Energy, MountLoad, MountState
+from touchdown.modelkit.variables import group, real
 
 X, Y, VX, VY, WORK, LOSS = range(6)
 
@@ -51,51 +51,51 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, 6)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Newton under the force mean + slope (t - t_mid)."""
+def rhs(t, q, dq, m):
+    """Derivative dq (6,) of the state q (6,) under the force mean + slope (t - t_mid); t: s."""
     p, u = m.p, m.u.seat
     mass = p.mass + p.outer_ring
     s = t - m.half
     fx, fy = u.fx + u.dfx * s, u.fy + u.dfy * s
-    dy[X] = y[VX]
-    dy[Y] = y[VY]
-    dy[VX] = (fx - p.stiffness * (y[X] - p.x0) - p.damping * y[VX]) / mass
-    dy[VY] = (fy - p.stiffness * (y[Y] - p.y0) - p.damping * y[VY]) / mass - p.gravity
-    dy[WORK] = fx * y[VX] + fy * y[VY]
-    dy[LOSS] = p.damping * (y[VX] ** 2 + y[VY] ** 2)
+    dq[X] = q[VX]
+    dq[Y] = q[VY]
+    dq[VX] = (fx - p.stiffness * (q[X] - p.x0) - p.damping * q[VX]) / mass
+    dq[VY] = (fy - p.stiffness * (q[Y] - p.y0) - p.damping * q[VY]) / mass - p.gravity
+    dq[WORK] = fx * q[VX] + fy * q[VY]
+    dq[LOSS] = p.damping * (q[VX] ** 2 + q[VY] ** 2)
 
 
 @kernel
-def publish(y, m):
-    """Outputs at the end of the step."""
+def publish(q, m):
+    """Outputs at the end of the step, from the state q (6,)."""
     p, o = m.p, m.o.seat
     mass = p.mass + p.outer_ring
-    ex, ey = y[X] - p.x0, y[Y] - p.y0
-    o.x, o.y, o.vx, o.vy = y[X], y[Y], y[VX], y[VY]
-    o.ax_free = -(p.stiffness * ex + p.damping * y[VX]) / mass
-    o.ay_free = -(p.stiffness * ey + p.damping * y[VY]) / mass - p.gravity
+    ex, ey = q[X] - p.x0, q[Y] - p.y0
+    o.x, o.y, o.vx, o.vy = q[X], q[Y], q[VX], q[VY]
+    o.ax_free = -(p.stiffness * ex + p.damping * q[VX]) / mass
+    o.ay_free = -(p.stiffness * ey + p.damping * q[VY]) / mass - p.gravity
     o.inv_m = 1.0 / mass
     o.k_over_m, o.c_over_m = p.stiffness / mass, p.damping / mass
-    o.work = y[WORK]
+    o.work = q[WORK]
     e = m.o.energy
-    e.kinetic = 0.5 * mass * (y[VX] ** 2 + y[VY] ** 2)
-    e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * p.gravity * y[Y]
-    e.dissipated = y[LOSS]
+    e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2)
+    e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * p.gravity * q[Y]
+    e.dissipated = q[LOSS]
 
 
 @kernel
 def start(words):
-    """At rest, sagged under its own weight."""
+    """At rest, sagged under its own weight; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
     p = m.p
     sag = (p.mass + p.outer_ring) * p.gravity / p.stiffness if p.stiffness > 0.0 else 0.0
-    m.y[X], m.y[Y] = p.x0, p.y0 - sag
-    publish(m.y, m)
+    m.q[X], m.q[Y] = p.x0, p.y0 - sag
+    publish(m.q, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step under the given force."""
+    """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
     m = words.view(MEMORY)[0]
     u = m.u.seat
     return body.advance(rhs, publish, m, work, time, step, u.fx + u.fy + u.dfx + u.dfy)

@@ -22,22 +22,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ring, seat
-from bearings.balls import MOST_BALLS, Coordinates, watch_balls
-from bearings.cage import Cage
-from bearings.contact import ContactLaw, damped, elastic_force
-from bearings.friction import FrictionLaw, prepared
-from bearings.friction import problem as friction_problem
-from bearings.pitch_circle import (
-    LoadedBalls,
-    Pressed,
-    RollingResistance,
-    between_races,
-    clear,
-    note,
-    rolling_drag,
-)
-from bearings.rolling import (
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_force
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.balls import MOST_BALLS, Coordinates, Total, watch_balls
+from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
@@ -46,11 +37,19 @@ from bearings.rolling import (
     starts_from,
     state_constants,
 )
-from modelkit import dopri
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Load
-from modelkit.variables import array, group, integer, real
+from touchdown.bearings.rolling.pitch_circle import (
+    LoadedBalls,
+    Pressed,
+    RollingResistance,
+    between_races,
+    clear,
+    note,
+    rolling_drag,
+)
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Load
+from touchdown.modelkit.variables import array, group, integer, real
 
 CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
 ORBIT_SCALE = 100.0  # rad/s; of the cage
@@ -66,6 +65,13 @@ class Rolling(RollingResistance):
     f1: float = real(5e-4, "1", "factor f1", minimum=0.0)
     static_rating: float = real(5000.0, "N", "static load rating C0, of one row of balls", above=0.0)
     slope: float = real(100.0, "s/m", "steepness of the moment through zero race speed", above=0.0)
+
+
+@dataclass(frozen=True)
+class Cage:
+    """Cage that turns with the balls."""
+
+    mass: float = real(2.15e-3, "kg", "mass of the cage; as heavy as two balls", minimum=0.0)
 
 
 @dataclass(frozen=True)
@@ -129,11 +135,14 @@ MEMORY = seat.bearing_memory(Parameters, Outputs, ring.NEXT + 3, derived=Derived
 
 @kernel
 def _springs(gap, cage_angle, m):
-    """Balls that follow the ring without slip: (force on the ring, moment about the cage, heat)."""
+    """Balls that follow the ring without slip: `Total` on it (N, W), its moment (N m) that on the cage.
+
+    cage_angle: rad.
+    """
     law, play, count = m.d.race, m.p.balls.play, m.p.balls.count
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
     if play >= 0.0 and gap.ex * gap.ex + gap.ey * gap.ey <= play * play:
-        return fx, fy, moment, heat
+        return Total(fx, fy, moment, heat)
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     for b in range(count):
         c0, s0 = m.d.cosine[b], m.d.sine[b]
@@ -150,20 +159,20 @@ def _springs(gap, cage_angle, m):
         moment -= elastic * (gap.ey * nx - gap.ex * ny)
         heat += (force - elastic) * rate
         note(m.s.balls, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
-    return fx, fy, moment, heat
+    return Total(fx, fy, moment, heat)
 
 
 @kernel
-def _rolling(y, dy, gap, m):
-    """Ring, cage and balls turn as one (4.2): (force on the ring, heat)."""
+def _rolling(q, gap, m):
+    """Ring, cage and balls turn as one (4.2): `Total` (N, N m, W) on the ring in the state q."""
     p, d = m.p, m.d
-    bx, by, wedge, heat = _springs(gap, d.cage_ratio * y[ring.RANGLE], m)
-    load = math.sqrt(bx * bx + by * by)
+    springs = _springs(gap, d.cage_ratio * q[ring.RANGLE], m)
+    load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy)
     moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
-    moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * y[ring.RW] * d.inner_radius)
-    moment += _rolling_loss(d.cage_ratio * y[ring.RW], m)
-    dy[ring.RW] = (d.cage_ratio * wedge - moment) / d.ring_inertia
-    return bx, by, heat + moment * y[ring.RW]
+    moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
+    moment += _rolling_loss(d.cage_ratio * q[ring.RW], m)
+    on_ring = d.cage_ratio * springs.moment - moment
+    return Total(springs.fx, springs.fy, on_ring, springs.loss + moment * q[ring.RW])
 
 
 @kernel
@@ -176,14 +185,15 @@ def _rolling_loss(orbit, m):
 
 
 @kernel
-def _slipping(y, dy, gap, m):
-    """Cage and balls turn on their own, driven by friction: (force on the ring, heat).
+def _slipping(q, dq, gap, m):
+    """Cage and balls turn on their own, driven by friction: `Total` (N, N m, W) on the ring in the state q.
 
-    The cage keeps the balls on their places on the pitch circle; all share one spin.
+    The cage keeps the balls on their places on the pitch circle; all share one spin. Sets their derivatives
+    in dq.
     """
     p, d, count = m.p, m.d, m.p.balls.count
-    orbit, spin = y[CAGE_SPEED], y[BALL_SPIN]
-    ca, sa = math.cos(y[CAGE_ANGLE]), math.sin(y[CAGE_ANGLE])
+    orbit, spin = q[CAGE_SPEED], q[BALL_SPIN]
+    ca, sa = math.cos(q[CAGE_ANGLE]), math.sin(q[CAGE_ANGLE])
     fx, fy, moment, along, turning, heat = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for b in range(count):
         c0, s0 = d.cosine[b], d.sine[b]
@@ -197,90 +207,83 @@ def _slipping(y, dy, gap, m):
         along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
-    dy[CAGE_ANGLE] = orbit
-    dy[CAGE_SPEED] = d.pitch_radius * along / d.orbiting
-    dy[BALL_SPIN] = d.ball_radius * turning / d.spinning
-    dy[ring.RW] = moment / d.ring_inertia
-    return fx, fy, heat
+    dq[CAGE_ANGLE] = orbit
+    dq[CAGE_SPEED] = d.pitch_radius * along / d.orbiting
+    dq[BALL_SPIN] = d.ball_radius * turning / d.spinning
+    return Total(fx, fy, moment, heat)
 
 
 @kernel
-def react(t, y, dy, m):
-    """Derivative of what is inside, and the load on journal and housing."""
-    p = m.p
+def react(t, q, dq, m):
+    """Derivative dq of what is inside, in q, and the `Load` (N, N m) on journal and housing."""
+    p, inertia = m.p, m.d.ring_inertia
     clear(m.s.balls)
-    j = ring.journal_on_ring(y, m)
-    gap = ring.gap(y)
-    bx, by, heat = _slipping(y, dy, gap, m) if p.slip == 1 else _rolling(y, dy, gap, m)
-    bx -= p.damping * gap.ux
-    by -= p.damping * gap.uy
-    dy[ring.RX] = y[ring.RVX]
-    dy[ring.RY] = y[ring.RVY]
-    dy[ring.RVX] = (bx - j.fx) / p.ring.mass
-    dy[ring.RVY] = (by - j.fy) / p.ring.mass - p.gravity
-    dy[ring.RANGLE] = y[ring.RW]
-    dy[ring.RW] += j.ring_moment / m.d.ring_inertia
-    dy[ring.LOSS] = j.loss + heat + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
-    return Load(j.fx, j.fy, j.journal_moment, -bx, -by)
+    j = ring.journal_on_ring(q, m)
+    gap = ring.gap(q)
+    balls = _slipping(q, dq, gap, m) if p.slip == 1 else _rolling(q, gap, m)
+    fx, fy = balls.fx - p.damping * gap.ux, balls.fy - p.damping * gap.uy
+    ring.translate(q, dq, m, j, fx, fy)
+    dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
+    dq[ring.LOSS] = j.loss + balls.loss + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
+    return Load(j.fx, j.fy, j.journal_moment, -fx, -fy)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Everything the bearing integrates within a macro step."""
-    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def observe(t, y, m):
-    """Peaks and events, after each accepted micro-step."""
-    ring.watch(t, y, m)
+def observe(t, q, m):
+    """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
+    ring.watch(t, q, m)
     watch_balls(m.s.balls.force / m.p.balls.rows, m.s.balls.indentation, m)
 
 
 @kernel
-def report(y, m):
-    """Outputs wanted once per macro step."""
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, d, o, s = m.p, m.d, m.o, m.s.balls
-    ring.report(y, m, d.inner_radius)
+    ring.report(q, m, d.inner_radius)
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / p.balls.rows, s.indentation
-    cage, spin = d.cage_ratio * y[ring.RW], d.ball_ratio * y[ring.RW]
+    cage, spin = d.cage_ratio * q[ring.RW], d.ball_ratio * q[ring.RW]
     inside = 0.0
     if p.slip == 1:
-        cage, spin = y[CAGE_SPEED], y[BALL_SPIN]
+        cage, spin = q[CAGE_SPEED], q[BALL_SPIN]
         inside = 0.5 * d.orbiting * cage**2 + 0.5 * d.spinning * spin**2
     o.speed.cage = cage * d.pitch_radius
     o.speed.ball = abs(spin) * d.ball_radius
-    ring.report_energy(y, m, inside, s.energy, d.ring_inertia)
+    ring.report_energy(q, m, inside, s.energy, d.ring_inertia)
 
 
 @kernel
 def start(words):
-    """The ring at rest on the balls, the first of them at its angle."""
+    """The ring at rest on the balls, the first of them at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    y, d = m.y, m.d
-    seat.take_inputs(y, m)
-    ring.place(y, d.rest_x, d.rest_y)
+    q, d = m.q, m.d
+    seat.take_inputs(q, m)
+    ring.place(q, d.rest_x, d.rest_y)
     state_constants(m)
     seat.begin(react, report, m)
 
 
 @kernel
 def integrate(m, work, span):
-    """Advance the state by `span` (s)."""
-    tolerance = m.p.interface.tolerance
-    return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance)
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    return seat.integrate(rhs, observe, m, work, span)
 
 
 @kernel
-def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u."""
-    seat.instant(react, t, y, dy, m)
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u."""
+    seat.instant(react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step."""
+    """One macro step of `step` (s) from `time` (s); returns a status."""
     m = words.view(MEMORY)[0]
     return seat.advance(react, integrate, report, words, m, work, time, step)
 

@@ -11,7 +11,7 @@ inner and outer race:
     r_m m gamma'' = mu(s_i) F + mu(s_o) F_o + H_b - H_(b+1) - g m cos(gamma) - F (e . t)/r_m     (2.10)
     I theta''     = r_b (mu(s_o) F_o - mu(s_i) F) - r_b mu_bb (H_b + H_(b+1))                      (2.11)
 
-with F and F_o as in `bearings.pitch_circle`.
+with F and F_o as in `bearings.rolling.pitch_circle`.
 
 Deviations from the source, each named where it acts:
 - (2.10) as printed has a further term mu r_b/r_m (F + F_o), which counts the contact moment twice;
@@ -32,28 +32,25 @@ everything else is not. The default are leapfrog steps within which friction may
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from bearings import ring, seat
-from bearings.ball_bodies import resolved_step
-from bearings.balls import MOST_BALLS, BallContacts, Coordinates, FreeBallSet, watch_balls, watch_contacts
-from bearings.contact import ContactLaw, abreast, damped, elastic_energy, normal_and_elastic
-from bearings.friction import (
-    FrictionLaw,
-    coefficient,
-    curve,
-    follow,
-    prepared,
-    slope,
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw, prepared
+from touchdown.bearings.contact.friction import problem as friction_problem
+from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_state import part
+from touchdown.bearings.rolling.balls import (
+    MOST_BALLS,
+    BallContacts,
+    Coordinates,
+    FreeBallSet,
+    watch_balls,
+    watch_contacts,
 )
-from bearings.friction import problem as friction_problem
-from bearings.pair import friction_force
-from bearings.pitch_circle import Raceway, RollingResistance, meet, press_ball
-from bearings.race_contacts import LANES, rounded
-from bearings.rolling import (
+from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
@@ -62,16 +59,28 @@ from bearings.rolling import (
     starts_from,
     state_constants,
 )
-from modelkit import dopri, rosenbrock, verlet
-from modelkit.angles import cosine_and_sine
-from modelkit.kernel import kernel
-from modelkit.model import Model
-from modelkit.ports import Interface, Load
-from modelkit.variables import array, group, integer, real
+from touchdown.bearings.rolling.micro_step import leapfrog, resolved_step
+from touchdown.bearings.rolling.pitch_circle import RollingResistance
+from touchdown.bearings.rolling.row import (
+    MOST_STATES,
+    ORBIT,
+    SPIN,
+    PushedBalls,
+    RaceBalls,
+    drift,
+    fastest,
+    largest,
+    neighbour_forces,
+    place,
+    race_forces,
+)
+from touchdown.bearings.rolling.row_implicit import linearise, solve
+from touchdown.modelkit.integrators import dopri, rosenbrock
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model
+from touchdown.modelkit.ports import Interface, Load
+from touchdown.modelkit.variables import array, group, integer, real
 
-BALLS = ring.NEXT  # from here each component of all balls in turn,
-ANGLE, ORBIT, SPIN = range(3)  # in this order: attitude angle, its rate, spin
-MOST_STATES = BALLS + 3 * MOST_BALLS + LANES  # and room to run past the last ball
 BALL_SPIN_SCALE = 1e3  # rad/s
 ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
 
@@ -148,33 +157,6 @@ class Derived(RollingDerived):
 
 
 @dataclass(frozen=True)
-class RaceBalls:
-    """Each ball between the races, at the last evaluation."""
-
-    cosine: tuple = array(MOST_BALLS)
-    sine: tuple = array(MOST_BALLS)
-    force: tuple = array(MOST_BALLS)  # between the rings
-    elastic: tuple = array(MOST_BALLS)
-    indentation: tuple = array(MOST_BALLS)
-    fx: tuple = array(MOST_BALLS)  # on the ring
-    fy: tuple = array(MOST_BALLS)
-    moment: tuple = array(MOST_BALLS)
-    along: tuple = array(MOST_BALLS)  # angular acceleration along the race
-    turning: tuple = array(MOST_BALLS)  # and of the spin
-    heat: tuple = array(MOST_BALLS)
-
-
-@dataclass(frozen=True)
-class PushedBalls:
-    """Balls that push each other, at the last evaluation."""
-
-    force: float = real(0.0, "N", "largest")
-    overlap: float = real(0.0, "m", "largest")
-    energy: float = real(0.0, "J", "stored in the contacts")
-    stiffness: float = real(0.0, "N/m", "largest")
-
-
-@dataclass(frozen=True)
 class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
@@ -188,208 +170,42 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 
 @kernel
-def part(y, component, m):
-    """One component of all balls in the state, or its derivative."""
-    count = m.p.balls.count
-    return y[BALLS + component * count : BALLS + (component + 1) * count]
+def react(t, q, dq, m):
+    """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
+    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
+    balls = race_forces(q, dq, m)
+    heat = balls.loss + neighbour_forces(q, dq, m)
+    ring.accelerate(q, dq, m, j, balls)
+    dq[ring.LOSS] = j.loss + heat
+    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy)
 
 
 @kernel
-def _directions(angle, cosine, sine):
-    for b in range(len(cosine)):
-        cosine[b], sine[b] = cosine_and_sine(angle[b])
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
+    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
 
 
 @kernel
-def _press_all(gap, way, friction, weight, printed, inertia, moving, out):
-    """Loads of all balls; friction: a `Curve`.
-
-    weight: of a ball (N); printed: 1 for (2.10) as printed; inertia: of a ball (kg m2).
-    """
-    orbit, spin, cosine, sine = moving
-    force, elastic, indentation, fx, fy, moment, along, turning, heat = out
-    spun = way.ball_radius / inertia
-    for b in range(len(cosine)):
-        c, s = cosine[b], sine[b]
-        at = meet(gap, c, s, orbit[b], spin[b], way)
-        mu_inner, _ = follow(at.inner, friction)
-        mu_outer, _ = follow(at.outer, friction)
-        ball = press_ball(at, gap, c, s, orbit[b], (mu_inner, mu_outer), way)
-        force[b] = ball.force
-        elastic[b] = ball.elastic
-        indentation[b] = ball.indentation
-        fx[b] = ball.inner * s - ball.force * c
-        fy[b] = -(ball.force * s + ball.inner * c)
-        moment[b] = -ball.inner * ball.lever
-        push = ball.inner + ball.outer - ball.held - weight * c
-        push += printed * (ball.outer - ball.inner) * way.ball_radius / at.radius
-        along[b] = push / (at.radius * way.mass)
-        turning[b] = spun * (ball.outer - ball.inner)
-        heat[b] = ball.heat
-
-
-@kernel
-def _race_forces(y, dy, m):
-    """Ring against balls against housing: (force on the ring x, y; moment on it; heat).
-
-    Sets the derivatives of the balls' angles, speeds and spins as far as races and gravity go.
-    """
-    p, d, s = m.p, m.d, m.s.balls
-    count = p.balls.count
-    n = rounded(count)
-    gap, law = ring.gap(y), d.race
-    size, grip = (d.inner_radius, d.ball_radius, d.mass), m.s.step * d.race_grip
-    way = Raceway(
-        p.balls.play,
-        d.run_radius,
-        d.run_share,
-        law.stiffness,
-        law.damping,
-        *size,
-        grip,
-        p.rolling.resistance,
-    )
-    angle, orbit, spin = part(y, ANGLE, m), part(y, ORBIT, m), part(y, SPIN, m)
-    _directions(angle, s.cosine[:n], s.sine[:n])
-    moving = orbit, spin, s.cosine[:n], s.sine[:n]
-    loads = s.fx[:n], s.fy[:n], s.moment[:n], s.along[:n], s.turning[:n], s.heat[:n]
-    out = (s.force[:n], s.elastic[:n], s.indentation[:n], *loads)
-    weight, printed = p.gravity * d.mass, 1.0 if p.as_printed == 1 else 0.0
-    _press_all(gap, way, curve(d.race_friction), weight, printed, d.inertia, moving, out)
-    fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
-    for b in range(count):
-        i = BALLS + b
-        dy[i] = orbit[b]
-        dy[i + count] = s.along[b]
-        dy[i + 2 * count] = s.turning[b]
-        fx += s.fx[b]
-        fy += s.fy[b]
-        moment += s.moment[b]
-        heat += s.heat[b]
-    return fx, fy, moment, heat
-
-
-@kernel
-def _neighbour_forces(y, dy, m):
-    """Each ball against the next one; adds to the derivatives, returns the heat."""
-    p, d, s, at = m.p, m.d, m.s.pushed, m.s.balls
-    rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
-    angle, orbit, spin = part(y, ANGLE, m), part(y, ORBIT, m), part(y, SPIN, m)
-    faster, turning = part(dy, ORBIT, m), part(dy, SPIN, m)
-    heat = 0.0
-    s.force, s.overlap, s.energy, s.stiffness = 0.0, 0.0, 0.0, 0.0
-    for b in range(count):
-        k = b + 1 if b + 1 < count else 0
-        between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
-        if between >= d.touch_angle:
-            continue
-        ex, ey = at.cosine[k] - at.cosine[b], at.sine[k] - at.sine[b]
-        square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
-        overlap = 2.0 * (rb - rm * math.sqrt(square))
-        lever = rm * math.sqrt(1.0 - square)
-        rate = lever * (orbit[b] - orbit[k])
-        force, elastic = normal_and_elastic(overlap, rate, d.ball_contact)
-        sliding = rb * (spin[b] + spin[k])
-        mu = coefficient(sliding, d.ball_friction)
-        rub = -friction_force(sliding, mu, force, m.s.step * d.side_grip)
-        push = force * lever / (rm * rm * d.mass)
-        faster[b] -= push
-        faster[k] += push
-        turning[b] -= rb * rub / d.inertia
-        turning[k] -= rb * rub / d.inertia
-        heat += rub * sliding + (force - elastic) * rate
-        s.energy += elastic_energy(overlap, d.ball_contact)
-        s.force = max(s.force, force)
-        s.overlap = max(s.overlap, overlap)
-        s.stiffness = max(s.stiffness, d.ball_contact.exponent * force / overlap)
-    return heat
-
-
-@kernel
-def react(t, y, dy, m):
-    """Derivative of ring and balls, and the load on journal and housing."""
-    p = m.p
-    j = ring.journal_on_ring(y, m, m.s.step * m.d.bore_grip)
-    bx, by, moment, heat = _race_forces(y, dy, m)
-    heat += _neighbour_forces(y, dy, m)
-    dy[ring.RX] = y[ring.RVX]
-    dy[ring.RY] = y[ring.RVY]
-    dy[ring.RVX] = (bx - j.fx) / p.ring.mass
-    dy[ring.RVY] = (by - j.fy) / p.ring.mass - p.gravity
-    dy[ring.RANGLE] = y[ring.RW]
-    dy[ring.RW] = (j.ring_moment + moment) / p.ring.inertia
-    dy[ring.LOSS] = j.loss + heat
-    return Load(j.fx, j.fy, j.journal_moment, -bx, -by)
-
-
-@kernel
-def rhs(t, y, dy, m):
-    """Everything the bearing integrates within a macro step."""
-    seat.copy_rates(t, y, dy, m, m.half, react(t, y, dy, m))
-
-
-@kernel
-def drift(x, y, v, h, m):
-    """Positions in x: those in y and h (s) times the velocities in v."""
-    seat.drift(x, y, v, h, m)
-    ring.drift(x, y, v, h)
-    n = m.p.balls.count
-    for i in range(BALLS, BALLS + n):
-        x[i] = y[i] + h * v[i + n]
-
-
-@kernel
-def forecast(x, dy, h, m):
-    """Velocities of the copies at the end of a micro-step of h seconds, which is noted."""
-    seat.forecast(x, dy, h)
-    m.s.step = h
-
-
-@kernel
-def fastest(m):
-    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
-    d, s = m.d, m.s
-    below = 0.0
-    for b in range(m.p.balls.count):
-        if s.balls.indentation[b] > 0.0:
-            below += s.balls.elastic[b] / s.balls.indentation[b]
-    below *= d.race.exponent
-    if s.ring.indentation > 0.0:
-        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
-    return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * s.pushed.stiffness / d.mass)), s.seat.fastest)
-
-
-@kernel
-def _largest(m):
-    """(Largest force on one of a row, largest indentation) of the balls between the rings."""
-    s = m.s.balls
-    force, indentation = 0.0, 0.0
-    for b in range(m.p.balls.count):
-        force = max(force, s.force[b])
-        indentation = max(indentation, s.indentation[b])
-    return force / m.p.balls.rows, indentation
-
-
-@kernel
-def observe(t, y, m):
-    """Peaks and events, after each accepted micro-step."""
-    ring.watch(t, y, m)
-    force, indentation = _largest(m)
+def observe(t, q, m):
+    """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
+    ring.watch(t, q, m)
+    force, indentation = largest(m)
     watch_balls(force, indentation, m)
     watch_contacts(m.s.pushed.force / m.p.balls.rows, m.s.pushed.overlap, m.o.neighbours)
 
 
 @kernel
-def report(y, m):
-    """Outputs wanted once per macro step."""
+def report(q, m):
+    """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
-    ring.report(y, m, d.inner_radius)
-    o.balls.force, o.balls.indentation = _largest(m)
+    ring.report(q, m, d.inner_radius)
+    o.balls.force, o.balls.indentation = largest(m)
     o.neighbours.force = m.s.pushed.force / p.balls.rows
     o.neighbours.indentation = m.s.pushed.overlap
     moving = d.mass * d.pitch_radius**2
-    angular, turning = part(y, ORBIT, m), part(y, SPIN, m)
+    angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
     kinetic, height, stored, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for b in range(count):
         kinetic += 0.5 * moving * angular[b] ** 2 + 0.5 * d.inertia * turning[b] ** 2
@@ -403,117 +219,42 @@ def report(y, m):
     o.speed.orbit = orbit / count * d.pitch_radius
     o.speed.ball = spin / count * d.ball_radius
     height *= p.gravity * d.mass
-    ring.report_energy(y, m, kinetic, stored + m.s.pushed.energy + height, p.ring.inertia)
+    ring.report_energy(q, m, kinetic, stored + m.s.pushed.energy + height, p.ring.inertia)
 
 
 @kernel
 def start(words):
-    """Ring and balls at rest, the first ball at its angle."""
+    """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
-    y, d, count = m.y, m.d, m.p.balls.count
-    seat.take_inputs(y, m)
-    ring.place(y, d.rest_x, d.rest_y)
-    for b in range(count):
-        y[BALLS + b] = d.angles[b]
-        y[BALLS + b + count], y[BALLS + b + 2 * count] = 0.0, 0.0
-    m.s.step = d.micro_step
+    seat.take_inputs(m.q, m)
+    ring.place(m.q, m.d.rest_x, m.d.rest_y)
+    place(m.q, m.p.balls.count, m.d.angles)
+    m.s.step = m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
 
 @kernel
-def linearise(y, j, m):
-    """What is stiff: slopes of friction times load at the inner and the outer race of each ball, its
-    inner contact's distance from the ring's centre (in place of its angle, orbit and spin), and the
-    journal's slope on the ring.
-    """
-    p, d, s = m.p, m.d, m.s.balls
-    n, law, gap = p.balls.count, d.race, ring.gap(y)
-    size = d.inner_radius, d.ball_radius, d.mass
-    way = Raceway(p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, 0.0, 0.0)
-    for b in range(n):
-        i = BALLS + b
-        orbit = y[i + n]
-        at = meet(gap, s.cosine[b], s.sine[b], orbit, y[i + 2 * n], way)
-        pressed = s.force[b] + at.radius * d.mass * orbit * orbit
-        j[i] = slope(at.inner, d.race_friction) * s.force[b] if s.force[b] > 0.0 else 0.0
-        j[i + n] = slope(at.outer, d.race_friction) * pressed
-        j[i + 2 * n] = at.lever
-    bore = p.journal_radius + p.clearance
-    j[ring.RW] = 0.0
-    if m.s.ring.normal > 0.0:
-        sliding = y[seat.JW] * p.journal_radius - y[ring.RW] * bore
-        j[ring.RW] = slope(sliding, d.friction) * m.s.ring.normal * bore * bore / p.ring.inertia
-
-
-@kernel
-def _ball_block(inner, outer, lever, s, d):
-    """s - J of a ball, [[a, g], [h, e]], and what the ring's spin brings into it, (o, q)."""
-    rm, rb, mass, inertia = d.pitch_radius, d.ball_radius, d.mass, d.inertia
-    a = s + (inner + outer) / mass
-    g = (outer - inner) * rb / (rm * mass)
-    h = (outer - inner) * rb * rm / inertia
-    e = s + (inner + outer) * rb * rb / inertia
-    return a, g, h, e, inner * lever / (rm * mass), -inner * lever * rb / inertia
-
-
-@kernel
-def solve(j, s, r, m):
-    """Overwrite r with the solution of (s - J) x = r, J that of the balls' and the ring's turning.
-
-    J is an arrow: each ball's orbit and spin are tied to each other and to the ring's spin only. So the
-    balls are eliminated one by one, the ring is solved for, and its share handed back to them.
-    """
-    p, d = m.p, m.d
-    rm, rb, n = d.pitch_radius, d.ball_radius, p.balls.count
-    pivot, right = s + j[ring.RW], r[ring.RW]
-    for i in range(BALLS, BALLS + n):
-        inner, outer, lever = j[i], j[i + n], j[i + 2 * n]
-        a, g, h, e, o, q = _ball_block(inner, outer, lever, s, d)
-        scale = 1.0 / (a * e - g * h)
-        x, z = (e * r[i + n] - g * r[i + 2 * n]) * scale, (a * r[i + 2 * n] - h * r[i + n]) * scale
-        xo, zo = (e * o - g * q) * scale, (a * q - h * o) * scale
-        r[i], r[i + n], r[i + 2 * n] = r[i] / s, x, z
-        back = inner * lever / p.ring.inertia
-        pivot += back * (lever - rm * xo + rb * zo)
-        right += back * (rm * x - rb * z)
-    turned = right / pivot
-    for i in range(BALLS, BALLS + n):
-        a, g, h, e, o, q = _ball_block(j[i], j[i + n], j[i + 2 * n], s, d)
-        scale = turned / (a * e - g * h)
-        r[i + n] += (e * o - g * q) * scale
-        r[i + 2 * n] += (a * q - h * o) * scale
-    for i in range(BALLS):
-        r[i] /= s
-    for i in range(m.s.seat.inside, m.n):
-        r[i] /= s
-    r[ring.RW] = turned
-
-
-@kernel
 def integrate(m, work, span):
-    """Advance the state by `span` (s)."""
-    tolerance, longest = m.p.interface.tolerance, m.d.micro_step
-    if longest > 0.0:
-        status, evaluations = verlet.integrate(
-            rhs, drift, forecast, fastest, observe, m, m.y, m.n, work, span, longest
-        )
-        return m.h, status, evaluations
+    """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
+    if m.d.micro_step > 0.0:
+        return leapfrog(rhs, drift, fastest, observe, m, work, span)
+    tolerance = m.p.interface.tolerance
     return rosenbrock.integrate(
-        rhs, linearise, solve, observe, m, m.y, m.n, m.weight, work, span, m.h, tolerance
+        rhs, linearise, solve, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance
     )
 
 
 @kernel
-def instant(t, y, dy, m):
-    """Derivative and load under the motion m.u, friction as it stands."""
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
     m.s.step = 0.0
-    seat.instant(react, t, y, dy, m)
+    seat.instant(react, t, q, dq, m)
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step."""
+    """One macro step of `step` (s) from `time` (s); returns a status."""
     rows = work.ravel().view(SCRATCH)[0].rows
     m = words.view(MEMORY)[0]
     return seat.advance(react, integrate, report, words, m, rows, time, step)
@@ -568,8 +309,8 @@ def check(p: Parameters) -> str | None:
         "race_friction": p.race_friction,
         "ball_friction": p.ball_friction,
     }
-    found = [p.balls.problem(), *(friction_problem(law, name) for name, law in laws.items())]
-    return next((text for text in found if text), None)
+    problems = [p.balls.problem(), *(friction_problem(law, name) for name, law in laws.items())]
+    return next((text for text in problems if text), None)
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -15,9 +15,9 @@ import time as clock
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from bearings import detailed_caged, detailed_cageless, seat
-from bearings.augmented import AugmentedBearing
-from modelkit.model import Instance
+from touchdown.bearings import detailed_caged, detailed_cageless, seat
+from touchdown.bearings.rolling.bodies.augmented import AugmentedBearing
+from touchdown.modelkit.instance import Instance
 
 PAIRS = ((0.0, 0.0), (1e2, 1e2), (1e3, 1e3), (1e4, 1e4), (1e5, 1e5), (1e4, 0.0), (0.0, 1e4), (1e6, 1e6))
 VIOLATED = (1e-6, 1e-3)  # rad, rad/s
@@ -34,10 +34,10 @@ def pressed(model) -> Instance:
     housing["inv_m"], housing["k_over_m"], housing["c_over_m"] = 1.0 / 5.02, 4.98e7, 498.0
     instance.start(0.0)
     instance.step(0.0, 4e-4)
-    y = m["y"][0]
+    q = m["q"][0]
     for part, first in ((journal, seat.JX), (housing, seat.HX)):
         for i, key in enumerate(("x", "y", "vx", "vy")):
-            part[key] = y[first + i]
+            part[key] = q[first + i]
     return instance
 
 

@@ -23,12 +23,13 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from tried_integrators import make
 
-from bearings import ball_bodies, detailed_caged, detailed_cageless, seat
-from bearings.pair import INSIDE, Place, press
-from bearings.race_contacts import Race, press_race
-from master.scene import load
-from master.simulation import open_system, simulate
-from modelkit.model import Instance
+from touchdown.bearings import detailed_caged, detailed_cageless, seat
+from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.bearings.rolling.bodies.race import Race, press_race
+from touchdown.bearings.rolling.bodies.state import ball_motion, balls_of
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.scene.file import load_scene
+from touchdown.modelkit.instance import Instance
 
 MODULES = {"cageless": detailed_cageless, "caged": detailed_caged}
 IMPACT = 1.5e-3  # s
@@ -68,7 +69,7 @@ class Runner:
     def run(self, module: ModuleType, span: float, falling: bool = False) -> tuple[Instance, float, int]:
         """(The bearing after `span` s, wall time in s, evaluations)."""
         instance = released(module, falling)
-        work = np.zeros((8, module.MEMORY["y"].shape[0]))
+        work = np.zeros((8, module.MEMORY["q"].shape[0]))
         began = clock.perf_counter()
         evaluations = self.carry(instance.words, work, span, self.step, self.tolerance)
         return instance, clock.perf_counter() - began, evaluations
@@ -114,11 +115,11 @@ def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
     @numba.njit(error_model="numpy")
     def loop(words, work, count):
         m = words.view(memory)[0]
-        dy = work.ravel().view(scratch)[0].rows[0]
+        dq = work.ravel().view(scratch)[0].rows[0]
         for _ in range(count):
-            rhs(0.0, m.y, dy, m)
+            rhs(0.0, m.q, dq, m)
 
-    work = np.zeros((8, module.MEMORY["y"].shape[0]))
+    work = np.zeros((8, module.MEMORY["q"].shape[0]))
     loop(instance.words, work, 10)
     found = []
     for _ in range(repeat):
@@ -134,7 +135,7 @@ def one_race_times(module: ModuleType) -> tuple[float, float]:
     """us per race: all balls at once, and one by one with those out of reach skipped."""
     instance = Runner("", kept(module), 2e-6).run(module, 4e-4)[0]
     layout = module.MEMORY
-    balls_of, motion, ball_motion = ball_bodies.balls_of, seat.housing_motion, ball_bodies.ball_motion
+    motion = seat.housing_motion
 
     @numba.njit(error_model="numpy")
     def at_once(words, count):
@@ -142,7 +143,7 @@ def one_race_times(module: ModuleType) -> tuple[float, float]:
         race = Race(INSIDE, m.d.outer_radius, m.d.outer.stiffness, 0.0, 1e-3)
         total = 0.0
         for _ in range(count):
-            total += press_race(balls_of(m.y, m), motion(m.y), race, m.d.race_friction, m.s.outer).fx
+            total += press_race(balls_of(m.q, m), motion(m.q), race, m.d.race_friction, m.s.outer).fx
         return total
 
     @numba.njit(error_model="numpy")
@@ -150,11 +151,11 @@ def one_race_times(module: ModuleType) -> tuple[float, float]:
         m = words.view(layout)[0]
         total, s, rb = 0.0, m.s.outer, m.d.ball_radius
         for _ in range(count):
-            housing = motion(m.y)
+            housing = motion(m.q)
             for b in range(m.p.balls.count):
                 if s.indentation[b] > 0.0:
                     at = Place(s.nx[b], s.ny[b], s.indentation[b], rb, s.second[b], s.across[b])
-                    ball = ball_motion(m.y, b, m)
+                    ball = ball_motion(m.q, b, m)
                     total += press(ball, housing, at, INSIDE, m.d.outer, m.d.race_friction, 1e-3).fx
         return total
 
@@ -223,9 +224,9 @@ class Equations:
 
         self._rate = rate
         self._instance = released(module)
-        self._work = np.zeros((8, module.MEMORY["y"].shape[0]))
+        self._work = np.zeros((8, module.MEMORY["q"].shape[0]))
         n = int(self._instance.record["n"])
-        self.start = self._instance.record["y"][:n].copy()
+        self.start = self._instance.record["q"][:n].copy()
         weight = self._instance.record["weight"][:n]
         self._scale = np.where(weight > 0.0, 1.0 / np.where(weight > 0.0, weight, 1.0), 1e9)
         self.highest = np.zeros(2)
@@ -269,7 +270,7 @@ def whole_drops(repeat: int) -> None:
         runner = Runner("", kept(module), 2e-6)
         runner.run(module, 1e-5)
         mono = statistics.median(runner.run(module, 5.0, falling=True)[1] for _ in range(repeat)) / 5.0
-        scene = load(f"disk-{name}-detailed")
+        scene = load_scene(f"disk-{name}-detailed")
         costs = []
         for _ in range(repeat):
             system = open_system(scene)

@@ -14,10 +14,11 @@ import argparse
 import statistics
 import time as clock
 
-from master.scene import Scene, load
-from master.simulation import open_system, opened, simulate
-from master.system import System
-from master.twin import TwinComponent
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.simulation import open_system, opened, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
 
 
 def kernel_times(scene: Scene) -> dict[str, float]:
@@ -79,10 +80,10 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=0.3, help="s")
     parser.add_argument("--pairs", type=int, default=5)
     options = parser.parse_args()
-    scene = load(options.scene).with_setting("run.duration", options.duration)
-    scene = scene.with_setting("run.stop_residual", 1e9)
+    scene = load_scene(options.scene).set({"run.duration": options.duration})
+    scene = scene.set({"run.stop_residual": 1e9})
     if options.macro_step is not None:
-        scene = scene.with_setting("run.macro_step", options.macro_step)
+        scene = scene.set({"run.macro_step": options.macro_step})
     kernel_times(scene), fmu_times(scene)  # compile and warm up
     runs = [(kernel_times(scene), fmu_times(scene), whole_run(scene)) for _ in range(options.pairs)]
     step = scene.run.macro_step

@@ -16,10 +16,12 @@ import math
 
 import numpy as np
 
-from master.monolithic import Monolith
-from master.scene import Scene, load
-from master.simulation import open_system, simulate
-from master.system import System
+from touchdown.master.coupling.observer import EveryStep
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.drop.monolithic import Monolith
 
 NAMES = ("housing.seat.vx", "housing.seat.vy", "bearing.ring.x")
 
@@ -28,7 +30,8 @@ def simulated(scene: Scene) -> tuple[System, np.ndarray, np.ndarray]:
     """(System at the end, times from the shutdown, rows of NAMES) at every macro step."""
     system = open_system(scene, in_process=True)
     rows: list[list[float]] = []
-    simulate(scene, system, watch=lambda _, running: rows.append([running.value(n) for n in NAMES]))
+    keep = EveryStep(lambda now: rows.append([now.system.value(name) for name in NAMES]))
+    simulate(scene, system, observers=[keep])
     zero = system.value(str(scene.zero))
     return system, scene.run.macro_step * (1 + np.arange(len(rows))) - zero, np.array(rows)
 
@@ -62,7 +65,7 @@ def main() -> None:
     parser.add_argument("--scene", default="disk-cageless-detailed")
     parser.add_argument("--duration", type=float, default=3.0, help="s")
     options = parser.parse_args()
-    scene = load(options.scene).with_setting("run.duration", options.duration)
+    scene = load_scene(options.scene).set({"run.duration": options.duration})
     system, time, rows = simulated(scene)
     mass = 1.65 + system.value("housing.mass") + system.value("housing.outer_ring")
     together = math.sqrt(system.value("housing.stiffness") / mass) / (2.0 * math.pi)

@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 from rotor_speed import JOURNALS, opened, reference
 
-from master.scene import Scene
-from master.simulation import simulate
+from touchdown.master.coupling.simulation import simulate
+from touchdown.master.scene.scene import Scene
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 from systems import dropped  # the drop that the tests make
 
 MODES = (5, 20)
@@ -27,7 +27,7 @@ FINE = 1e-6  # s
 
 def ended(scene: Scene, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Both journals (m) at the end, and both peak contact forces (N)."""
-    scene = scene.with_setting("run.macro_step", step)
+    scene = scene.set({"run.macro_step": step})
     with opened(scene, in_process=True) as system:
         simulate(scene, system)
         peaks = [system.value(f"bearing_{end}.contact.peak_force") for end in "AB"]

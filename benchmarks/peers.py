@@ -1,10 +1,10 @@
 """What other co-simulation tools cost on the same FMUs, and how far off they are.
 
-The drops of tests/peers at a macro step of 5 us: by this project's master with its default scheme, and by
-libcosim, ecos, fmpy's SSP runner and cofmupy, which step all FMUs in parallel with loads predicted one step
-ahead (scheme jacobi-lead). Cost is what is spent beyond the kernels, per FMU that is stepped and macro
-step: processor time of all threads, and time on the wall. Errors are those against the same drop at a
-macro step of 1 us. The tools are installed from PyPI; ecos needs Debian's libtbb12.
+The drops of tests/master/interop/peers at a macro step of 5 us: by this project's master with its default
+scheme, and by libcosim, ecos, fmpy's SSP runner and cofmupy, which step all FMUs in parallel with loads
+predicted one step ahead (scheme jacobi-lead). Cost is what is spent beyond the kernels, per FMU that is
+stepped and macro step: processor time of all threads, and time on the wall. Errors are those against the
+same drop at a macro step of 1 us. The tools are installed from PyPI; ecos needs Debian's libtbb12.
 
     python benchmarks/peers.py [--repeat 7] [--falls disk,"rotor I"]
 """
@@ -21,15 +21,18 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.extend(str(Path(__file__).resolve().parents[1] / part) for part in ("tests", "tests/peers"))
+sys.path.extend(
+    str(Path(__file__).resolve().parents[1] / part)
+    for part in ("tests/support", "tests/master/interop/peers")
+)
 
 from drops import FALLS, Fall
 from environments import REQUIREMENTS, Found, UnavailableError, run, title
 
-from master.scene import Scene
-from master.simulation import open_system, simulate
-from master.system import System
-from master.twin import TwinComponent
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.observer import EveryStep, Moment
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts
 LEAD = "jacobi-lead"
@@ -75,7 +78,7 @@ def ours(fall: Fall) -> Found:
     system = open_system(fall.scene)
     marks: list[tuple[float, float]] = []
 
-    def watch(_: float, __: System) -> None:
+    def watch(_: Moment) -> None:
         nonlocal done
         done += 1
         if done == WARM_UP:
@@ -83,7 +86,7 @@ def ours(fall: Fall) -> Found:
 
     done = 0
     try:
-        simulate(fall.scene, system, watch=watch)
+        simulate(fall.scene, system, observers=[EveryStep(watch)])
         marks.append((clock.perf_counter(), clock.process_time()))
         wall, processor = (1e6 * (b - a) / (done - WARM_UP) for a, b in zip(*marks, strict=True))
         return Found({name: system.value(name) for name in fall.wanted}, wall, processor)
@@ -93,7 +96,7 @@ def ours(fall: Fall) -> Found:
 
 def report(fall: Fall, repeat: int, folder: Path) -> None:
     """Print the fall's table."""
-    exact, _ = Fall(fall.scene.with_setting("run.macro_step", 1e-6), fall.journals, fall.bearings).ours()
+    exact, _ = Fall(fall.scene.set({"run.macro_step": 1e-6}), fall.journals, fall.bearings).ours()
     package = fall.package(LEAD, folder)
     own = kernels(fall.scene, repeat, retire=True)
     parallel = kernels(fall.with_scheme(LEAD), repeat, retire=False)

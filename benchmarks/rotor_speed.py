@@ -18,10 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
-from master.monolithic import Monolith
-from master.scene import Scene, load
-from master.simulation import open_system, simulate
-from master.system import System
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.drop.monolithic import Monolith
 
 AT = 9e-3  # s after the shutdown
 LEVITATED = 2e-3  # s, of the runs whose error is measured
@@ -33,8 +34,8 @@ STEPS = (1e-5, 2e-5, 4e-5)
 def short(scene: Scene) -> Scene:
     """The drop up to the instant where the error is measured."""
     for name in ("amb_A", "amb_B"):
-        scene = scene.with_setting(f"{name}.shutdown_time", LEVITATED)
-    return scene.with_setting("run.duration", AT).with_setting("run.stop_residual", 1e9)
+        scene = scene.set({f"{name}.shutdown_time": LEVITATED})
+    return scene.set({"run.duration": AT, "run.stop_residual": 1e9})
 
 
 def reference(scene: Scene) -> np.ndarray:
@@ -78,13 +79,13 @@ def main() -> None:
     print(f"{'':<22}{'':>12}{'error at':>11}{'wall time over simulated time':>36}")
     print(f"{'scene':<22}{'macro step':>12}{'9 ms [um]':>11}{'FMUs':>9}{'recorded':>12}{'in process':>15}")
     for name in SCENES:
-        scene = load(name)
-        cost(scene.with_setting("run.duration", 0.01), False, True)  # compiles
+        scene = load_scene(name)
+        cost(scene.set({"run.duration": 0.01}), False, True)  # compiles
         exact = reference(short(scene))
         for step in STEPS:
-            run = scene.with_setting("run.macro_step", step)
+            run = scene.set({"run.macro_step": step})
             off = error(short(run), exact)
-            run = run.with_setting("run.duration", options.duration).with_setting("run.stop_residual", 1e9)
+            run = run.set({"run.duration": options.duration, "run.stop_residual": 1e9})
             kinds = ((False, False), (False, True), (True, False))
             spent = [statistics.median(cost(run, *k) for _ in range(options.repeat)) for k in kinds]
             costs = f"{spent[0]:>9.2f}{spent[1]:>12.2f}{spent[2]:>15.2f}"

@@ -11,9 +11,11 @@ from types import ModuleType
 
 import numba
 
-from bearings import ball_bodies
-from bearings.friction import slope
-from modelkit import dopri, rosenbrock, verlet
+from touchdown.bearings.contact.friction import slope
+from touchdown.bearings.rolling.ball_state import BALLS, part
+from touchdown.bearings.rolling.bodies.state import SPIN, drift, fastest
+from touchdown.bearings.rolling.micro_step import forecast
+from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
 
 
 def make(module: ModuleType) -> dict[str, Callable]:
@@ -29,17 +31,15 @@ def make(module: ModuleType) -> dict[str, Callable]:
 def _plain_leapfrog(module: ModuleType) -> Callable:
     """Velocity Verlet with friction that may overshoot."""
     rhs, observe = module.rhs, module.observe
-    drift, fastest = ball_bodies.drift, ball_bodies.fastest
-    forecast = ball_bodies.forecast
 
     @numba.njit(error_model="numpy")
-    def unlimited(x, dy, h, m):
-        forecast(x, dy, h, m)
+    def unlimited(trial, dq, h, m):
+        forecast(trial, dq, h, m)
         m.s.step = 0.0
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        return verlet.integrate(rhs, drift, unlimited, fastest, observe, m, m.y, m.n, rows, span, step)[1]
+        return verlet.integrate(rhs, drift, unlimited, fastest, observe, m, m.q, m.n, rows, span, step)[1]
 
     return tried
 
@@ -50,7 +50,7 @@ def _dormand_prince(module: ModuleType) -> Callable:
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
         m.s.step = 0.0
-        return dopri.integrate(rhs, observe, m, m.y, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
+        return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
 
     return tried
 
@@ -61,21 +61,21 @@ def _bogacki_shampine(module: ModuleType) -> Callable:
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
         m.s.step = 0.0
-        y, n, weight = m.y, m.n, m.weight
+        q, n, weight = m.q, m.n, m.weight
         a, b, c, d, w = rows[0], rows[1], rows[2], rows[3], rows[4]
         t, h, evaluations = 0.0, 1e-7, 1
-        rhs(t, y, a, m)
+        rhs(t, q, a, m)
         while t < span:
             last = t + h >= span
             k = span - t if last else h
             for i in range(n):
-                w[i] = y[i] + 0.5 * k * a[i]
+                w[i] = q[i] + 0.5 * k * a[i]
             rhs(t + 0.5 * k, w, b, m)
             for i in range(n):
-                w[i] = y[i] + 0.75 * k * b[i]
+                w[i] = q[i] + 0.75 * k * b[i]
             rhs(t + 0.75 * k, w, c, m)
             for i in range(n):
-                w[i] = y[i] + k * (2 / 9 * a[i] + 1 / 3 * b[i] + 4 / 9 * c[i])
+                w[i] = q[i] + k * (2 / 9 * a[i] + 1 / 3 * b[i] + 4 / 9 * c[i])
             rhs(t + k, w, d, m)
             evaluations += 3
             error = 0.0
@@ -86,9 +86,9 @@ def _bogacki_shampine(module: ModuleType) -> Callable:
             if error <= 1.0:
                 t = span if last else t + k
                 for i in range(n):
-                    y[i] = w[i]
+                    q[i] = w[i]
                     a[i] = d[i]
-                observe(t, y, m)
+                observe(t, q, m)
             h = k * min(4.0, max(0.2, 0.9 / max(error, 1e-6) ** (1.0 / 3.0)))
         return evaluations
 
@@ -98,32 +98,30 @@ def _bogacki_shampine(module: ModuleType) -> Callable:
 def _implicit_spin(module: ModuleType) -> Callable:
     """The linearly implicit method of the simplified cageless bearing, for the spin of each ball alone."""
     rhs, observe = module.rhs, module.observe
-    part = ball_bodies.part
-    spin = ball_bodies.SPIN
 
     @numba.njit(error_model="numpy")
-    def linearise(y, j, m):
+    def linearise(q, stiff, m):
         d, s = m.d, m.s
-        at = part(j, spin, m)
+        at = part(stiff, SPIN, m)
         for b in range(m.p.balls.count):
             steep = slope(0.0, d.race_friction)
             held = steep * (s.inner.normal[b] + s.outer.normal[b])
             at[b] = held * d.ball_radius**2 / d.inertia
 
     @numba.njit(error_model="numpy")
-    def solve(j, s, r, m):
-        first = ball_bodies.BALLS + spin * m.p.balls.count
+    def solve(stiff, shift, right, m):
+        first = BALLS + SPIN * m.p.balls.count
         for i in range(m.n):
             if first <= i < first + m.p.balls.count:
-                r[i] /= s + j[i]
+                right[i] /= shift + stiff[i]
             else:
-                r[i] /= s
+                right[i] /= shift
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
         m.s.step = 0.0
         return rosenbrock.integrate(
-            rhs, linearise, solve, observe, m, m.y, m.n, m.weight, rows, span, 1e-7, tolerance
+            rhs, linearise, solve, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance
         )[2]
 
     return tried

@@ -12,12 +12,12 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
-from fmus.documentation import page
-from fmus.icon import icon
-from fmus.link import Interpreter, linked
-from fmus.recipes import Recipe
-from fmus.sources import write_host, write_package, write_script
-from modelkit.kernel import user_cache
+from touchdown.fmus.link import Interpreter, linked
+from touchdown.fmus.presentation.documentation import page
+from touchdown.fmus.presentation.icon import icon
+from touchdown.fmus.recipes import Recipe
+from touchdown.fmus.sources import write_host, write_package, write_script
+from touchdown.modelkit.kernel import user_cache
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 

@@ -8,11 +8,10 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from xml.etree.ElementTree import Element, SubElement, tostring
 
-from modelkit.kernel import source_hash
-from modelkit.model import Model, Slot, slots
-
-VERSION = "0.1.0"
-RELEASED = "2026-11-21T00:00:00Z"  # not the time of the build: equal sources give equal FMUs
+from touchdown.fmus.version import RELEASED, VERSION
+from touchdown.modelkit.kernel import source_hash
+from touchdown.modelkit.model import Model, Slot, slots
+from touchdown.modelkit.variables import Causality, Scalar, Variability
 
 _SYMBOLS = {
     "m": {"m": 1},
@@ -24,6 +23,16 @@ _SYMBOLS = {
     "W": {"kg": 1, "m": 2, "s": -3},
     "Pa": {"kg": 1, "m": -1, "s": -2},
     "1": {},
+}
+
+CAPABILITIES = {  # of every FMU
+    "needsExecutionTool": "true",
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
 }
 
 
@@ -59,35 +68,8 @@ def guid(model: Model) -> str:
 
 def describe(model: Model, identifier: str, log_categories: Mapping[str, str]) -> Element:
     """The FMI 2.0 model description of `model`."""
-    root = Element(
-        "fmiModelDescription",
-        {
-            "fmiVersion": "2.0",
-            "modelName": model.title,
-            "guid": guid(model),
-            "description": model.about,
-            "author": "touchdown-cosim",
-            "license": "MIT",
-            "version": VERSION,
-            "generationTool": f"touchdown-cosim {VERSION}, PythonFMU {version('pythonfmu')}",
-            "generationDateAndTime": RELEASED,
-            "variableNamingConvention": "structured",
-        },
-    )
-    SubElement(
-        root,
-        "CoSimulation",
-        {
-            "modelIdentifier": identifier,
-            "needsExecutionTool": "true",
-            "canHandleVariableCommunicationStepSize": "true",
-            "canInterpolateInputs": "false",
-            "canBeInstantiatedOnlyOncePerProcess": "false",
-            "canNotUseMemoryManagementFunctions": "true",
-            "canGetAndSetFMUstate": "true",
-            "canSerializeFMUstate": "true",
-        },
-    )
+    root = Element("fmiModelDescription", _identity(model))
+    SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **CAPABILITIES})
     exposed = slots(model)
     _units(root, exposed)
     categories = SubElement(root, "LogCategories")
@@ -101,9 +83,25 @@ def describe(model: Model, identifier: str, log_categories: Mapping[str, str]) -
     return root
 
 
+def _identity(model: Model) -> dict[str, str]:
+    """What the FMU is, and who made it with what."""
+    return {
+        "fmiVersion": "2.0",
+        "modelName": model.title,
+        "guid": guid(model),
+        "description": model.about,
+        "author": "touchdown-cosim",
+        "license": "MIT",
+        "version": VERSION,
+        "generationTool": f"touchdown-cosim {VERSION}, PythonFMU {version('pythonfmu')}",
+        "generationDateAndTime": RELEASED,
+        "variableNamingConvention": "structured",
+    }
+
+
 def _units(root: Element, exposed: Sequence[Slot]) -> None:
     definitions = SubElement(root, "UnitDefinitions")
-    for unit in sorted({s.variable.spec.unit for s in exposed if s.variable.spec.kind == "real"}):
+    for unit in sorted({s.variable.spec.unit for s in exposed if s.variable.spec.kind is Scalar.REAL}):
         element = SubElement(definitions, "Unit", {"name": unit})
         exponents = base_unit(unit)
         if exponents is not None:
@@ -112,17 +110,17 @@ def _units(root: Element, exposed: Sequence[Slot]) -> None:
             SubElement(element, "DisplayUnit", {"name": "rpm", "factor": repr(60 / 6.283185307179586)})
 
 
-def causality(slot: Slot) -> tuple[str, str, str | None]:
+def causality(slot: Slot) -> tuple[Causality, Variability, str | None]:
     """(causality, variability, initial) of FMI 2.0."""
     spec = slot.variable.spec
-    if slot.causality == "parameter":
-        return "parameter", "fixed", "exact"
-    discrete = spec.kind == "integer"
-    if slot.causality == "input":
-        return "input", "discrete" if discrete else "continuous", None
+    if slot.causality is Causality.PARAMETER:
+        return Causality.PARAMETER, Variability.FIXED, "exact"
+    changes = Variability.DISCRETE if spec.kind is Scalar.INTEGER else Variability.CONTINUOUS
+    if slot.causality is Causality.INPUT:
+        return Causality.INPUT, changes, None
     if spec.constant:
-        return "calculatedParameter", "fixed", "calculated"
-    return "local" if spec.local else "output", "discrete" if discrete else "continuous", "calculated"
+        return Causality.CALCULATED_PARAMETER, Variability.FIXED, "calculated"
+    return Causality.LOCAL if spec.local else Causality.OUTPUT, changes, "calculated"
 
 
 def _variable(slot: Slot) -> Element:
@@ -139,17 +137,17 @@ def _variable(slot: Slot) -> Element:
         attributes["initial"] = initial
     scalar = Element("ScalarVariable", attributes)
     details: dict[str, str] = {}
-    if spec.kind == "real":
+    if spec.kind is Scalar.REAL:
         details["unit"] = spec.unit
         if v.name.endswith(("omega", "speed")) and spec.unit == "rad/s":
             details["displayUnit"] = "rpm"
     low = spec.minimum if spec.minimum is not None else spec.above
     for name, value in (("min", low), ("max", spec.maximum), ("nominal", spec.nominal)):
         if value is not None:
-            details[name] = repr(float(value)) if spec.kind == "real" else str(int(value))
-    if role in ("parameter", "input"):
-        details["start"] = repr(float(v.default)) if spec.kind == "real" else str(v.default)
-    SubElement(scalar, "Real" if spec.kind == "real" else "Integer", details)
+            details[name] = repr(float(value)) if spec.kind is Scalar.REAL else str(int(value))
+    if role in (Causality.PARAMETER, Causality.INPUT):
+        details["start"] = repr(float(v.default)) if spec.kind is Scalar.REAL else str(v.default)
+    SubElement(scalar, "Real" if spec.kind is Scalar.REAL else "Integer", details)
     return scalar
 
 
@@ -163,9 +161,9 @@ def _structure(root: Element, model: Model, exposed: Sequence[Slot]) -> None:
         role = causality(slot)[0]
         name = slot.variable.name
         index = str(position[name])
-        if role == "output":
+        if role is Causality.OUTPUT:
             SubElement(outputs, "Unknown", {"index": index, "dependencies": ""})
-        if role in ("output", "calculatedParameter"):
+        if role in (Causality.OUTPUT, Causality.CALCULATED_PARAMETER):
             known = [str(position[source]) for source in model.starts_from.get(name, ())]
             SubElement(
                 initial, "Unknown", {"index": index, "dependencies": " ".join(sorted(known, key=int))}

@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from fmus.host import NEEDED
+from touchdown.fmus.host import NEEDED
 
 
 class LinkError(Exception):
@@ -55,13 +55,13 @@ def starts_alone(library: Path) -> bool:
 
 def package_folders() -> tuple[str, ...]:
     """Folders in which this interpreter finds what FMUs need. LookupError names what is missing."""
-    found: list[str] = []
+    folders: list[str] = []
     for name in NEEDED:
         spec = find_spec(name)
         if spec is None or not spec.origin:
             raise LookupError(name)
-        found.append(str(Path(spec.origin).parents[1]))
-    return tuple(dict.fromkeys(found))
+        folders.append(str(Path(spec.origin).parents[1]))
+    return tuple(dict.fromkeys(folders))
 
 
 def interpreter() -> Interpreter:

@@ -1,7 +1,8 @@
-"""What FMUs are made of: a script of the project's own, or a rotor file.
+"""The FMUs that can be made, and the named sets of parameters they take.
 
-A script in `fmus/scripts` declares one slave class and with it the model. A rotor file becomes a script
-that carries the file's text, so that the FMU needs nothing beside it.
+An FMU is made of a script of the project's own or of a rotor file. A script in `fmus/scripts` declares
+one slave class and with it the model. A rotor file becomes a script that carries the file's text, so
+that the FMU needs nothing beside it.
 """
 
 from __future__ import annotations
@@ -12,17 +13,19 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from fmus.slave import ModelSlave
-from fmus.sources import ROOT, content_hash
-from modelkit.model import Model
-from rotor.flexible import flexible_rotor
-from rotor.rotor_file import parse, read, shipped
+from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.fmus.scripts import scripts
+from touchdown.fmus.slave import ModelSlave
+from touchdown.fmus.sources import content_hash
+from touchdown.modelkit.model import Model
+from touchdown.rotor.file import parse, shipped, text_of
+from touchdown.rotor.flexible import flexible_rotor
 
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
-from fmus.slave import ModelSlave
-from rotor.flexible import flexible_rotor
-from rotor.rotor_file import parse
+from touchdown.fmus.slave import ModelSlave
+from touchdown.rotor.file import parse
+from touchdown.rotor.flexible import flexible_rotor
 
 TEXT = {text!r}
 
@@ -51,8 +54,7 @@ class Recipe:
 
 def names() -> list[str]:
     """FMUs of the project: its scripts, and the rotors that come with it."""
-    scripts = (ROOT / "fmus" / "scripts").glob("*.py")
-    return sorted([path.stem for path in scripts if path.stem != "__init__"] + list(shipped()))
+    return sorted([*scripts(), *shipped()])
 
 
 def recipe(name: str) -> Recipe:
@@ -64,14 +66,13 @@ def recipe(name: str) -> Recipe:
         return _from_rotor(Path(name))
     if name in shipped():
         return _from_rotor(shipped()[name])
-    if name not in names():
+    if name not in scripts():
         raise LookupError(f"there is no FMU called {name}")
-    script = (ROOT / "fmus" / "scripts" / f"{name}.py").read_text(encoding="utf-8")
-    return Recipe(name, script, content_hash(), _declared(name))
+    return Recipe(name, scripts()[name].read_text(encoding="utf-8"), content_hash(), _declared(name))
 
 
 def _declared(name: str) -> Model:
-    module = import_module(f"fmus.scripts.{name}")
+    module = import_module(f"touchdown.fmus.scripts.{name}")
     for value in vars(module).values():
         if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
             return value.model
@@ -79,7 +80,7 @@ def _declared(name: str) -> Model:
 
 
 def _from_rotor(path: Path) -> Recipe:
-    text = read(path)
+    text = text_of(path)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     own = hashlib.sha256(text.encode()).hexdigest()[:16]
     model = flexible_rotor(parse(text, str(path)), name, own)
@@ -91,3 +92,13 @@ def _from_rotor(path: Path) -> Recipe:
         content=own,
     )
     return Recipe(name, script, f"{content_hash()}_{own}", model)
+
+
+def presets() -> list[str]:
+    """Names of the sets of parameters that a component may ask for."""
+    return sorted(CATALOGUE)
+
+
+def preset(name: str) -> dict[str, float]:
+    """Values in SI by parameter name; a component takes those it has. KeyError for an unknown name."""
+    return CATALOGUE[name].settings()

@@ -22,9 +22,13 @@ import numpy as np
 from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
-from fmus.description import describe, guid
-from modelkit.model import Instance, Model, ModelError
+from touchdown.fmus.description import describe, guid
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
+from touchdown.modelkit.variables import Causality, Scalar
 
+AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the first step
+READABLE = (*AT_START, Causality.OUTPUT)
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
 _LATE = 1e-2  # of a step: how far it may begin from the end of the last one
@@ -40,7 +44,7 @@ class ModelSlave(Fmi2Slave):
         self.description = self.model.about
         self._instance = Instance(self.model)
         self._identity = guid(self.model).encode()
-        self._stores = {"real": self._instance.words, "integer": self._instance.words.view("i8")}
+        self._stores = {Scalar.REAL: self._instance.words, Scalar.INTEGER: self._instance.words.view("i8")}
         self._known: dict[tuple[object, ...], np.ndarray] = {}  # vectors of value references checked before
         self._last: dict[tuple[str, str], tuple[list[int], np.ndarray]] = {}
         self._phase = NEW
@@ -107,21 +111,21 @@ class ModelSlave(Fmi2Slave):
     # -- variables -----------------------------------------------------------------------------------
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
-        self._set("real", vrs, values)
+        self._set(Scalar.REAL, vrs, values)
 
     def set_integer(self, vrs: list[int], values: list[int]) -> None:
-        self._set("integer", vrs, values)
+        self._set(Scalar.INTEGER, vrs, values)
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        return self._get("real", vrs, math.nan)
+        return self._get(Scalar.REAL, vrs, math.nan)
 
     def get_integer(self, vrs: list[int]) -> list[int]:
-        return self._get("integer", vrs, 0)
+        return self._get(Scalar.INTEGER, vrs, 0)
 
-    def _set(self, kind: str, vrs: list[int], values: list[Any]) -> None:
+    def _set(self, kind: Scalar, vrs: list[int], values: list[Any]) -> None:
         places = self._places("set", kind, vrs)
         if places is None:
-            causes = ("parameter", "input") if self._phase < STEPPING else ("input",)
+            causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
             wrong = self._others(kind, vrs, causes)
             if wrong:
                 self._fail(
@@ -132,18 +136,18 @@ class ModelSlave(Fmi2Slave):
         self._stores[kind][places] = values
         self._stale = True
 
-    def _get(self, kind: str, vrs: list[int], nothing: Any) -> list[Any]:
+    def _get(self, kind: Scalar, vrs: list[int], nothing: Any) -> list[Any]:
         if self._phase < STEPPING and self._stale and self._refresh():
             return [nothing] * len(vrs)
         places = self._places("get", kind, vrs)
         if places is None:
-            wrong = self._others(kind, vrs, ("parameter", "input", "output"))
+            wrong = self._others(kind, vrs, READABLE)
             if wrong:  # no value is answered: hosts would go on with it
                 self._raise(f"{wrong} cannot be read as {kind}")
             places = self._note("get", kind, vrs)
         return self._stores[kind][places].tolist()
 
-    def _places(self, access: str, kind: str, vrs: list[int]) -> np.ndarray | None:
+    def _places(self, access: str, kind: Scalar, vrs: list[int]) -> np.ndarray | None:
         """Where a vector of value references that was checked before lies in the memory.
 
         Mostly it is the one that came last: comparing lists is cheaper than looking a long one up.
@@ -151,23 +155,23 @@ class ModelSlave(Fmi2Slave):
         last = self._last.get((access, kind))
         if last is not None and last[0] == vrs:
             return last[1]
-        found = self._known.get((access, kind, *vrs))
-        if found is not None:
-            self._last[access, kind] = (list(vrs), found)
-        return found
+        places = self._known.get((access, kind, *vrs))
+        if places is not None:
+            self._last[access, kind] = (list(vrs), places)
+        return places
 
-    def _note(self, access: str, kind: str, vrs: list[int]) -> np.ndarray:
+    def _note(self, access: str, kind: Scalar, vrs: list[int]) -> np.ndarray:
         """Keep a vector that was checked."""
-        found = np.array(vrs, dtype=np.intp)
-        self._known[(access, kind, *vrs)] = found
-        return found
+        places = np.array(vrs, dtype=np.intp)
+        self._known[(access, kind, *vrs)] = places
+        return places
 
     def _forget(self) -> None:
         """What may be set is another matter from now on."""
         self._known.clear()
         self._last.clear()
 
-    def _others(self, kind: str, vrs: list[int], causes: tuple[str, ...]) -> str:
+    def _others(self, kind: Scalar, vrs: list[int], causes: tuple[Causality, ...]) -> str:
         """Names of the variables among `vrs` that are not of this kind and these causalities."""
         slots = {s.index: s for s in self._instance.slots}
         wrong: list[str] = []
@@ -175,7 +179,7 @@ class ModelSlave(Fmi2Slave):
             slot = slots.get(i)
             if slot is None:
                 wrong.append(f"value reference {i % 2**32}")
-            elif slot.variable.spec.kind != kind or slot.causality not in causes:
+            elif slot.variable.spec.kind is not kind or slot.causality not in causes:
                 wrong.append(slot.variable.name)
         return ", ".join(wrong)
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from modelkit.kernel import PHYSICS_PACKAGES, source_hash
+from touchdown.modelkit.kernel import PHYSICS_PACKAGES, source_hash
 
 ROOT = Path(__file__).resolve().parents[1]
-SLAVE_MODULES = ("__init__.py", "slave.py", "description.py")
-_IMPORT = re.compile(r"^(from|import) (modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
+SLAVE_MODULES = ("__init__.py", "slave.py", "description.py", "version.py")
+_IMPORT = re.compile(r"^(from|import) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 
 
 def content_hash() -> str:

@@ -1,4 +1,6 @@
-"""What every model shares: declared variables, compiled kernels, one integrator, one running instance.
+"""What every model shares, and nothing of its physics, which lies in `rotor` and `bearings`.
 
-The physics lives in ``rotor`` and ``bearings``; this package knows none of it.
+A model is declared (`variables`, `ports`), written as kernels (`kernel`), put together (`model`) and run
+(`instance`). Kernels lean on `integrators`, on the exact `oscillator`, on `body` for what takes a load
+and gives its motion, and tell by `status` how a macro step ended.
 """

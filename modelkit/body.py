@@ -6,30 +6,40 @@ import math
 
 import numpy as np
 
-from modelkit import dopri
-from modelkit.kernel import inlined, kernel
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
 
 TOLERANCE = 1e-9  # of the body's scales; its motion within a macro step is nearly polynomial
 
 
 @kernel
-def nothing_to_watch(t, y, m):
-    """Nothing happens inside a body's step that its end does not show."""
+def nothing_to_watch(t, q, m):
+    """Nothing happens inside a body's step, at t (s) in state q (n,), that its end does not show."""
+
+
+@kernel
+def finite(m):
+    """Whether every component of the state m.q[: m.n] is a finite number."""
+    return math.isfinite(np.sum(m.q[: m.n]))
 
 
 @inlined
 def advance(rhs, publish, m, work, time, step, load):
-    """One macro step; `load` is the sum of all inputs, by which one that is not finite is noticed."""
+    """One macro step of `step` (s) from `time` (s); returns one of `modelkit.status`.
+
+    rhs(t, q, dq, m) and publish(q, m) as in `modelkit.model.Model`, work: `dopri.scratch`. `load` is the
+    sum of all inputs, by which one that is not finite is noticed.
+    """
     status = BAD_INPUT
     if math.isfinite(load):
         m.time = time
         m.half = 0.5 * step
         m.h, status, evaluations = dopri.integrate(
-            rhs, nothing_to_watch, m, m.y, m.n, m.weight, work, step, m.h, TOLERANCE
+            rhs, nothing_to_watch, m, m.q, m.n, m.weight, work, step, m.h, TOLERANCE
         )
         m.evaluations += evaluations
-        publish(m.y, m)
-        if status == OK and not math.isfinite(np.sum(m.y[: m.n])):
+        publish(m.q, m)
+        if status == OK and not finite(m):
             status = BAD_LOAD
     return status

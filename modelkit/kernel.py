@@ -94,6 +94,7 @@ def inlined(function: F) -> F:
     """Compile `function` into each caller, so that it may take other kernels as arguments.
 
     numba cannot cache a kernel that was handed another one as a value; inlined, the argument is a
-    name known at compile time, and the caller is cached as usual.
+    name known at compile time, and the caller is cached as usual. Right also for a piece of one kernel
+    that stands apart to be read: a kernel of its own is compiled again for every kernel above it.
     """
     return cast(F, numba.njit(inline="always", error_model="numpy")(function))

@@ -1,8 +1,7 @@
-"""What a model is, and one running instance of it."""
+"""What a model is: its declarations, its kernels, and where its variables lie in memory."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
@@ -10,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from modelkit import dopri
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
-from modelkit.variables import Nothing, Variable, as_tuple, flatten, from_record, layout
+from touchdown.modelkit.variables import Causality, Nothing, Variable, flatten, layout
 
 
 class ModelError(Exception):
@@ -37,9 +34,11 @@ def memory_layout(
     derived: type = Nothing,
     hidden: type = Nothing,
 ) -> np.dtype:
-    """Everything an instance is, as one record of 8-byte words.
+    """Everything an instance of a model is, as one record of 8-byte words, the kernels' `m`.
 
-    Derived constants come last: what stands before them is the state, and saving it is copying its bytes.
+    `parameters`, `inputs`, `outputs`, `derived` and `hidden` are declarations (`modelkit.variables`),
+    `state_size` the components that the state needs at most. Derived constants come last: what stands
+    before them is all that changes, and saving it is copying its bytes.
     """
     return np.dtype(
         [
@@ -52,7 +51,7 @@ def memory_layout(
             ("u", layout(inputs)),
             ("o", layout(outputs)),
             ("s", layout(hidden)),
-            ("y", "f8", (state_size,)),
+            ("q", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
             ("d", layout(derived)),
         ]
@@ -63,19 +62,41 @@ def memory_layout(
 class Model:
     """A component: its declarations and its kernels. A model is equal to itself only.
 
-    Kernels see one record `m`: parameters m.p, inputs m.u, outputs m.o, derived constants m.d, hidden
-    memory m.s, the state m.y with m.n components in use, m.weight (error weights), m.time (s) at the
-    beginning of the macro step, m.half (s) half its length, m.h (s) the micro-step to try next.
+    Kernels, compiled by `modelkit.kernel`, see one record `m`, of the dtype `memory` (`memory_layout`):
 
-    What Python calls at every step takes the memory as plain words and views them as that record
-    itself; handing a record over costs numba several microseconds.
+        m.p        parameters                  as declared, m.p.contact.stiffness
+        m.u        inputs                      for the whole macro step
+        m.o        outputs                     a body's hold at the end of the macro step; a bearing's
+                                               loads are means over it, and slopes
+        m.s        hidden memory               kept from step to step
+        m.q        state                       (N,), of which m.n components are in use
+        m.weight   error weights               (N,), one over the size at which a component matters
+        m.time     start of the macro step     s
+        m.half     half its length             s
+        m.h        micro-step to try next      s
+        m.evaluations                          of the right-hand side, since the start
+        m.d        constants of the parameters, not saved with the rest
 
-    start(words)                 sets the state and the outputs from parameters and inputs
-    advance(words, work, t, H)   one macro step; returns one of `modelkit.status`
-    rhs(t, y, dy, m)             bodies: time derivative under the loads m.u
-    publish(y, m)                bodies: outputs from the state
-    instant(t, y, dy, m)         bearings: derivative of what is inside and, as mean of m.o's loads, the
-                                 load at this instant under the motion m.u (for monolithic solutions)
+    All in SI; x horizontal, y up, z along the shaft; angles, spins and moments counter-clockwise; a load
+    is named after the body it acts on. A kernel changes nothing but what it is said to set:
+
+        start(words)                       sets m.q and m.o from m.p and m.u
+        advance(words, work, time, step)   one macro step of `step` (s) from `time` (s): m.q, m.o and
+                                           whatever else of m; returns one of `modelkit.status`
+        rhs(t, q, dq, m)                   bodies: dq (N,), the time derivative of the state q (N,), under
+                                           the loads m.u, mean + slope (t - m.half); t (s) counts from
+                                           the start of the macro step
+        publish(q, m)                      bodies: m.o from the state q
+        instant(t, q, dq, m)               bearings: dq of what is inside and, as means in m.o, the load
+                                           at this instant under the motion m.u (monolithic solutions)
+
+    q and dq are handed over beside m because integrators try states that are not m.q. `words` is the
+    memory and `work` scratch for an integrator (`dopri.scratch`), both float64. What Python calls at
+    every step takes plain words and views them as the record itself, m = words.view(MEMORY)[0]: handing
+    a record over costs numba several microseconds.
+
+    `Instance` drives it: check the bounds and `check`, `derive` m.d, fill m.weight by `weights`, start,
+    advance. The smallest complete example is `bearings.housing`.
     """
 
     name: str
@@ -108,7 +129,7 @@ class Slot:
     """Where a variable lives in an instance's memory, counted in 8-byte words."""
 
     variable: Variable
-    causality: str  # "parameter", "input" or "output"
+    causality: Causality  # parameter, input or output
     index: int
 
 
@@ -116,133 +137,18 @@ class Slot:
 def slots(model: Model) -> tuple[Slot, ...]:
     """All exposed variables of `model`: parameters, inputs, outputs, in memory order.
 
-    Found once for each model: a rotor has more than a thousand.
+    Listed once for each model: a rotor has more than a thousand.
     """
-    found: list[Slot] = []
+    exposed: list[Slot] = []
     for part, kind, causality in (
-        ("p", model.parameters, "parameter"),
-        ("u", model.inputs, "input"),
-        ("o", model.outputs, "output"),
+        ("p", model.parameters, Causality.PARAMETER),
+        ("u", model.inputs, Causality.INPUT),
+        ("o", model.outputs, Causality.OUTPUT),
     ):
         fields: Any = model.memory.fields
         offset = fields[part][1] // 8
         for i, v in enumerate(flatten(kind())):
             name = model.rename(v.name)
             if name is not None:
-                found.append(Slot(replace(v, name=name), causality, offset + i))
-    return tuple(found)
-
-
-class Instance:
-    """A model with its memory. The FMU and the in-process component both drive this class.
-
-    `state` is the part of the memory that changes, parameters included; the rest follows from them.
-    """
-
-    def __init__(self, model: Model) -> None:
-        self.model = model
-        self.memory = np.zeros(1, model.memory)
-        self.words = self.memory.view("f8")
-        self.memory["p"] = np.array([as_tuple(model.parameters())], layout(model.parameters))
-        self.memory["u"] = np.array([as_tuple(model.inputs())], layout(model.inputs))
-        raw = self.memory.view("u1").data
-        self.reals = raw.cast("d")
-        self.integers = raw.cast("q")
-        self.work = dopri.scratch(len(self.memory["y"][0]))
-        self.slots = slots(model)
-        fields: Any = model.memory.fields
-        self.state = raw[: fields["d"][1]]
-        self._parameters = raw[fields["p"][1] : fields["u"][1]]
-        self._derived_from = b""  # the parameters m.d belongs to
-        self._outdated = False  # m.d belongs to others than m.p
-
-    @property
-    def record(self) -> Any:
-        """The memory as one record."""
-        return self.memory[0]
-
-    def start(self, time: float) -> None:
-        """Check the parameters, derive what follows from them, and set state and outputs at `time` (s).
-
-        Raises ModelError where a parameter or an input is out of bounds.
-        """
-        self._check_bounds()
-        model, parameters = self.model, self._derive()
-        self.memory["o"] = np.array([as_tuple(model.outputs())], layout(model.outputs))
-        self.memory["s"] = np.array([as_tuple(model.hidden())], layout(model.hidden))
-        self.memory["y"] = 0.0
-        weights = model.weights(parameters)
-        self.memory["n"] = len(weights)
-        self.memory["weight"] = 0.0
-        self.memory["weight"][0, : len(weights)] = weights
-        self.memory["time"] = time
-        self.memory["h"] = 1e-6
-        self.memory["evaluations"] = 0
-        model.start(self.words)
-
-    def step(self, time: float, step: float) -> None:
-        """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
-        if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
-            raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
-        if self._outdated:
-            self._derive()
-        status = self.model.advance(self.words, self.work, time, step)
-        if status != OK:
-            raise ModelError(self._why(status, time, step))
-
-    def save(self) -> bytes:
-        """A copy of the state; constants that follow from its parameters are left out."""
-        return self.state.tobytes()
-
-    def restore(self, state: bytes | memoryview) -> None:
-        """Go back to what `save` returned, here or in another instance of the same model.
-
-        Where the parameters are others than before, constants are derived again ahead of the next step.
-        """
-        self.state[:] = state
-        self._outdated = self._parameters != self._derived_from
-
-    def _derive(self) -> Any:
-        """Compute from the parameters what follows from them; returns them."""
-        model = self.model
-        parameters = from_record(model.parameters, self.memory[0]["p"])
-        problem = model.check(parameters)
-        if problem:
-            raise ModelError(problem)
-        if model.derive is not None:
-            self.memory["d"] = np.array([as_tuple(model.derive(parameters))], layout(model.derived))
-        self._derived_from, self._outdated = self._parameters.tobytes(), False
-        return parameters
-
-    def _check_bounds(self) -> None:
-        for slot in self.slots:
-            if slot.causality == "output":
-                continue
-            store = self.reals if slot.variable.spec.kind == "real" else self.integers
-            problem = slot.variable.problem(store[slot.index])
-            if problem:
-                raise ModelError(problem)
-
-    def _why(self, status: int, time: float, step: float) -> str:
-        if status == BAD_INPUT:
-            for slot in self.slots:
-                value = self.reals[slot.index]
-                if slot.causality == "input" and not math.isfinite(value):
-                    return (
-                        f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
-                        "look at the component that feeds it"
-                    )
-        if status == BAD_LOAD:
-            return (
-                f"the load at t = {time:.9g} s is not a finite number; look for an input or a parameter "
-                "that is out of all proportion"
-            )
-        if status == TOO_MANY_STEPS:
-            return (
-                f"more than {dopri.MOST_STEPS} micro-steps within one macro step of {step:g} s "
-                f"at t = {time:.9g} s; take a smaller macro step or a larger interface.tolerance"
-            )
-        return (
-            f"the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; "
-            "take a smaller macro step, or look for a contact that starts with a deep overlap"
-        )
+                exposed.append(Slot(replace(v, name=name), causality, offset + i))
+    return tuple(exposed)

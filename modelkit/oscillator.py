@@ -2,7 +2,8 @@
 
     z'' + c z' + k z = f + g (t - h/2),    0 <= t <= h        (k in 1/s2, c in 1/s; both may be zero)
 
-Underdamped, overdamped and free bodies alike.
+Underdamped, overdamped and free bodies alike. z in m, v = z' in m/s, h in s; f in m/s2 and g in m/s3 are
+the mean of the load and its slope, per mass.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel
 
 SERIES = 0.5  # below this k h^2 or c h the closed form cancels and a power series takes its place
 TERMS = 16  # of the series, which leaves SERIES^16/16!
@@ -22,19 +23,19 @@ class Step(NamedTuple):
     (z, v) at the end = [[zz, zv], [vz, vv]] (z, v) at the start + f (zf, vf) + g (zg, vg).
     """
 
-    zz: float
-    zv: float
-    vz: float
-    vv: float
-    zf: float
-    vf: float
-    zg: float
-    vg: float
+    zz: float  # 1
+    zv: float  # s
+    vz: float  # 1/s
+    vv: float  # 1
+    zf: float  # s2
+    vf: float  # s
+    zg: float  # s3
+    vg: float  # s2
 
 
 @kernel
 def _free(k, c, h):
-    """Displacement after a unit velocity, and after a unit displacement."""
+    """Displacement after h (s) of a unit velocity (s), and of a unit displacement (1); k > 0 in 1/s2."""
     a = 0.5 * c
     d = k - a * a
     if d > 0.0:
@@ -52,7 +53,7 @@ def _free(k, c, h):
 
 @kernel
 def step(k, c, h):
-    """The `Step` of h seconds of an oscillator."""
+    """The `Step` of h seconds of an oscillator of stiffness k (1/s2) and damping c (1/s), both >= 0."""
     if max(k * h * h, c * h) < SERIES:
         return _series(k, c, h)
     if k <= 1e-12 * c * c:
@@ -82,7 +83,7 @@ def _series(k, c, h):
 
 @kernel
 def _dashpot(c, h):
-    """`step` of a body on a dashpot without a spring."""
+    """`step` of a body on a dashpot c (1/s) without a spring."""
     fading = math.exp(-c * h)
     zv = (1.0 - fading) / c
     zf = (h - zv) / c
@@ -91,7 +92,10 @@ def _dashpot(c, h):
 
 
 @kernel
-def load_for(found, z, v):
-    """Mean f and slope g of the load that brings the resting oscillator to (z, v); found: its `Step`."""
-    determinant = found.zf * found.vg - found.vf * found.zg
-    return (z * found.vg - v * found.zg) / determinant, (found.zf * v - found.vf * z) / determinant
+def load_for(s, z, v):
+    """Mean f (m/s2) and slope g (m/s3) of the load that brings the resting oscillator to z (m), v (m/s).
+
+    s: the `Step` in which it does.
+    """
+    determinant = s.zf * s.vg - s.vf * s.zg
+    return (z * s.vg - v * s.zg) / determinant, (s.zf * v - s.vf * z) / determinant

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from modelkit.variables import groups, integer, real
+from touchdown.modelkit.variables import groups, integer, real
 
 MODES = 20  # of a flexible body that a seat can carry, per plane
 
@@ -80,6 +80,14 @@ class SeatMotion(BodyMotion):
     inv_I: float = real(
         0.0, "1/(kg.m2)", "spin acceleration per moment; 0: spin is prescribed", constant=True
     )
+
+
+@dataclass(frozen=True)
+class StaticLoad:
+    """What a body takes to be held at rest, stated beside its motion."""
+
+    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
+    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
 
 
 @dataclass(frozen=True)

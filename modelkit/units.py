@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from numbers import Real
 
 # unit as written: (factor, SI unit)
 SCALES: dict[str, tuple[float, str]] = {
@@ -24,6 +26,10 @@ SCALES: dict[str, tuple[float, str]] = {
 }  # fmt: skip
 
 
+NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])|(nan|inf)\b)", re.IGNORECASE)
+MICRO = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
+
+
 class UnitError(ValueError):
     """A value that cannot be read; the message names the variable, the value and the remedy."""
 
@@ -35,19 +41,12 @@ def units_of(unit: str) -> list[str]:
 
 def to_si(value: object, unit: str | None, name: str) -> float:
     """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+    if isinstance(value, bool) or not isinstance(value, (Real, str)):
         raise UnitError(f"{name} = {value!r} is not a number; write a number or text like '0.3 mm'")
     if not isinstance(value, str):
         number, written = float(value), ""
     else:
-        head, _, written = value.strip().partition(" ")
-        written = written.strip()
-        try:
-            number = float(head)
-        except ValueError:
-            raise UnitError(
-                f"{name} = {value!r} is not a number; write a number or text like '0.3 mm'"
-            ) from None
+        number, written = _split(value, name)
     if written and written != unit:
         factor, si = SCALES.get(written, (1.0, written))
         if si != unit:
@@ -56,3 +55,16 @@ def to_si(value: object, unit: str | None, name: str) -> float:
     if not math.isfinite(number):
         raise UnitError(f"{name} = {value!r} is not a finite number")
     return number
+
+
+def _split(text: str, name: str) -> tuple[float, str]:
+    """Number and unit of "0.3 mm", "0.3mm" or "20 \u00b5s"; the unit is "" where there is none."""
+    match = NUMBER.match(text.strip())
+    try:
+        number = float(match[0]) if match else float(text)
+    except ValueError:
+        raise UnitError(
+            f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
+        ) from None
+    written = text.strip()[match.end() :].strip() if match else ""
+    return number, written.translate(MICRO)

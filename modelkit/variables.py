@@ -10,16 +10,45 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass, field, fields
+from enum import StrEnum
 from typing import Any
 
 import numpy as np
+
+
+class Scalar(StrEnum):
+    """Types of the scalars that a model declares."""
+
+    REAL = "real"
+    INTEGER = "integer"
+
+
+class Causality(StrEnum):
+    """What FMI 2.0's variables are for; a model's are parameters, inputs and outputs."""
+
+    PARAMETER = "parameter"
+    CALCULATED_PARAMETER = "calculatedParameter"
+    INPUT = "input"
+    OUTPUT = "output"
+    LOCAL = "local"
+    INDEPENDENT = "independent"
+
+
+class Variability(StrEnum):
+    """When FMI 2.0's variables may change."""
+
+    CONSTANT = "constant"
+    FIXED = "fixed"
+    TUNABLE = "tunable"
+    DISCRETE = "discrete"
+    CONTINUOUS = "continuous"
 
 
 @dataclass(frozen=True)
 class Spec:
     """What is declared of one scalar beside its name and default."""
 
-    kind: str  # "real" or "integer"
+    kind: Scalar
     unit: str
     meaning: str
     minimum: float | None = None
@@ -55,12 +84,12 @@ class Variable:
 
 def real(default: float, unit: str, meaning: str, **bounds: Any) -> Any:
     """Declare a float64 scalar; `bounds` are the optional fields of `Spec`."""
-    return field(default=default, metadata={"spec": Spec("real", unit, meaning, **bounds)})
+    return field(default=default, metadata={"spec": Spec(Scalar.REAL, unit, meaning, **bounds)})
 
 
 def integer(default: int, meaning: str, **bounds: Any) -> Any:
     """Declare an int64 scalar (a count or a choice)."""
-    return field(default=default, metadata={"spec": Spec("integer", "1", meaning, **bounds)})
+    return field(default=default, metadata={"spec": Spec(Scalar.INTEGER, "1", meaning, **bounds)})
 
 
 def array(*shape: int) -> Any:
@@ -96,24 +125,24 @@ def layout(kind: type) -> np.dtype:
         elif "array" in f.metadata:
             parts.append((f.name, "f8", f.metadata["array"]))
         else:
-            parts.append((f.name, "f8" if f.metadata["spec"].kind == "real" else "i8"))
+            parts.append((f.name, "f8" if f.metadata["spec"].kind is Scalar.REAL else "i8"))
     return np.dtype(parts)
 
 
 def flatten(instance: Any, prefix: str = "") -> list[Variable]:
     """The scalars of a declaration in memory order, with dotted names; arrays are left out."""
-    found: list[Variable] = []
+    scalars: list[Variable] = []
     for f in fields(instance):
         value = getattr(instance, f.name)
         name = f"{prefix}{f.name}"
         if "group" in f.metadata:
-            found += flatten(value, f"{name}.")
+            scalars += flatten(value, f"{name}.")
         elif "groups" in f.metadata:
             for i, member in enumerate(value):
-                found += flatten(member, f"{name}[{i + 1}].")
+                scalars += flatten(member, f"{name}[{i + 1}].")
         elif "spec" in f.metadata:
-            found.append(Variable(name, f.metadata["spec"], value))
-    return found
+            scalars.append(Variable(name, f.metadata["spec"], value))
+    return scalars
 
 
 def as_tuple(instance: Any) -> tuple:
@@ -145,5 +174,5 @@ def from_record(kind: type, record: Any) -> Any:
         elif "array" in f.metadata:
             values[f.name] = np.array(value)
         else:
-            values[f.name] = float(value) if f.metadata["spec"].kind == "real" else int(value)
+            values[f.name] = float(value) if f.metadata["spec"].kind is Scalar.REAL else int(value)
     return kind(**values)

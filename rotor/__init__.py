@@ -1,1 +1,1 @@
-"""Rotors. Physics only."""
+"""Rotors, rigid and flexible: models, beams, modes and rotor files. Physics only."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel
 
 DRAG_SPEED = 0.1  # rad/s; below it the constant torque fades, so that it cannot reverse the spin
 

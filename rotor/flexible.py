@@ -1,7 +1,7 @@
 """A flexible rotor in modal coordinates, made from a shaft: any number of seats, stresses along it.
 
 Sign and frame: x horizontal, y up, z along the shaft, angles counter-clockwise, SI. The equations of
-motion are those of `rotor.modal_motion`; what the kernels read is prepared in `rotor.modal_data`.
+motion are those of `rotor.motion.equations`; what the kernels read is prepared in `rotor.modal.data`.
 """
 
 from __future__ import annotations
@@ -13,14 +13,27 @@ from functools import partial
 
 import numpy as np
 
-from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import MODES, Energy, FlexibleSeatLoad, FlexibleSeatState, PointMotion
-from modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from modelkit.variables import array, group, groups, integer, real
-from rotor import modal_motion, stress_report
-from rotor.modal_data import MOST_MODES, Derived, chosen_basis, prepare
-from rotor.shaft import MOST_NODES, MOST_STATIONS, Shaft
+from touchdown.modelkit.body import finite
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.ports import (
+    MODES,
+    Energy,
+    FlexibleSeatLoad,
+    FlexibleSeatState,
+    PointMotion,
+    StaticLoad,
+)
+from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from touchdown.modelkit.variables import group, groups, integer, real
+from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
+from touchdown.rotor.modal.data import MOST_MODES, Derived, chosen_basis, prepare
+from touchdown.rotor.motion import macro_step, stress_report
+from touchdown.rotor.motion.equations import rhs
+from touchdown.rotor.motion.exchange import take_mode_loads
+from touchdown.rotor.motion.outputs import publish, publish_constants
+from touchdown.rotor.motion.state import ANGLE, SPIN, WORK, modal, rest
+from touchdown.rotor.motion.swing import Stride
 
 
 @dataclass(frozen=True)
@@ -60,11 +73,8 @@ class Inputs:
 
 
 @dataclass(frozen=True)
-class StationState(FlexibleSeatState):
+class StationState(StaticLoad, FlexibleSeatState):
     """Motion at a station, and what holds the rotor there."""
-
-    static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
-    static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
 
 
 @dataclass(frozen=True)
@@ -81,21 +91,6 @@ class Outputs:
 
 
 @dataclass(frozen=True)
-class Stride:
-    """Exact strides of the modes, for one length."""
-
-    length: float = real(0.0, "s", "of the stride")
-    zz: np.ndarray = array(MOST_MODES)
-    zv: np.ndarray = array(MOST_MODES)
-    vz: np.ndarray = array(MOST_MODES)
-    vv: np.ndarray = array(MOST_MODES)
-    zf: np.ndarray = array(MOST_MODES)
-    vf: np.ndarray = array(MOST_MODES)
-    zg: np.ndarray = array(MOST_MODES)
-    vg: np.ndarray = array(MOST_MODES)
-
-
-@dataclass(frozen=True)
 class Hidden:
     """Memory between steps."""
 
@@ -103,105 +98,28 @@ class Hidden:
     watched: float = real(0.0, "Pa", "largest of the stress that decides what is kept")
 
 
-SIZE = 4 * MOST_MODES + modal_motion.WORK + MOST_STATIONS
+SIZE = 4 * MOST_MODES + WORK + MOST_STATIONS
 MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE, derived=Derived, hidden=Hidden)
-
-
-@kernel
-def publish(y, m):
-    """Motion at all stations and sensors at the end of the step, and the energy."""
-    n = m.d.modes
-    ax, ay = np.empty(n), np.empty(n)
-    alpha = modal_motion.accelerate(y, m, m.half, ax, ay)
-    for j in range(m.d.stations):
-        _publish_station(y, m, j, ax, ay, alpha)
-    for j in range(m.d.sensors):
-        o = m.o.sensor[j]
-        o.x, o.y, o.vx, o.vy = _motion(m.d.sensor_shape[j], y, n)
-    e = m.o.energy
-    e.kinetic, e.potential = modal_motion.energies(y, m)
-    e.dissipated = modal_motion.rest(y, m)[modal_motion.LOSS]
-
-
-@kernel
-def _motion(shape, y, n):
-    """(x, y, vx, vy) where the modes have this shape."""
-    x, up, vx, vy = 0.0, 0.0, 0.0, 0.0
-    for k in range(n):
-        x += shape[k] * y[k]
-        up += shape[k] * y[n + k]
-        vx += shape[k] * y[2 * n + k]
-        vy += shape[k] * y[3 * n + k]
-    return x, up, vx, vy
-
-
-@kernel
-def _publish_station(y, m, j, ax, ay, alpha):
-    """What a bearing at station j needs to know; 'free' is what it does not cause itself."""
-    d, n, shape = m.d, m.d.modes, m.d.shape[j]
-    o, u, tail = m.o.station[j], m.u.station[j], modal_motion.rest(y, m)
-    fx, fy = u.fx + u.dfx * m.half, u.fy + u.dfy * m.half
-    o.x, o.y, o.vx, o.vy = _motion(shape, y, n)
-    o.omega = tail[modal_motion.SPIN]
-    o.alpha_free = alpha - (u.mz + u.dmz * m.half) / d.inertia
-    o.work = tail[modal_motion.WORK + j]
-    o.ax_free, o.ay_free = -d.inv_m[j] * fx, -d.inv_m[j] * fy
-    for i in range(int(d.slots[j])):
-        z = o.mode[i]
-        z.x, z.y, z.vx, z.vy, z.ax_free, z.ay_free = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(n):
-        o.ax_free += shape[k] * ax[k]
-        o.ay_free += shape[k] * ay[k]
-        if d.slot[j, k] >= 0.0:
-            z = o.mode[int(d.slot[j, k])]
-            z.x += shape[k] * y[k]
-            z.y += shape[k] * y[n + k]
-            z.vx += shape[k] * y[2 * n + k]
-            z.vy += shape[k] * y[3 * n + k]
-            z.ax_free += shape[k] * (ax[k] - shape[k] * fx)
-            z.ay_free += shape[k] * (ay[k] - shape[k] * fy)
 
 
 @kernel
 def start(words):
     """At rest in its magnetic bearings, if it has any, and turning."""
     m = words.view(MEMORY)[0]
-    p, d, y = m.p, m.d, m.y
-    px, py, vx, vy = modal_motion.modal(y, m)
+    p, d = m.p, m.d
+    px, py, vx, vy = modal(m.q, m)
     for k in range(d.modes):  # w gives every node the same displacement
         px[k], py[k] = d.weight[k] * p.x, d.sag[k] + d.weight[k] * p.y
         vx[k], vy[k] = d.weight[k] * p.vx, d.weight[k] * p.vy
-    modal_motion.rest(y, m)[modal_motion.SPIN] = p.speed
+    rest(m.q, m)[SPIN] = p.speed
     m.half = 0.0
-    m.o.mass, m.o.polar_inertia = d.mass, d.inertia
-    for i in range(d.nodes):
-        m.o.node[i].position = d.position[i]
-    for j in range(d.stations):
-        _state_constants(m, j)
-    publish(y, m)
-
-
-@kernel
-def _state_constants(m, j):
-    """What stays at station j; modes that share a place there become one of the same static flexibility."""
-    d, o = m.d, m.o.station[j]
-    o.static_fy = d.static_fy[j]
-    o.inv_m = d.inv_m[j]
-    o.inv_I = 1.0 / d.inertia
-    for i in range(int(d.slots[j])):
-        gain, flexibility = 0.0, 0.0
-        for k in range(d.modes):
-            if d.slot[j, k] == i:
-                gain += d.shape[j, k] ** 2
-                flexibility += d.shape[j, k] ** 2 / d.stiffness[k]
-        z = o.mode[i]
-        z.inv_m, z.k_over_m = gain, gain / flexibility
-        z.c_over_m = 2.0 * d.damping_ratio * np.sqrt(z.k_over_m)
+    publish_constants(m)
+    publish(m.q, m)
 
 
 @kernel
 def _inputs(m):
-    """Sum of all inputs, by which one that is not finite is noticed."""
+    """Sum of all inputs, in mixed units, by which one that is not finite is noticed."""
     total = 0.0
     for j in range(m.d.stations):
         u = m.u.station[j]
@@ -214,19 +132,19 @@ def _inputs(m):
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step under the given loads."""
+    """One macro step under the given loads; arguments as in `modelkit.model.Model`."""
     m = words.view(MEMORY)[0]
     if not math.isfinite(_inputs(m)):
         return BAD_INPUT
     m.time = time
     m.half = 0.5 * step
-    modal_motion.advance(m.y, m, step, m.p.micro_step, work)
-    modal_motion.take_mode_loads(m.y, m)
-    publish(m.y, m)
+    macro_step.advance(m.q, m, step, m.p.micro_step, work)
+    take_mode_loads(m.q, m)
+    publish(m.q, m)
     if m.p.stress.active:
-        stress_report.report(m.y, m, time + step)
+        stress_report.report(m.q, m, time + step)
     told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
-    return OK if modal_motion.finite(m.y, m) and math.isfinite(told) else BAD_LOAD
+    return OK if finite(m) and math.isfinite(told) else BAD_LOAD
 
 
 def derive(shaft: Shaft, p: Parameters) -> Derived:
@@ -247,10 +165,10 @@ def check(shaft: Shaft, p: Parameters) -> str | None:
 
 def weights(shaft: Shaft, p: Parameters) -> np.ndarray:
     """Error weights: 1 um and 1 cm/s, by a mode's share where it moves most."""
-    found = chosen_basis(shaft, p.modes, p.residual)
-    share = np.max(np.abs(found.shapes[::2]), axis=0)
-    behind = np.zeros(modal_motion.WORK + len(shaft.stations))
-    behind[[modal_motion.ANGLE, modal_motion.SPIN]] = 1e-1
+    shapes = chosen_basis(shaft, p.modes, p.residual).shapes
+    share = np.max(np.abs(shapes[::2]), axis=0)
+    behind = np.zeros(WORK + len(shaft.stations))
+    behind[[ANGLE, SPIN]] = 1e-1
     return np.concatenate([1e6 * share, 1e6 * share, 1e2 * share, 1e2 * share, behind])
 
 
@@ -273,25 +191,25 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
     turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
     loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz")]
     accelerations = (*basis, "gravity", *turning, *loads)
-    found = {
+    causes = {
         "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle"),
         "energy.potential": tuple(dict.fromkeys(("y", "gravity", *sag))),
     }
     for place in (*shaft.stations, *shaft.sensors):
-        found |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
-        found[f"{place.name}.y"] = ("y", *sag)
+        causes |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
+        causes[f"{place.name}.y"] = ("y", *sag)
     for s in shaft.stations:
-        found |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
-        found |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
+        causes |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
+        causes |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
         if s.name in shaft.levitated_at:
-            found[f"{s.name}.static_fy"] = ("gravity",)
+            causes[f"{s.name}.static_fy"] = ("gravity",)
         for k in range(1, MODES + 1):
             mode = f"{s.name}.mode[{k}]"
-            found[f"{mode}.y"] = sag
-            found |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
-            found |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
-            found[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
-    return found
+            causes[f"{mode}.y"] = sag
+            causes |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
+            causes |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
+            causes[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
+    return causes
 
 
 _GENERAL = Model(
@@ -307,7 +225,7 @@ _GENERAL = Model(
     weights=lambda p: np.zeros(0),
     derived=Derived,
     hidden=Hidden,
-    rhs=modal_motion.rhs,
+    rhs=rhs,
     publish=publish,
 )
 

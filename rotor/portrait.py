@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit.model import ModelError
-from rotor.campbell import whirl_frequencies
-from rotor.modal_data import seats
-from rotor.modes import RIGID, basis
-from rotor.shaft import Shaft
-from rotor.statics import Rest, at_rest
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.modal.campbell import whirl_frequencies
+from touchdown.rotor.modal.data import seats
+from touchdown.rotor.modal.modes import RIGID, basis
+from touchdown.rotor.statics import Rest, at_rest
 
 HERTZ = 0.5 / math.pi
 

@@ -18,13 +18,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit import body
-from modelkit.kernel import kernel
-from modelkit.model import Model, memory_layout
-from modelkit.ports import Energy, SeatLoad, SeatState
-from modelkit.variables import group, real
-from rotor.drag import drag
+from touchdown.modelkit import body
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.ports import Energy, SeatLoad, SeatState
+from touchdown.modelkit.variables import group, real
+from touchdown.rotor.drag import drag
 
+# the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
 SIZE = 9
 
@@ -70,92 +71,98 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 
 @kernel
-def rhs(t, y, dy, m):
-    """Newton and Euler under the loads mean + slope (t - t_mid)."""
-    p, a, b = m.p, m.u.A, m.u.amb
-    s = t - m.half
-    ax, ay, am = a.fx + a.dfx * s, a.fy + a.dfy * s, a.mz + a.dmz * s
-    bx, by, bm = b.fx + b.dfx * s, b.fy + b.dfy * s, b.mz + b.dmz * s
-    braking = drag(y[SPIN], p)
-    dvx, dvy, alpha = _accelerations(y, ax + bx, ay + by, am + bm - braking, p)
-    dy[X] = y[VX]
-    dy[Y] = y[VY]
-    dy[VX] = dvx
-    dy[VY] = dvy
-    dy[ANGLE] = y[SPIN]
-    dy[SPIN] = alpha
-    dy[WORK_A] = ax * y[VX] + ay * y[VY] + am * y[SPIN]
-    dy[WORK_AMB] = bx * y[VX] + by * y[VY] + bm * y[SPIN]
-    dy[LOSS] = braking * y[SPIN]
+def rhs(t, q, dq, m):
+    """Newton and Euler: dq (9,) of the state q (9,) under the loads mean + slope (t - t_mid); t in s."""
+    p, since_middle = m.p, t - m.half
+    ax, ay, am = _load_at(m.u.A, since_middle)
+    bx, by, bm = _load_at(m.u.amb, since_middle)
+    braking = drag(q[SPIN], p)
+    dvx, dvy, alpha = _accelerations(q, ax + bx, ay + by, am + bm - braking, p)
+    dq[X] = q[VX]
+    dq[Y] = q[VY]
+    dq[VX] = dvx
+    dq[VY] = dvy
+    dq[ANGLE] = q[SPIN]
+    dq[SPIN] = alpha
+    dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN]
+    dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN]
+    dq[LOSS] = braking * q[SPIN]
+
+
+@inlined
+def _load_at(load, since_middle):
+    """(N, N, N m) of a load, `since_middle` (s) after the middle of the macro step."""
+    return (
+        load.fx + load.dfx * since_middle,
+        load.fy + load.dfy * since_middle,
+        load.mz + load.dmz * since_middle,
+    )
 
 
 @kernel
-def _accelerations(y, fx, fy, moment, p):
-    """Of the shaft centre (m/s2) and the spin (rad/s2) under loads at the shaft centre and gravity.
+def _accelerations(q, fx, fy, moment, p):
+    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (9,), under gravity and loads.
 
-    The centre of mass stands off by e (c, s): I alpha = M + e (Fx s - Fy c), gravity drops out.
+    The loads act at the shaft centre: fx, fy (N), moment (N m). The centre of mass stands off by e (c, s):
+    I alpha = M + e (Fx s - Fy c), gravity drops out.
     """
     if p.eccentricity == 0.0:
         return fx / p.mass, fy / p.mass - p.gravity, moment / p.inertia
-    angle = y[ANGLE] + p.unbalance_angle
+    angle = q[ANGLE] + p.unbalance_angle
     ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
     alpha = (moment + fx * ey - fy * ex) / p.inertia
-    w2 = y[SPIN] * y[SPIN]
+    w2 = q[SPIN] * q[SPIN]
     return fx / p.mass + w2 * ex + alpha * ey, fy / p.mass + w2 * ey - alpha * ex - p.gravity, alpha
 
 
 @kernel
-def publish(y, m):
-    """Outputs at the end of the step: at each seat what it does not cause itself is 'free'."""
+def publish(q, m):
+    """Outputs m.o from the state q (9,) at the end of the step: what a seat does not cause is 'free'."""
     p = m.p
-    _publish_seat(y, p, m.o.A, m.u.amb, m.half)
-    _publish_seat(y, p, m.o.amb, m.u.A, m.half)
-    m.o.A.work = y[WORK_A]
-    m.o.amb.work = y[WORK_AMB]
-    angle = y[ANGLE] + p.unbalance_angle
+    _publish_seat(q, p, m.o.A, m.u.amb, m.half)
+    _publish_seat(q, p, m.o.amb, m.u.A, m.half)
+    m.o.A.work = q[WORK_A]
+    m.o.amb.work = q[WORK_AMB]
+    angle = q[ANGLE] + p.unbalance_angle
     ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
-    vx, vy = y[VX] - y[SPIN] * ey, y[VY] + y[SPIN] * ex  # of the centre of mass
+    vx, vy = q[VX] - q[SPIN] * ey, q[VY] + q[SPIN] * ex  # of the centre of mass
     e = m.o.energy
-    e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * y[SPIN] ** 2
-    e.potential = p.mass * p.gravity * (y[Y] + ey)
-    e.dissipated = y[LOSS]
+    e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * q[SPIN] ** 2
+    e.potential = p.mass * p.gravity * (q[Y] + ey)
+    e.dissipated = q[LOSS]
 
 
 @kernel
-def _publish_seat(y, p, seat, other, half):
-    """`other` is the load of the other seat, taken at its end value."""
-    seat.x, seat.y, seat.vx, seat.vy = y[X], y[Y], y[VX], y[VY]
-    seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(
-        y,
-        other.fx + other.dfx * half,
-        other.fy + other.dfy * half,
-        other.mz + other.dmz * half - drag(y[SPIN], p),
-        p,
-    )
+def _publish_seat(q, p, seat, other, half):
+    """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle."""
+    seat.x, seat.y, seat.vx, seat.vy = q[X], q[Y], q[VX], q[VY]
+    fx, fy, moment = _load_at(other, half)
+    seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(q, fx, fy, moment - drag(q[SPIN], p), p)
     seat.inv_m = 1.0 / p.mass
-    seat.omega = y[SPIN]
+    seat.omega = q[SPIN]
     seat.inv_I = 1.0 / p.inertia
 
 
 @kernel
 def start(words):
-    """State and outputs from the parameters."""
+    """State and outputs from the parameters; words: the memory (`modelkit.model.Model`)."""
     m = words.view(MEMORY)[0]
-    p, y = m.p, m.y
-    y[X], y[Y], y[VX], y[VY] = p.x, p.y, p.vx, p.vy
-    y[SPIN] = p.speed
+    p, q = m.p, m.q
+    q[X], q[Y], q[VX], q[VY] = p.x, p.y, p.vx, p.vy
+    q[SPIN] = p.speed
     m.half = 0.0
-    publish(y, m)
+    publish(q, m)
 
 
 @kernel
 def _sum(load):
+    """Sum of a load's values, in mixed units, by which one that is not finite is noticed."""
     return load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz
 
 
 @kernel
 def advance(words, work, time, step):
-    """One macro step under the given loads."""
+    """One macro step under the given loads; arguments as in `modelkit.model.Model`."""
     m = words.view(MEMORY)[0]
     return body.advance(rhs, publish, m, work, time, step, _sum(m.u.A) + _sum(m.u.amb))
 
@@ -170,30 +177,20 @@ def weights(p: Parameters) -> np.ndarray:
 
 
 def _starts_from() -> dict[str, tuple[str, ...]]:
-    found: dict[str, tuple[str, ...]] = {
+    """What the first outputs depend on: at a seat, also on the load at the other one."""
+    causes: dict[str, tuple[str, ...]] = {
         "energy.kinetic": ("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
         "energy.potential": ("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
     }
     for seat, other in (("A", "amb"), ("amb", "A")):
-        loads = (f"{other}.fx", f"{other}.fy")
+        causes |= {f"{seat}.{name}": (name,) for name in ("x", "y", "vx", "vy")}
+        causes |= {f"{seat}.inv_m": ("mass",), f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
-        unbalance = ("eccentricity", "unbalance_angle", *turning, *loads)
-        found |= {
-            f"{seat}.{name}": (name if name in ("x", "y", "vx", "vy") else source,)
-            for name, source in (
-                ("x", ""),
-                ("y", ""),
-                ("vx", ""),
-                ("vy", ""),
-                ("inv_m", "mass"),
-                ("omega", "speed"),
-                ("inv_I", "inertia"),
-            )
-        }
-        found[f"{seat}.alpha_free"] = unbalance
-        found[f"{seat}.ax_free"] = ("mass", *unbalance)
-        found[f"{seat}.ay_free"] = ("mass", "gravity", *unbalance)
-    return found
+        spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
+        causes[f"{seat}.alpha_free"] = spinning
+        causes[f"{seat}.ax_free"] = ("mass", *spinning)
+        causes[f"{seat}.ay_free"] = ("mass", "gravity", *spinning)
+    return causes
 
 
 MODEL = Model(

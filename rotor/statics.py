@@ -8,16 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modelkit.model import ModelError
-from rotor import beam
-from rotor.assembly import assemble, check_nodes, solve, translation
-from rotor.shaft import Shaft
-from rotor.stresses import bending_per_moment, end_nodes, shear_per_force
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams import beam
+from touchdown.rotor.beams.assembly import assemble, check_nodes, solve, translation
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.modal.stresses import bending_per_moment, end_nodes, shear_per_force
 
 
 @dataclass(frozen=True)
 class Rest:
-    """Deflection and stresses; signs as in `rotor.stresses`, so sagging is positive bending."""
+    """Deflection and stresses; signs as in `rotor.modal.stresses`, so sagging is positive bending."""
 
     deflection: np.ndarray  # (N,), m, upwards
     slope: np.ndarray  # (N,)
@@ -31,7 +31,8 @@ class Rest:
 def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float = 9.81) -> Rest:
     """The rotor on `supports`: (node counted from 1, stiffness in N/m; math.inf for a rigid one).
 
-    Stresses follow from the equilibrium of each element, exact under the weight along it.
+    gravity in m/s2. Stresses follow from the equilibrium of each element, exact under the weight along it.
+    Raises ModelError where there are less than two supports, or one that is not there or not held.
     """
     nodes = [node for node, _ in supports]
     if len(set(nodes)) < 2 or len(set(nodes)) != len(nodes):

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 from fmpy import extract
+from places import ROOT, SUPPORT
+from warm_up import warm_up
 
-from fmus.build import cached
-from fmus.recipes import names, recipe
-
-ROOT = Path(__file__).resolve().parents[1]
+from touchdown.fmus.build import cached
+from touchdown.fmus.recipes import names, recipe
 
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
 import importlib.abc, sys
-PROJECT = ("modelkit", "rotor", "bearings", "fmus", "master")
+PROJECT = ("touchdown", "modelkit", "rotor", "bearings", "fmus", "master")
 class Wall(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
         if name.partition(".")[0] in PROJECT:
@@ -37,9 +37,17 @@ def importable():
     return found
 def loaded_from_project():
     files = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
-    packages = [{root!r} + "/" + name + "/" for name in PROJECT]
+    packages = [{root!r} + "/" + name + "/" for name in ("src", *PROJECT)]
     return [f for f in files if any(f.startswith(package) for package in packages)]
 """
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """A session of all tests begins with every model compiled; one of chosen tests compiles as it goes."""
+    config = session.config
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
+    if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
+        warm_up()
 
 
 @pytest.fixture(scope="session")
@@ -59,7 +67,7 @@ def unpacked(built: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory
 def alone(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run a script in a process of its own that cannot import the project; returns what it left."""
     folder = tmp_path_factory.mktemp("alone")
-    wall = WALL.format(tests=str(ROOT / "tests"), root=str(ROOT))
+    wall = WALL.format(tests=str(SUPPORT), root=str(ROOT))
 
     def run(script: str, *arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(

@@ -1,66 +1,151 @@
-"""Layers: physics knows nothing of FMI, the master nothing of physics."""
+"""The street: each package and each room imports only what lies below it, and none is crowded."""
 
 from __future__ import annotations
 
 import ast
+import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parents[1]
-PROJECT = {"modelkit", "rotor", "bearings", "fmus", "master"}
 SCIENCE = {"numpy", "scipy", "numba"}
+OWN = "touchdown"
 
-ALLOWED = {  # package: what it may import beside the standard library
-    "modelkit": {"modelkit"} | SCIENCE,
-    "rotor": {"modelkit", "rotor"} | SCIENCE,
-    "bearings": {"modelkit", "bearings"} | SCIENCE,
-    "fmus": {"modelkit", "rotor", "bearings", "fmus", "pythonfmu"} | SCIENCE,
-    "master": {"modelkit", "fmus", "master", "fmpy", "h5py", "matplotlib", "tqdm", "numpy", "scipy"}
-    | {"fmu_manipulation_toolbox"},
+LAYERS = {  # package: what it may import beside itself and the standard library
+    "modelkit": SCIENCE,
+    "rotor": {"touchdown.modelkit"} | SCIENCE,
+    "bearings": {"touchdown.modelkit"} | SCIENCE,
+    "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu"} | SCIENCE,
+    "master": {
+        "touchdown.modelkit",
+        "touchdown.fmus",
+        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
+        *("numpy", "scipy", "pandas", "xarray"),
+    },
 }
+STREETS = {  # folder: its rooms and single files, each importing only from those after it
+    "master": (
+        *("cli", "verbs", "api", "studies", "interop", "results"),
+        *("coupling", "components", "scene", "common"),
+    ),
+    "bearings": (
+        *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
+        *("amb", "housing", "catalogue", "rolling", "contact", "seat"),
+    ),
+    "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
+    "modelkit": (
+        *("instance", "body", "model", "ports", "integrators", "oscillator", "angles", "kernel"),
+        *("variables", "units", "status"),
+    ),
+    "fmus": (
+        *("build", "presentation", "recipes", "scripts", "slave", "description", "sources", "link"),
+        *("host", "resident", "version"),
+    ),
+}
+REPORTED = {
+    *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
+    "touchdown.master.api.rotor",
+}
+"""What describes rotor files may read them; nothing of it is co-simulation."""
+STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
+MOST = 12  # entries of a folder
 
 
-def imports(path: Path) -> set[str]:
-    """Top-level packages a module imports, anywhere in it."""
-    found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {name.name.partition(".")[0] for name in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: relative import; sources are rewritten by their full names"
-            found.add((node.module or "").partition(".")[0])
+def modules(package: str) -> dict[str, Path]:
+    """The modules of a package by their full names."""
+    found: dict[str, Path] = {}
+    for path in sorted((ROOT / package).rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        found[".".join((OWN, *parts)).removesuffix(".__init__")] = path
+    assert found
     return found
 
 
-def third_party(names: set[str]) -> set[str]:
-    """Names that are not the standard library's."""
-    import sys
-
-    return {name for name in names if name not in sys.stdlib_module_names}
+MODULES = {name: path for package in LAYERS for name, path in modules(package).items()}
 
 
-@pytest.mark.parametrize("package", sorted(PROJECT))
-def test_a_layer_imports_only_what_it_may(package: str) -> None:
-    files = sorted((ROOT / package).rglob("*.py"))
-    assert files
-    for path in files:
-        extra = third_party(imports(path)) - ALLOWED[package]
+def imports(path: Path) -> Iterator[str]:
+    """Full names of what a module imports, anywhere in it; of the project's own, the modules."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import; sources are rewritten by their full names"
+            module = node.module or ""
+            for name in node.names:
+                whole = f"{module}.{name.name}"
+                yield whole if whole in MODULES else module
+
+
+def within(name: str, allowed: set[str]) -> bool:
+    """Whether a module is one of those allowed, or inside one."""
+    return any(f"{name}.".startswith(f"{one}.") for one in allowed)
+
+
+@pytest.mark.parametrize("package", LAYERS)
+def test_a_package_imports_only_what_it_may(package: str) -> None:
+    allowed = LAYERS[package] | {f"{OWN}.{package}"}
+    for module, path in modules(package).items():
+        here = allowed | ({"touchdown.rotor"} if within(module, REPORTED) else set())
+        extra = {
+            name
+            for name in imports(path)
+            if name.partition(".")[0] not in sys.stdlib_module_names and not within(name, here)
+        }
         assert not extra, f"{path.relative_to(ROOT)} imports {sorted(extra)}"
 
 
+@pytest.mark.parametrize("street", STREETS)
+def test_no_import_leads_up_the_street(street: str) -> None:
+    rooms = STREETS[street]
+    for name, path in modules(street).items():
+        if name.count(".") == 1:  # the package itself
+            continue
+        mine = name.split(".")[2]
+        assert mine in rooms, f"{name} has no place in the street"
+        above = {f"{OWN}.{street}.{room}" for room in rooms[: rooms.index(mine)]}
+        upward = {other for other in imports(path) if within(other, above)}
+        assert not upward, f"{name} imports {sorted(upward)}, which lies above it"
+
+
+def test_no_two_modules_import_each_other() -> None:
+    """Nor in a longer circle, functions' own imports counted too. Raises CycleError where they do."""
+    graph = {
+        name: {other for other in imports(path) if other in MODULES and other != name}
+        for name, path in MODULES.items()
+    }
+    assert len(list(TopologicalSorter(graph).static_order())) == len(MODULES)
+
+
+def test_no_folder_is_crowded() -> None:
+    tops = [ROOT / top for top in (*LAYERS, "tests", "src")]
+    for folder in (*tops, *(f for top in tops for f in top.rglob("*") if f.is_dir())):
+        if "__pycache__" in folder.parts or folder.is_symlink():
+            continue
+        entries = [f.name for f in folder.iterdir() if f.name != "__pycache__"]
+        assert len(entries) <= MOST, f"{folder.relative_to(ROOT)} has {len(entries)} entries"
+
+
 def test_only_one_module_speaks_fmi() -> None:
-    speakers = {p.name for p in (ROOT / "master").rglob("*.py") if "fmpy" in imports(p)}
-    assert speakers == {"fmi.py", "check.py", "trial.py"}  # the last runs in a process of its own
+    speakers = {
+        name.removeprefix("touchdown.master.")
+        for name, path in modules("master").items()
+        if any(within(other, {"fmpy"}) for other in imports(path))
+    }
+    # the last runs in a process of its own
+    assert speakers == {"components.fmu", "interop.check", "interop.trial"}
 
 
 def test_only_the_twin_steps_models_in_the_master() -> None:
     users = set()
-    for path in (ROOT / "master").rglob("*.py"):
+    for name, path in modules("master").items():
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and node.module == "modelkit.model":
+            if isinstance(node, ast.ImportFrom) and node.module in STEPPED:
                 # errors of a model's may be caught anywhere
-                users |= {path.name for name in node.names if name.name != "ModelError"}
+                users |= {name for one in node.names if one.name != "ModelError"}
             elif isinstance(node, ast.Import):
-                users |= {path.name for name in node.names if name.name == "modelkit.model"}
-    assert users == {"twin.py"}
+                users |= {name for one in node.names if one.name in STEPPED}
+    assert users == {"touchdown.master.components.twin"}

@@ -1,7 +1,7 @@
 """FMU: active magnetic bearing with shutdown."""
 
-from bearings.amb import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.amb import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class MagneticBearing(ModelSlave):

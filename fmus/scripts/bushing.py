@@ -1,7 +1,7 @@
 """FMU: plain touchdown bushing."""
 
-from bearings.bushing import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.bushing import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class Bushing(ModelSlave):

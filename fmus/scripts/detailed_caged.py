@@ -1,7 +1,7 @@
 """FMU: detailed touchdown bearing with a cage."""
 
-from bearings.detailed_caged import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.detailed_caged import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class DetailedCaged(ModelSlave):

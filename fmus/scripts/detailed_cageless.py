@@ -1,7 +1,7 @@
 """FMU: detailed touchdown bearing without a cage."""
 
-from bearings.detailed_cageless import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.detailed_cageless import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class DetailedCageless(ModelSlave):

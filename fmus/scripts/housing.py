@@ -1,7 +1,7 @@
 """FMU: housing on springs and dampers."""
 
-from bearings.housing import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.housing import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class Housing(ModelSlave):

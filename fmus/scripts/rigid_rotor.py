@@ -1,7 +1,7 @@
 """FMU: rigid rotor."""
 
-from fmus.slave import ModelSlave
-from rotor.rigid import MODEL
+from touchdown.fmus.slave import ModelSlave
+from touchdown.rotor.rigid import MODEL
 
 
 class RigidRotor(ModelSlave):

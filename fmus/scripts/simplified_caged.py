@@ -1,7 +1,7 @@
 """FMU: simplified touchdown bearing with a cage."""
 
-from bearings.simplified_caged import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.simplified_caged import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class SimplifiedCaged(ModelSlave):

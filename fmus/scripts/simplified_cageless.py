@@ -1,7 +1,7 @@
 """FMU: simplified touchdown bearing without a cage."""
 
-from bearings.simplified_cageless import MODEL
-from fmus.slave import ModelSlave
+from touchdown.bearings.simplified_cageless import MODEL
+from touchdown.fmus.slave import ModelSlave
 
 
 class SimplifiedCageless(ModelSlave):

@@ -1,39 +1,35 @@
-"""The verbs of the command `touchdown`, one module each; `ALL` in the order of its help."""
+"""The verbs of the command `touchdown`, one module each; `ALL` is in the order of its help."""
 
 from __future__ import annotations
 
-from master.verbs import (
+from touchdown.master.verbs import run, scenes
+from touchdown.master.verbs.fmus import build, check, container, doctor, ssp
+from touchdown.master.verbs.studies import (
     advise,
-    build,
-    check,
     compare,
     compare_bearings,
     compare_modes,
     compare_rotors,
-    container,
-    doctor,
     rotor,
-    run,
-    scenes,
-    ssp,
     stability,
     sweep,
 )
+from touchdown.master.verbs.verb import Verb
 
-ALL = (
-    scenes,
-    run,
-    advise,
-    sweep,
-    rotor,
-    compare,
-    compare_bearings,
-    compare_rotors,
-    compare_modes,
-    stability,
-    build,
-    ssp,
-    container,
-    check,
-    doctor,
+ALL: tuple[Verb, ...] = (
+    scenes.VERB,
+    run.VERB,
+    advise.VERB,
+    sweep.VERB,
+    rotor.VERB,
+    compare.VERB,
+    compare_bearings.VERB,
+    compare_rotors.VERB,
+    compare_modes.VERB,
+    stability.VERB,
+    build.VERB,
+    ssp.VERB,
+    container.VERB,
+    check.VERB,
+    doctor.VERB,
 )

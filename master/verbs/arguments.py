@@ -1,4 +1,4 @@
-"""What several verbs read from their options."""
+"""What several verbs take: how it is declared, and how it is read."""
 
 from __future__ import annotations
 
@@ -6,25 +6,31 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from master.errors import TouchdownError
-from master.schemes import DEFAULT, SCHEMES
-from master.units import to_si
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import to_si
+from touchdown.master.scene.schemes import DEFAULT, SCHEMES
+from touchdown.master.verbs import completion
+from touchdown.master.verbs.completion import complete
 
 if TYPE_CHECKING:
-    from master.scene import Scene
+    from touchdown.master.scene.scene import Scene
+
+# -- declared ----------------------------------------------------------------------------------------
 
 
 def add_scene(verb: argparse.ArgumentParser) -> None:
     """Add what names a scene and changes it; `chosen_scene` reads it."""
-    verb.add_argument("scene", help="name of a scene, or path of a .toml or .ssp")
-    verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})")
-    verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
-    verb.add_argument(
-        "--set", action="append", default=[], metavar="NAME=VALUE", help="set run.KEY or COMPONENT.VARIABLE"
+    add_scene_name(verb, "name of a scene, or path of a .toml or .ssp")
+    complete(
+        verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})"),
+        completion.schemes,
     )
-    verb.add_argument(
+    verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
+    add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
+    swap = verb.add_argument(
         "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
     )
+    complete(swap, completion.swaps)
     verb.add_argument(
         "--names",
         action="append",
@@ -34,27 +40,63 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def add_scene_name(
+    verb: argparse.ArgumentParser,
+    meaning: str = "name of a scene, or path of a .toml",
+    nargs: str | None = None,
+) -> None:
+    """Add the scene that the verb is about."""
+    complete(verb.add_argument("scene", nargs=nargs, help=meaning), completion.scenes)
+
+
+def add_settings(verb: argparse.ArgumentParser, meaning: str = "set in all runs") -> None:
+    """Add --set; `settings` reads it."""
+    action = verb.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help=meaning)
+    complete(action, completion.settings)
+
+
+def add_output(verb: argparse.ArgumentParser, default: str | Path, what: str = "folder") -> None:
+    """Add -o. A `default` that is text only says which it is, since it hangs on other options."""
+    known = default if isinstance(default, Path) else None
+    verb.add_argument("-o", "--output", type=Path, default=known, help=f"{what} (default: {default})")
+
+
+def add_jobs(verb: argparse.ArgumentParser) -> None:
+    """Add --jobs; `count` reads it."""
+    verb.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
+
+
+def add_quiet(verb: argparse.ArgumentParser) -> None:
+    """Add --quiet."""
+    verb.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+# -- read --------------------------------------------------------------------------------------------
+
+
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
-    from master.scene import load
+    from touchdown.master.interop.scenes import find_scene
+    from touchdown.master.scene.file import read_names
 
-    chosen = load(options.scene)
+    chosen = find_scene(options.scene)
     for text in options.swap:
-        chosen = chosen.with_swap(*assignment(text, "--swap"))
+        name, fmu = assignment(text, "--swap")
+        chosen = chosen.swap(**{name: fmu})
     for text in options.names:
         name, file = assignment(text, "--names")
-        chosen = chosen.with_names(name, Path(file))
-    chosen = chosen.with_settings(settings(options))
+        chosen = chosen.with_names(name, read_names(Path(file)))
+    chosen = chosen.set(settings(options))
     if options.scheme is not None:
-        chosen = chosen.with_setting("run.scheme", options.scheme)
+        chosen = chosen.set({"run.scheme": options.scheme})
     if options.macro_step == "auto":
-        from master.advisor import advise
+        from touchdown.master.coupling.advisor import advise
 
-        advice = advise(chosen)[chosen.run.scheme]
+        advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
-        chosen = chosen.with_setting("run.macro_step", advice.macro_step)
+        chosen = chosen.set({"run.macro_step": advice.macro_step})
     elif options.macro_step is not None:
-        chosen = chosen.with_setting("run.macro_step", options.macro_step)
+        chosen = chosen.set({"run.macro_step": options.macro_step})
     return chosen
 
 
@@ -73,8 +115,26 @@ def assignment(text: str, option: str) -> tuple[str, str]:
 
 def count(text: str, option: str) -> int:
     """A whole number above 0, given with `option`. Raises TouchdownError."""
-
     number = to_si(text, "1", option)
     if number < 1.0 or number != int(number):
         raise TouchdownError(f"{option} {text} must be a whole number above 0")
     return int(number)
+
+
+def above_zero(text: str | None, unit: str, option: str) -> float | None:
+    """A number above 0 in the SI unit; None where the option is not given. Raises TouchdownError."""
+    if text is None:
+        return None
+    value = to_si(text, unit, option)
+    if not 0.0 < value < float("inf"):
+        raise TouchdownError(f"{option} {text} must be above 0")
+    return value
+
+
+def results_folder(options: argparse.Namespace, default: str | None = None) -> Path:
+    """The folder that -o names, or runs/DEFAULT; it is made. Raises TouchdownError where it cannot be."""
+    from touchdown.master.results.run import make_writable
+
+    folder: Path = options.output or Path("runs") / str(default)
+    make_writable(folder)
+    return folder

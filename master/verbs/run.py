@@ -3,30 +3,35 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
-from typing import Any
 
-from master.errors import STOPPED
-from master.verbs.arguments import add_scene, chosen_scene
+from touchdown.master.common.errors import STOPPED
+from touchdown.master.verbs.arguments import add_output, add_quiet, add_scene, chosen_scene
+from touchdown.master.verbs.screen import BROKEN_OFF, complain, warn
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown run disk-caged-simplified",
+    "touchdown run disk-caged-simplified --swap bearing=detailed_caged -o runs/detailed",
+    'touchdown run rotor1-9000 --macro-step "10 us" --set "rotor.speed=12000 rpm"',
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("run", help="run a scene")
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
     add_scene(verb)
-    verb.add_argument("-o", "--output", type=Path, help="folder for the results (default: runs/SCENE)")
+    add_output(verb, "runs/SCENE", "folder for the results")
     verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="draw nothing")
-    verb.add_argument("--quiet", action="store_true", help="no progress bar")
-    verb.set_defaults(run=execute)
+    add_quiet(verb)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from master.run import run_scene
-    from master.summary import table
+    from touchdown.master.common.ended import Ended
+    from touchdown.master.results.run import run_scene
+    from touchdown.master.results.summary import table
 
     chosen = chosen_scene(options)
     result = run_scene(
@@ -39,12 +44,11 @@ def execute(options: argparse.Namespace) -> int:
     )
     print(table(result.summary))
     print(f"results in {result.folder}")
-    for warning in result.warnings:
-        print(f"touchdown: warning: {warning}", file=sys.stderr)
-    if result.stopped_because:
-        print(
-            f"touchdown: stopped: {result.stopped_because}; what was recorded is in {result.folder}",
-            file=sys.stderr,
-        )
-        return 130 if result.stopped_because == "interrupted" else STOPPED
+    warn(result.warnings)
+    if result.ended is not Ended.COMPLETED:
+        complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
+        return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
     return 0
+
+
+VERB = Verb("run", "run a scene", EXAMPLES, declare, execute)

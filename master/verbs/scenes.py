@@ -3,38 +3,50 @@
 from __future__ import annotations
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING
 
-from master.errors import TouchdownError, one_of
-from master.scene import Scene
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.verbs import completion
+from touchdown.master.verbs.arguments import add_scene_name
+from touchdown.master.verbs.completion import complete
+from touchdown.master.verbs.verb import Verb
+
+if TYPE_CHECKING:
+    from touchdown.master.scene.scene import Scene
+
+EXAMPLES = (
+    "touchdown scenes",
+    "touchdown scenes rotor1-9000",
+    "touchdown scenes disk-caged-simplified --variables bearing",
+)
 
 
-def add_to(verbs: Any) -> None:
-    """Add the verb to the command."""
-    verb = verbs.add_parser("scenes", help="list the scenes, or show one")
-    verb.add_argument("scene", nargs="?", help="show this scene's components and settings")
-    verb.add_argument(
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb, "show this scene's components and settings", nargs="?")
+    named = verb.add_argument(
         "--variables", metavar="COMPONENT", help="show what can be set in this component of the scene"
     )
-    verb.set_defaults(run=execute)
+    complete(named, completion.components)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from master import scene as scenes
+    from touchdown.master.interop.scenes import find_scene
+    from touchdown.master.scene.file import shipped
 
     if options.scene is None:
-        names = scenes.names()
+        names = shipped()
         width = max(len(name) for name in names)
         for name in names:
-            print(f"  {name:<{width}}  {scenes.load(name).title}")
+            print(f"  {name:<{width}}  {find_scene(name).title}")
         return 0
-    chosen = scenes.load(options.scene)
+    chosen = find_scene(options.scene)
     print(chosen.title)
     print(chosen.about.strip())
     print(
         f"\nrun: {chosen.run.duration:g} s from {chosen.zero or 'the start'}, "
-        f"macro step {chosen.run.macro_step:g} s, scheme {chosen.run.scheme}"
+        f"macro step {chosen.run.macro_step:g} s, scheme {chosen.run.scheme.name}"
     )
     if options.variables is not None:
         _show_variables(chosen, options.variables)
@@ -50,7 +62,7 @@ def execute(options: argparse.Namespace) -> int:
 
 def _show_variables(scene: Scene, name: str) -> None:
     """All that `--set NAME.VARIABLE=VALUE` takes: value in this scene, unit, bounds, meaning."""
-    from master.simulation import opened
+    from touchdown.master.coupling.simulation import opened
 
     with opened(scene, in_process=True) as system:
         component = system.components.get(name)
@@ -64,3 +76,6 @@ def _show_variables(scene: Scene, name: str) -> None:
             ends = (("from", v.minimum), ("to", v.maximum))
             bounds = " ".join(f"{word} {bound:g}" for word, bound in ends if bound is not None)
             print(f"  {v.name:<34}{value:>12.6g} {v.unit or '1':<10}{bounds:<14} {v.description}")
+
+
+VERB = Verb("scenes", "list the scenes, or show one", EXAMPLES, declare, execute)

@@ -1,0 +1,177 @@
+"""Friction coefficients as odd functions of the sliding speed.
+
+Three laws, chosen by `FrictionLaw.kind`:
+
+COULOMB   (2.13), regularised: dynamic tanh(slope v)
+STRIBECK  static/dynamic blend: (dynamic + (static - dynamic) exp(-(v/v_s)^2)) tanh(slope v)
+MAKKAR    Makkar et al. (the source's Fig 22):
+          g1 (tanh g2 v - tanh g3 v) + g4 tanh g5 v + g6 v
+
+Makkar's plateau g4 is `dynamic` and its slope g5 is `slope`. Its g1 follows from `static`, the peak,
+unless it is given: `makkar_amplitude` finds the g1 whose peak is the static coefficient.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import NamedTuple, cast
+
+from scipy.optimize import brentq, minimize_scalar
+
+from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.variables import integer, real
+
+COULOMB = 0
+STRIBECK = 1
+MAKKAR = 2
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """Constants of a friction law; speeds in m/s."""
+
+    kind: int = integer(
+        MAKKAR, "friction law: 0 Coulomb, 1 static-dynamic Stribeck, 2 Makkar", minimum=0, maximum=2
+    )
+    static: float = real(0.15, "1", "static coefficient, the peak of the curve", minimum=0.0)
+    dynamic: float = real(0.10, "1", "dynamic coefficient, the plateau (g4)", minimum=0.0)
+    slope: float = real(100.0, "s/m", "steepness of the curve through zero speed (g5)", above=0.0)
+    stribeck_speed: float = real(0.05, "m/s", "speed at which static friction has faded", above=0.0)
+    g1: float = real(0.0, "1", "Makkar's g1; 0 takes it from the static coefficient", minimum=0.0)
+    g2: float = real(100.0, "s/m", "Makkar's g2", above=0.0)
+    g3: float = real(10.0, "s/m", "Makkar's g3", above=0.0)
+    g6: float = real(1e-4, "s/m", "Makkar's g6, viscous", minimum=0.0)
+
+
+class Curve(NamedTuple):
+    """Any of the laws as plain numbers, for loops that are to become vector code.
+
+    g1 (tanh g2 v - tanh g3 v) + (dynamic + extra exp(-(v/v_s)^2)) tanh slope v + g6 v
+    """
+
+    g1: float
+    g2: float
+    g3: float
+    dynamic: float
+    extra: float
+    faded: float  # 1/v_s^2
+    slope: float
+    g6: float
+
+
+@kernel
+def curve(law):
+    """The `Curve` (1, s/m) of a `FrictionLaw` record."""
+    g1 = law.g1 if law.kind == MAKKAR else 0.0
+    g6 = law.g6 if law.kind == MAKKAR else 0.0
+    extra = law.static - law.dynamic if law.kind == STRIBECK else 0.0
+    faded = 1.0 / law.stribeck_speed**2
+    return Curve(g1, law.g2, law.g3, law.dynamic, extra, faded, law.slope, g6)
+
+
+@woven
+def saturation(x):
+    """1 - exp(-x) for a number x >= 0 to rounding, from sums and products alone.
+
+    A series at x/1024, then 1 - e^(-2a) = (1 - e^(-a)) (1 + e^(-a)) ten times, written out: unlike a call
+    of the mathematical library, or a loop, it becomes vector code. It is 1 to rounding beyond x = 40.
+    """
+    z = min(x, 40.0) * (1.0 / 1024.0)
+    u = z * (1.0 - z * (1 / 2 - z * (1 / 6 - z * (1 / 24 - z * (1 / 120 - z * (1 / 720))))))
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    u = u * (2.0 - u)
+    return u * (2.0 - u)
+
+
+@woven
+def follow(speed, law):
+    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
+
+    tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|). What a law does not have is not computed.
+    """
+    v = abs(speed)
+    last = saturation(2.0 * law.slope * v)
+    plateau = last / (2.0 - last)
+    level = law.dynamic
+    if law.extra != 0.0:
+        level += law.extra * (1.0 - saturation(law.faded * v * v))
+    value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
+    if law.g1 != 0.0:
+        flat = saturation(2.0 * law.g3 * v)
+        steep = last
+        if law.g2 != law.slope:
+            steep = saturation(2.0 * law.g2 * v)
+        both = 1.0 / ((2.0 - steep) * (2.0 - flat))
+        rise, fall = steep * (2.0 - flat) * both, flat * (2.0 - steep) * both
+        value += law.g1 * (rise - fall)
+        slope += law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
+    value += law.g6 * v
+    return value if speed >= 0.0 else -value, max(slope + law.g6, 0.0)
+
+
+@kernel
+def coefficient_and_slope(speed, law):
+    """Friction coefficient at sliding speed `speed` (m/s), with its sign, and its derivative (s/m).
+
+    law: a record of `FrictionLaw`. The derivative is zero where the curve falls: it is what an implicit
+    step needs.
+    """
+    return follow(speed, curve(law))
+
+
+@kernel
+def coefficient(speed, law):
+    """Friction coefficient at sliding speed `speed` (m/s), with its sign."""
+    return coefficient_and_slope(speed, law)[0]
+
+
+@kernel
+def slope(speed, law):
+    """Derivative of the coefficient (s/m), zero where it falls."""
+    return coefficient_and_slope(speed, law)[1]
+
+
+@cache
+def makkar_amplitude(static: float, dynamic: float, g2: float, g3: float, slope: float, g6: float) -> float:
+    """The g1 with which Makkar's curve peaks at `static`; 0 where the curve already reaches it."""
+
+    def peak(g1: float) -> float:
+        def negative(v: float) -> float:
+            rise = g1 * (math.tanh(g2 * v) - math.tanh(g3 * v))
+            return -(rise + dynamic * math.tanh(slope * v) + g6 * v)
+
+        return -minimize_scalar(
+            negative, bounds=(0.0, 3.0 / g3), method="bounded", options={"xatol": 1e-12}
+        ).fun
+
+    if static <= peak(0.0):
+        return 0.0
+    root = brentq(lambda g1: peak(g1) - static, 0.0, 100.0 * static, xtol=1e-14)
+    return float(cast(float, root))
+
+
+def problem(law: FrictionLaw, name: str) -> str | None:
+    """Why the law of parameter group `name` has no curve, or None."""
+    if law.kind == MAKKAR and law.g2 <= law.g3:
+        return (
+            f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
+            "the difference of their curves is what rises to the static coefficient"
+        )
+    return None
+
+
+def prepared(law: FrictionLaw) -> FrictionLaw:
+    """`law` with g1 filled in where it was left to follow from the static coefficient."""
+    if law.kind != MAKKAR or law.g1 > 0.0:
+        return law
+    g1 = makkar_amplitude(law.static, law.dynamic, law.g2, law.g3, law.slope, law.g6)
+    return replace(law, g1=g1)

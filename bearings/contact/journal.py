@@ -1,0 +1,170 @@
+"""The journal inside a bore: where they touch, and what they do to each other there.
+
+The bore is a circle around the ring's centre, wider than the journal by `clearance` on radius. The
+point of contact is taken on the journal's surface for both bodies, so that forces and moments close
+exactly: what the journal loses in linear and angular momentum the ring gains.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.variables import real
+
+
+class Touch(NamedTuple):
+    """Contact of journal and ring: force on the journal, moments on both, and what to report."""
+
+    fx: float  # N
+    fy: float
+    journal_moment: float  # N m
+    ring_moment: float
+    normal: float  # N
+    indentation: float  # m; negative: the gap
+    rate: float  # of the indentation, m/s
+    loss: float  # W, heat
+
+
+@kernel
+def touch(journal, ring, journal_radius, clearance, law, friction, grip=0.0):
+    """Contact of a journal of `journal_radius` (m) with the bore of `ring`, wider by `clearance` (m).
+
+    journal, ring: Motion (m, m/s, rad/s); law, friction: records; grip (s/kg) as in `pair.press`. Returns a
+    `Touch` (N, N m, m, W); the force on the ring is the opposite one.
+    """
+    ex = journal.x - ring.x
+    ey = journal.y - ring.y
+    distance = math.sqrt(ex * ex + ey * ey)
+    indentation = distance - clearance
+    if distance == 0.0:
+        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, 0.0, 0.0)
+    nx = ex / distance
+    ny = ey / distance
+    if indentation <= 0.0:
+        rate = (journal.vx - ring.vx) * nx + (journal.vy - ring.vy) * ny
+        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0)
+    place = Place(nx, ny, indentation, journal_radius, distance + journal_radius, 0.0)
+    c = press(journal, ring, place, INSIDE, law, friction, grip)
+    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, c.loss)
+
+
+@dataclass(frozen=True)
+class ContactReport:
+    """The journal's contact with the ring."""
+
+    force: float = real(0.0, "N", "normal force now", local=True)
+    indentation: float = real(0.0, "m", "indentation now; negative: the gap", local=True)
+    sliding: float = real(0.0, "m/s", "sliding speed of journal over ring now", local=True)
+    peak_force: float = real(0.0, "N", "largest normal force since the start", local=True)
+    peak_indentation: float = real(0.0, "m", "largest indentation since the start", local=True)
+    first_time: float = real(-1.0, "s", "time of the first contact; -1: none yet", local=True)
+    first_speed: float = real(0.0, "m/s", "speed of the journal at the first contact", local=True)
+    first_x: float = real(0.0, "m", "journal position at the first contact", local=True)
+    first_y: float = real(0.0, "m", "journal position at the first contact", local=True)
+    rate: float = real(
+        0.0,
+        "rad/s",
+        "at which the journal swings on its contact, indented as expected",
+        constant=True,
+    )
+
+
+@dataclass(frozen=True)
+class Touched:
+    """Contact of journal and bore at the last evaluation."""
+
+    normal: float = real(0.0, "N", "normal force")
+    indentation: float = real(0.0, "m", "indentation; negative: the gap")
+    rate: float = real(0.0, "m/s", "of the indentation")
+
+
+@kernel
+def note(touched, contact):
+    """Keep a `Touch` (N, m, m/s) in the record `touched` of `Touched`."""
+    touched.normal, touched.indentation, touched.rate = contact.normal, contact.indentation, contact.rate
+
+
+@dataclass(frozen=True)
+class ContactMemory:
+    """Last accepted micro-step before the first contact, to locate it in time."""
+
+    time: float = real(0.0, "s", "time")
+    gap: float = real(0.0, "m", "gap")
+    rate: float = real(0.0, "m/s", "its rate")
+    x: float = real(0.0, "m", "journal")
+    y: float = real(0.0, "m", "journal")
+    vx: float = real(0.0, "m/s", "journal")
+    vy: float = real(0.0, "m/s", "journal")
+    left: float = real(0.0, "1", "1: the journal has left the ring after its first contact")
+
+
+RATE_FROM = ("contact.stiffness", "contact.exponent", "contact.expected_indentation", "journal.inv_m")
+
+
+@kernel
+def swing_rate(law, inv_m):
+    """Angular frequency (rad/s) of a journal of `inv_m` (1/kg) on a contact indented as expected."""
+    slope = law.exponent * law.stiffness * law.expected_indentation ** (law.exponent - 1.0)
+    return math.sqrt(slope * inv_m)
+
+
+@kernel
+def hermite(f0, d0, f1, d1, h, s):
+    """Cubic through values f and slopes d at the ends of an interval of length h, at s in [0, 1].
+
+    h in s, f in any unit, d in that per second; returns what f is in.
+    """
+    r = 1.0 - s
+    return r * r * ((1.0 + 2.0 * s) * f0 + s * h * d0) + s * s * ((3.0 - 2.0 * s) * f1 - r * h * d1)
+
+
+@kernel
+def _crossing(f0, d0, f1, d1, h):
+    """Where in [0, 1] that cubic, positive at 0 and not at 1, crosses zero (bisection); units as there."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if hermite(f0, d0, f1, d1, h, middle) > 0.0:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@kernel
+def watch_contact(time, journal, touched, report, memory):
+    """Keep the peaks and the first contact; called after each accepted micro-step.
+
+    time: s; journal: Motion (m, m/s) at that time; touched, report, memory: records of `Touched`,
+    `ContactReport` and `ContactMemory`.
+    """
+    normal, indentation, rate = touched.normal, touched.indentation, touched.rate
+    if normal > report.peak_force:
+        report.peak_force = normal
+    if indentation > report.peak_indentation:
+        report.peak_indentation = indentation
+    if report.first_time >= 0.0:
+        if indentation < 0.0:
+            memory.left = 1.0
+        return
+    if indentation >= 0.0:
+        h = time - memory.time
+        if memory.gap > 0.0 and h > 0.0:
+            s = _crossing(memory.gap, memory.rate, -indentation, -rate, h)
+        else:  # it starts in contact
+            s = 1.0
+        report.first_time = time - (1.0 - s) * h
+        report.first_x = hermite(memory.x, memory.vx, journal.x, journal.vx, h, s)
+        report.first_y = hermite(memory.y, memory.vy, journal.y, journal.vy, h, s)
+        vx = (1.0 - s) * memory.vx + s * journal.vx
+        vy = (1.0 - s) * memory.vy + s * journal.vy
+        report.first_speed = math.sqrt(vx * vx + vy * vy)
+    memory.time = time
+    memory.gap = -indentation
+    memory.rate = -rate
+    memory.x, memory.y = journal.x, journal.y
+    memory.vx, memory.vy = journal.vx, journal.vy

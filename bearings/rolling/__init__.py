@@ -1,0 +1,1 @@
+"""Rolling bearings: the inner ring, balls on the pitch circle, and balls and cage as bodies."""

@@ -1,0 +1,111 @@
+"""The cage, and the pockets in which it holds the balls.
+
+Every pocket is a circle around a point that turns with the cage on the pitch circle (2.42), wider than
+the ball by the clearance on radius; the balls are all that guides the cage.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from touchdown.bearings import seat
+from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.bearings.rolling.ball_state import BALLS
+from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.bodies.side import note, note_apart
+from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.ports import Motion
+from touchdown.modelkit.variables import real
+
+
+@dataclass(frozen=True)
+class CageBody:
+    """Cage that moves freely between the balls."""
+
+    mass: float = real(2.15e-3, "kg", "mass of the cage; as heavy as two balls", above=0.0)
+    inertia: float = real(
+        0.0, "kg.m2", "moment of inertia of the cage; 0: a ring on the pitch circle", minimum=0.0
+    )
+    clearance: float = real(5e-6, "m", "radial clearance of a ball in its pocket")
+
+
+@dataclass(frozen=True)
+class CageReport:
+    """Motion of the cage."""
+
+    x: float = real(0.0, "m", "horizontal position", local=True)
+    y: float = real(0.0, "m", "vertical position", local=True)
+    vx: float = real(0.0, "m/s", "horizontal velocity", local=True)
+    vy: float = real(0.0, "m/s", "vertical velocity", local=True)
+    omega: float = real(0.0, "rad/s", "spin speed", local=True)
+
+
+@kernel
+def first_component(m):
+    """Index at which the cage's state starts."""
+    return BALLS + SIZE * m.p.balls.count
+
+
+@kernel
+def place(q, m):
+    """Put the cage in the state q at rest in the housing's middle."""
+    i = first_component(m)
+    q[i + X], q[i + Y] = q[seat.HX], q[seat.HY]
+    q[i + VX], q[i + VY] = q[seat.HVX], q[seat.HVY]
+    q[i + ANGLE], q[i + SPIN] = 0.0, 0.0
+
+
+@kernel
+def pocket_contacts(q, dq, m):
+    """All balls against their pockets; adds to the balls' accelerations in dq, sets the cage's derivatives.
+
+    Returns the heat (W).
+    """
+    p, d = m.p, m.d
+    rb, clearance = d.ball_radius, p.cage.clearance
+    grip = m.s.step * d.side_grip
+    i = first_component(m)
+    vx, vy, spin = q[i + VX], q[i + VY], q[i + SPIN]
+    c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
+    fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
+    for b in range(p.balls.count):
+        rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
+        ball = ball_motion(q, b, m)
+        ex, ey = ball.x - q[i + X] - rx, ball.y - q[i + Y] - ry
+        square = ex * ex + ey * ey
+        if square <= clearance * clearance:
+            note_apart(m.s.side, b)
+            continue
+        distance = math.sqrt(square)
+        at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
+        pocket = Motion(q[i + X] + rx, q[i + Y] + ry, vx - spin * ry, vy + spin * rx, spin)
+        push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, grip)
+        note(m.s.side, b, push_out, at.indentation, d.cage_contact)
+        push(dq, b, push_out.fx, push_out.fy, push_out.first_moment, m)
+        fx -= push_out.fx
+        fy -= push_out.fy
+        moment += push_out.second_moment - rx * push_out.fy + ry * push_out.fx
+        loss += push_out.loss
+    dq[i + X], dq[i + Y], dq[i + ANGLE] = vx, vy, spin
+    dq[i + VX] = fx / p.cage.mass
+    dq[i + VY] = fy / p.cage.mass - p.gravity
+    dq[i + SPIN] = moment / d.cage_inertia
+    return loss
+
+
+@kernel
+def report(q, m):
+    """Outputs of the cage from the state q; returns its kinetic and its potential energy (J)."""
+    i, o, p = first_component(m), m.o.cage, m.p
+    o.x, o.y, o.vx, o.vy, o.omega = q[i + X], q[i + Y], q[i + VX], q[i + VY], q[i + SPIN]
+    m.o.speed.cage = q[i + SPIN] * 0.5 * p.balls.pitch_diameter
+    kinetic = 0.5 * p.cage.mass * (o.vx**2 + o.vy**2) + 0.5 * m.d.cage_inertia * o.omega**2
+    return kinetic, p.gravity * p.cage.mass * o.y
+
+
+def cage_weights(balls: BallSet) -> list[float]:
+    """Error weights of the cage's components; its angle matters where the pockets are."""
+    length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
+    return [length, length, speed, speed, length * balls.pitch_radius, spin]

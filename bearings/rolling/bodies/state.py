@@ -1,0 +1,105 @@
+"""Balls as bodies: where each one's three coordinates lie in the state, and how they move.
+
+Each ball's state is its centre, velocity, rotation and spin, in the common frame; they lie in the state
+vector component by component, so that loops over the balls become vector code. A cage follows the balls
+with the same six components.
+"""
+
+from __future__ import annotations
+
+import math
+
+from touchdown.bearings import seat
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_state import BALLS, LANES, part
+from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.rolling.bodies.declarations import BallBodiesParameters
+from touchdown.bearings.rolling.bodies.race import Balls
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.ports import Motion
+
+X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
+SIZE = 6
+MOST_STATES = BALLS + SIZE * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
+
+
+@kernel
+def ball_motion(q, b, m):
+    """`Motion` of ball number `b` (m, m/s, rad/s) in the state q."""
+    i, n = BALLS + b, m.p.balls.count
+    return Motion(q[i + X * n], q[i + Y * n], q[i + VX * n], q[i + VY * n], q[i + SPIN * n])
+
+
+@kernel
+def balls_of(q, m):
+    """`Balls` (m, m/s, rad/s): views of all balls in the state q."""
+    at, velocity = (part(q, X, m), part(q, Y, m)), (part(q, VX, m), part(q, VY, m))
+    return Balls(at[0], at[1], velocity[0], velocity[1], part(q, SPIN, m), m.d.ball_radius)
+
+
+@kernel
+def push(dq, b, fx, fy, moment, m):
+    """Add a force (N) and a moment (N m) on ball `b` to its accelerations in dq."""
+    i, n = BALLS + b, m.p.balls.count
+    dq[i + VX * n] += fx / m.d.mass
+    dq[i + VY * n] += fy / m.d.mass
+    dq[i + SPIN * n] += moment / m.d.inertia
+
+
+@kernel
+def place(q, m):
+    """Put the balls in the state q at rest where they start, m.d.x and m.d.y from the middle (m)."""
+    d, n = m.d, m.p.balls.count
+    for b in range(n):
+        i = BALLS + b
+        q[i + X * n], q[i + Y * n] = q[seat.HX] + d.x[b], q[seat.HY] + d.y[b]
+        q[i + VX * n], q[i + VY * n] = q[seat.HVX], q[seat.HVY]
+        q[i + ANGLE * n], q[i + SPIN * n] = 0.0, 0.0
+    m.s.inner_starts[:] = math.nan
+    m.s.outer_starts[:] = math.nan
+
+
+@kernel
+def drift(trial, q, mid, h, m):
+    """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
+    seat.drift(trial, q, mid, h, m)
+    ring.drift(trial, q, mid, h)
+    n = m.p.balls.count
+    for i in range(BALLS, BALLS + 2 * n):  # x and y of all balls
+        trial[i] = q[i] + h * mid[i + 2 * n]
+    for i in range(BALLS + ANGLE * n, BALLS + SPIN * n):
+        trial[i] = q[i] + h * mid[i + n]
+    for i in range(BALLS + SIZE * n, m.s.seat.inside, SIZE):  # the cage
+        trial[i + X] = q[i + X] + h * mid[i + VX]
+        trial[i + Y] = q[i + Y] + h * mid[i + VY]
+        trial[i + ANGLE] = q[i + ANGLE] + h * mid[i + SPIN]
+
+
+@kernel
+def fastest(m):
+    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
+    d, s = m.d, m.s
+    stiffest, below, side, sides = 0.0, 0.0, 0.0, 0.0
+    for b in range(m.p.balls.count):
+        below += s.inner.stiffness[b]
+        stiffest = max(stiffest, s.inner.stiffness[b] + s.outer.stiffness[b])
+        side = max(side, s.side.stiffness[b])
+        sides += s.side.stiffness[b]
+    if s.ring.indentation > 0.0:
+        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
+    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
+    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_grip)), m.s.seat.fastest)
+
+
+def ring_weights(p: BallBodiesParameters) -> list[float]:
+    """Error weights of the ring's components; its angle matters where its race is no circle."""
+    weights = ring.error_weights()
+    if p.inner_profile.active:
+        weights[ring.RANGLE - ring.RX] = p.balls.inner_radius / seat.POSITION_SCALE
+    return weights
+
+
+def ball_weights(count: int) -> list[float]:
+    """Error weights of the balls' components."""
+    length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
+    return [w for w in (length, length, speed, speed, 0.0, spin) for _ in range(count)]

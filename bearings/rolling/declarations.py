@@ -1,0 +1,94 @@
+"""What all rolling bearings declare alike: parameters, outputs, memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
+from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.ports import Energy, Interface, MountReaction, SeatReaction
+from touchdown.modelkit.variables import group, real
+
+
+@dataclass(frozen=True)
+class RollingParameters:
+    """The journal in its bore, the balls, the inner ring."""
+
+    clearance: float = real(0.3e-3, "m", "radial clearance of the journal in the bore", above=0.0)
+    journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
+    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+    interface: Interface = group(Interface)
+    contact: ContactLaw = group(ContactLaw, damping=1e7)
+    friction: FrictionLaw = group(FrictionLaw)
+    balls: BallSet = group(BallSet)
+    ring: ring.Ring = group(ring.Ring)
+
+
+@dataclass(frozen=True)
+class RollingOutputs:
+    """Loads, and what to know of the inside."""
+
+    journal: SeatReaction = group(SeatReaction)
+    housing: MountReaction = group(MountReaction)
+    contact: ContactReport = group(ContactReport)
+    ring: ring.RingReport = group(ring.RingReport)
+    balls: BallReport = group(BallReport)
+    energy: Energy = group(Energy)
+    stiffness: RaceStiffness = group(RaceStiffness)
+    size: Coordinates = group(Coordinates)
+
+
+@dataclass(frozen=True)
+class RollingDerived:
+    """What parameters fix."""
+
+    contact: ContactLaw = group(ContactLaw)
+    friction: FrictionLaw = group(FrictionLaw)
+    stiffness: RaceStiffness = group(RaceStiffness)
+    size: Coordinates = group(Coordinates)
+    inner_radius: float = real(0.0, "m", "inner race")
+    rest_x: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
+    rest_y: float = real(0.0, "m", "where the ring rests on the balls, from the middle")
+
+
+@kernel
+def state_constants(m):
+    """Set the outputs that do not change: the contact's rate (rad/s), stiffness, counts."""
+    m.o.contact.rate = swing_rate(m.d.contact, m.u.journal.inv_m)
+    given, o = m.d.stiffness, m.o.stiffness
+    o.inner, o.outer, o.series = given.inner, given.outer, given.series
+    counted, o = m.d.size, m.o.size
+    o.coordinates, o.constraints = counted.coordinates, counted.constraints
+    o.ball_ball, o.ball_cage = counted.ball_ball, counted.ball_cage
+    o.ball_outer, o.ball_inner, o.rings = counted.ball_outer, counted.ball_inner, counted.rings
+
+
+def race_stiffness(b: BallSet) -> RaceStiffness:
+    """Of the race contacts, from geometry."""
+    return RaceStiffness(b.inner_stiffness(), b.outer_stiffness(), b.series_stiffness())
+
+
+GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
+
+
+def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:
+    """Initial dependencies of a rolling bearing's outputs; `counted`: what of `Coordinates` it counts."""
+    known: dict[str, tuple[str, ...]] = {
+        f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")
+    }
+    known["contact.rate"] = RATE_FROM
+    return known | {f"size.{name}": ("balls.count",) for name in counted}
+
+
+@dataclass(frozen=True)
+class RollingMemory:
+    """Memory between evaluations and steps."""
+
+    seat: seat.SeatMemory = group(seat.SeatMemory)
+    ring: Touched = group(Touched)
+    contact: ContactMemory = group(ContactMemory)

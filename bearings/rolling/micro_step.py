@@ -1,0 +1,53 @@
+"""How a bearing steps whose light bodies hit stiff contacts: leapfrog, resolving every hit.
+
+Within a step friction may stop the sliding, but not reverse it (`bearings.contact.pair.friction_force`);
+m.s.step is the length of that step, and zero where friction acts as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from touchdown.bearings import seat
+from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.modelkit.integrators import verlet
+from touchdown.modelkit.kernel import inlined, kernel
+
+STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step
+
+
+@kernel
+def forecast(trial, dq, h, m):
+    """Velocities of the copies in `trial` at the end of a micro-step of h (s), which is noted in m.s.step.
+
+    dq: derivative of the state at its beginning.
+    """
+    seat.forecast(trial, dq, h)
+    m.s.step = h
+
+
+@inlined
+def leapfrog(rhs, drift, fastest, observe, m, work, span):
+    """Advance m.q by `span` (s) in steps of at most m.d.micro_step.
+
+    The kernels are those of `verlet.integrate`; work: rows of scratch as long as the state. Returns
+    (micro-step to try next (s), status, evaluations).
+    """
+    status, evaluations = verlet.integrate(
+        rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, m.d.micro_step
+    )
+    return m.h, status, evaluations
+
+
+def resolved_step(longest: float, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
+    """Longest step (s) of the leapfrog method: the one asked for, and short enough for every contact.
+
+    contacts: (law, mass in kg of the lighter body). A body that hits at the landing's speed v must not fly
+    past the contact: it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
+    """
+    steps = [longest]
+    for law, mass in contacts:
+        power = 1.0 / (law.exponent + 1.0)
+        depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2 / law.stiffness) ** power
+        steps.append(STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE)
+    return min(steps)

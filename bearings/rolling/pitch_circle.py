@@ -1,0 +1,165 @@
+"""A ball whose centre runs on the pitch circle, between both races: what the simplified models share.
+
+One spring in series stands for both contacts (2.5, 2.6). With n the outward and t = (-n_y, n_x) the
+tangential direction at the ball, e the ring's place from the bearing's middle, F the force of the spring
+and s_i, s_o the sliding speeds at the inner and the outer race:
+
+    F_o = F + r_m m gamma'^2                                                                       (2.9)
+    along t, on the ball:    mu(s_i) F + mu(s_o) F_o - F (e . t)/r_m
+
+The last term is that of a ball driven into the narrowing gap; the source leaves it out, and without it
+the model creates energy.
+
+Rolling resistance, read from the second term of (2.10): a ball that orbits is held back along its race by
+a coefficient times F + F_o. The force acts between the ball and the outer race, at the ball's centre; its
+moment about the middle goes to the housing, which takes no moments here, and its work is heat. The
+printed factor r_b/r_m is left out: with it the source's rotor would run down six times too slowly.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from touchdown.bearings.contact.friction import coefficient
+from touchdown.bearings.contact.pair import friction_force
+from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.variables import real
+
+REVERSAL = 0.05  # m/s; a ball's speed along the race around which rolling resistance changes its sign
+
+
+@dataclass(frozen=True)
+class RollingResistance:
+    """Loss of the rolling balls."""
+
+    resistance: float = real(
+        0.0, "1", "force that holds a ball back along its race, over its forces on both races", minimum=0.0
+    )
+
+
+class Gap(NamedTuple):
+    """The inner ring as balls meet it: place from the middle (m), velocity (m/s), spin (rad/s)."""
+
+    ex: float
+    ey: float
+    ux: float
+    uy: float
+    spin: float
+
+
+class Pressed(NamedTuple):
+    """What happens at one ball: loads in N, heat in W."""
+
+    force: float  # between the rings
+    elastic: float
+    indentation: float  # approach of the rings, m
+    inner: float  # friction of the inner race on the ball, along t
+    outer: float  # friction of the outer race on the ball, along t
+    held: float  # of the narrowing gap and of rolling resistance on the ball, against t
+    lever: float  # of the inner contact from the ring's centre, m
+    heat: float
+
+
+@dataclass(frozen=True)
+class LoadedBalls:
+    """Balls pressed by both rings, at the last evaluation."""
+
+    loaded: float = real(0.0, "1", "how many")
+    force: float = real(0.0, "N", "largest")
+    total: float = real(0.0, "N", "of all forces between the rings")
+    indentation: float = real(0.0, "m", "largest")
+    energy: float = real(0.0, "J", "stored in the contacts")
+
+
+class Raceway(NamedTuple):
+    """What balls and races are for loops over the balls."""
+
+    play: float  # m
+    radius: float  # on which a ball's centre runs, m
+    share: float  # of the rings' approach by which that radius grows
+    stiffness: float  # N/m^1.5, of both contacts in series
+    damping: float  # N s/m2
+    inner_radius: float  # m
+    ball_radius: float  # m
+    mass: float  # kg, of a ball
+    grip: float  # s/kg, as for `bearings.contact.pair.friction_force`
+    resistance: float  # of rolling, force over force
+
+
+class Meeting(NamedTuple):
+    """How a ball lies and slides between the races."""
+
+    indentation: float  # approach of the rings, m
+    rate: float  # m/s
+    radius: float  # on which the ball's centre runs, m
+    lever: float  # of the inner contact from the ring's centre, m
+    inner: float  # sliding speed of the inner race over the ball along t, m/s
+    outer: float  # of the outer race over the ball, m/s
+
+
+@woven
+def meet(gap, c, s, orbit, spin, way):
+    """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
+    indentation = gap.ex * c + gap.ey * s - way.play
+    radius = way.radius + way.share * max(indentation, 0.0)
+    lever = way.inner_radius - gap.ex * c - gap.ey * s  # the ring's centre stands off by e
+    v, around = radius * orbit, way.ball_radius * spin
+    inner = gap.spin * lever + gap.uy * c - gap.ux * s - v + around
+    return Meeting(indentation, gap.ux * c + gap.uy * s, radius, lever, inner, -(v + around))
+
+
+@woven
+def rolling_drag(speed):
+    """Rolling resistance over its full value, with the sign of a ball's `speed` along the race (m/s)."""
+    return speed / math.sqrt(speed * speed + REVERSAL * REVERSAL)
+
+
+@woven
+def press_ball(at, gap, c, s, orbit, friction, way):
+    """`Pressed` (N, m, W) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
+
+    friction: coefficients at the inner and the outer race.
+    """
+    depth = max(at.indentation, 0.0)
+    elastic = way.stiffness * (depth * math.sqrt(depth))
+    force = max(elastic + way.damping * depth * at.rate, 0.0)
+    inner = -friction_force(at.inner, friction[0], force, way.grip)
+    pressed = force + at.radius * way.mass * orbit * orbit
+    outer = -friction_force(at.outer, friction[1], pressed, way.grip)
+    v = at.radius * orbit
+    drag = way.resistance * (force + pressed) * rolling_drag(v)
+    held = elastic * (gap.ey * c - gap.ex * s) / at.radius + drag
+    heat = inner * at.inner + (force - elastic) * at.rate + outer * at.outer + drag * v
+    return Pressed(force, elastic, at.indentation, inner, outer, held, at.lever, heat)
+
+
+@kernel
+def between_races(gap, c, s, orbit, spin, rm, m):
+    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
+    d, law = m.d, m.d.race
+    size = d.inner_radius, d.ball_radius, d.mass
+    resistance = m.p.rolling.resistance
+    way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, 0.0, resistance)
+    at = meet(gap, c, s, orbit, spin, way)
+    friction = coefficient(at.inner, d.race_friction), coefficient(at.outer, d.race_friction)
+    return press_ball(at, gap, c, s, orbit, friction, way)
+
+
+@kernel
+def note(s, ball):
+    """Count a loaded ball in `s` (LoadedBalls); ball: Pressed (N, m)."""
+    s.loaded += 1.0
+    s.total += ball.force
+    s.energy += 0.4 * ball.elastic * ball.indentation
+    if ball.force > s.force:
+        s.force = ball.force
+    if ball.indentation > s.indentation:
+        s.indentation = ball.indentation
+
+
+@kernel
+def clear(s):
+    """Forget the loaded balls in `s` (LoadedBalls)."""
+    s.loaded, s.force, s.total, s.indentation, s.energy = 0.0, 0.0, 0.0, 0.0, 0.0

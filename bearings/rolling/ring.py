@@ -1,0 +1,160 @@
+"""The inner ring of a bearing, in which the journal lands: what every rolling model shares.
+
+Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state starts with the
+ring's seven components; balls and cage follow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from touchdown.bearings import seat
+from touchdown.bearings.contact.journal import note, touch, watch_contact
+from touchdown.bearings.contact.laws import elastic_energy
+from touchdown.bearings.rolling.pitch_circle import Gap
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.ports import Motion
+from touchdown.modelkit.variables import real
+
+RX, RY, RVX, RVY, RANGLE, RW, LOSS = range(seat.INSIDE, seat.INSIDE + 7)
+NEXT = seat.INSIDE + 7
+
+SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Inner ring. Defaults: 6004 (filled in; the source does not give them)."""
+
+    mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
+    inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
+
+
+@dataclass(frozen=True)
+class RingReport:
+    """Motion of the inner ring, and how fast its bore and the journal's surface move."""
+
+    x: float = real(0.0, "m", "horizontal position", local=True)
+    y: float = real(0.0, "m", "vertical position", local=True)
+    vx: float = real(0.0, "m/s", "horizontal velocity", local=True)
+    vy: float = real(0.0, "m/s", "vertical velocity", local=True)
+    omega: float = real(0.0, "rad/s", "spin speed", local=True)
+    surface_speed: float = real(0.0, "m/s", "circumferential speed of the bore", local=True)
+    journal_speed: float = real(0.0, "m/s", "circumferential speed of the journal", local=True)
+    sync_time: float = real(
+        -1.0, "s", "time when the bore first reached 99 % of the journal's speed; -1: not yet", local=True
+    )
+
+
+@dataclass(frozen=True)
+class RaceSpeeds:
+    """Half the circumferential speed of the inner race, as it is and as without slip in the bore."""
+
+    rotor: float = real(0.0, "m/s", "half the race's speed if the bore rolled on the journal", local=True)
+    ring: float = real(0.0, "m/s", "half the circumferential speed of the inner race", local=True)
+
+
+@kernel
+def ring_motion(q):
+    """`Motion` of the inner ring (m, m/s, rad/s) in the state q."""
+    return Motion(q[RX], q[RY], q[RVX], q[RVY], q[RW])
+
+
+@kernel
+def journal_on_ring(q, m, grip=0.0):
+    """The journal's `Touch` with the ring (N, N m, m), remembered for `watch`; grip: s/kg."""
+    p, journal = m.p, seat.journal_motion(q)
+    t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction, grip)
+    note(m.s.ring, t)
+    return t
+
+
+@kernel
+def gap(q):
+    """The ring as balls on the pitch circle meet it, from the housing's middle (`Gap`: m, m/s, rad/s)."""
+    return Gap(
+        q[RX] - q[seat.HX],
+        q[RY] - q[seat.HY],
+        q[RVX] - q[seat.HVX],
+        q[RVY] - q[seat.HVY],
+        q[RW],
+    )
+
+
+@inlined
+def translate(q, dq, m, journal, fx, fy):
+    """Derivatives dq of the ring but for its spin, under the journal's `Touch` and the balls' force (N)."""
+    p = m.p
+    dq[RX] = q[RVX]
+    dq[RY] = q[RVY]
+    dq[RVX] = (fx - journal.fx) / p.ring.mass
+    dq[RVY] = (fy - journal.fy) / p.ring.mass - p.gravity
+    dq[RANGLE] = q[RW]
+
+
+@inlined
+def accelerate(q, dq, m, journal, balls):
+    """Derivatives dq of the ring under the journal's `Touch` and the balls' `Total` (N, N m)."""
+    translate(q, dq, m, journal, balls.fx, balls.fy)
+    dq[RW] = (journal.ring_moment + balls.moment) / m.p.ring.inertia
+
+
+@kernel
+def drift(trial, q, mid, h):
+    """The ring's position in the state `trial`: that in q and h (s) times its velocity in `mid`."""
+    trial[RX] = q[RX] + h * mid[RVX]
+    trial[RY] = q[RY] + h * mid[RVY]
+    trial[RANGLE] = q[RANGLE] + h * mid[RW]
+
+
+@kernel
+def report_energy(q, m, kinetic, potential, inertia):
+    """Energy of the bearing (J), in m.o; `kinetic` and `potential` (J) are those of balls and cage,
+    `inertia` (kg m2) is what turns with the ring.
+    """
+    p, o = m.p, m.o.energy
+    speed2 = q[RVX] ** 2 + q[RVY] ** 2
+    o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * q[RW] ** 2
+    o.potential = potential + elastic_energy(m.s.ring.indentation, p.contact)
+    o.potential += p.ring.mass * p.gravity * q[RY]
+    o.dissipated = q[LOSS]
+
+
+@kernel
+def place(q, dx, dy):
+    """Put the ring at rest in its housing, (dx, dy) from the middle (m)."""
+    q[RX], q[RY] = q[seat.HX] + dx, q[seat.HY] + dy
+    q[RVX], q[RVY] = q[seat.HVX], q[seat.HVY]
+
+
+@kernel
+def watch(t, q, m):
+    """First contact, peaks and the time of synchronism, after a micro-step, t (s) into the macro step."""
+    time = m.time + t
+    watch_contact(time, seat.journal_motion(q), m.s.ring, m.o.contact, m.s.contact)
+    o = m.o.ring
+    if o.sync_time < 0.0 and m.o.contact.first_time >= 0.0:
+        bore = m.p.journal_radius + m.p.clearance
+        journal = q[seat.JW] * m.p.journal_radius
+        if abs(q[RW] * bore) >= SYNCHRONOUS * abs(journal) and q[RW] * journal > 0.0:
+            o.sync_time = time
+
+
+@kernel
+def report(q, m, race_radius):
+    """Outputs of ring and contact at the end of the macro step; race_radius: of the inner race (m)."""
+    o, p = m.o.ring, m.p
+    o.x, o.y, o.vx, o.vy, o.omega = q[RX], q[RY], q[RVX], q[RVY], q[RW]
+    o.surface_speed = q[RW] * (p.journal_radius + p.clearance)
+    o.journal_speed = q[seat.JW] * p.journal_radius
+    m.o.speed.ring = 0.5 * q[RW] * race_radius
+    m.o.speed.rotor = 0.5 * o.journal_speed * race_radius / (p.journal_radius + p.clearance)
+    c = m.o.contact
+    c.force, c.indentation = m.s.ring.normal, m.s.ring.indentation
+    c.sliding = o.journal_speed - o.surface_speed
+
+
+def error_weights() -> list[float]:
+    """Of the ring's components, in the order of the state; the heat lost is a quadrature."""
+    length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
+    return [length, length, speed, speed, spin, spin, 0.0]

@@ -1,0 +1,28 @@
+"""Sphinx's settings; `python docs/pages.py` runs it."""
+
+from typing import Any
+
+from touchdown.fmus.version import VERSION
+
+project = "touchdown-cosim"
+author = "touchdown-cosim developers"
+version = release = VERSION
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+source_suffix = {".md": "markdown"}
+html_theme = "furo"
+html_title = f"touchdown-cosim {VERSION}"
+default_role = "code"  # `name` in a docstring
+myst_heading_anchors = 3
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
+smartquotes = False
+
+
+def setup(app: Any) -> None:
+    """Have signatures of dataclasses read: a default that is made anew prints as `<factory>`."""
+
+    def readable(app: Any, what: str, name: str, value: Any, options: Any, arguments: str, returned: str):
+        return (arguments or "").replace("<factory>", "...") or None, returned
+
+    app.connect("autodoc-process-signature", readable)

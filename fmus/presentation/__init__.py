@@ -1,0 +1,1 @@
+"""What an FMU shows of itself in other tools: its documentation and its icon."""

@@ -1,0 +1,175 @@
+"""A flexible rotor for Python: from a file or from its parts, to look at and to put into a scene."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from touchdown.master.api.scenes import PathLike
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import writing_to
+from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
+from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import written
+from touchdown.rotor.portrait import Portrait
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+
+
+@dataclass(frozen=True, repr=False)
+class Rotor(Shaft):
+    """A flexible rotor: beam elements in their order, and what sits at the nodes between them.
+
+    Nodes count from 1. Stations are the nodes that bearings hold; those in `levitated_at` carry the rotor
+    before it drops. Lengths in m, all in SI. A scene takes it in place of an FMU, if it has the stations
+    and sensors that the scene attaches to, by name.
+
+    >>> shaft = touchdown.Element(
+    ...     length=0.1, outer_diameter=0.04, modulus=207e9, density=7830.0, poisson=0.3
+    ... )
+    >>> def stations(**nodes):
+    ...     return [touchdown.Station(name, node) for name, node in nodes.items()]
+    >>> rotor = touchdown.Rotor(
+    ...     "Plain shaft",
+    ...     8 * (shaft,),
+    ...     stations=stations(A=1, B=9, amb_A=3, amb_B=7),
+    ...     sensors=stations(sensor_A=3, sensor_B=7),
+    ...     levitated_at=["amb_A", "amb_B"],
+    ... )
+    >>> rotor.frequencies(modes=3).round(1)  # Hz; translation and tilt come first
+    array([  0. ,   0. , 284.2])
+    >>> print(rotor.report(modes=3))
+    Plain shaft
+      mass                    7.8716 kg
+    ...
+    >>> rotor == touchdown.Rotor.load(rotor.save("plain.toml"))
+    True
+    >>> scene = touchdown.load("rotor1-9000").swap(rotor=rotor)
+    """
+
+    def __post_init__(self) -> None:
+        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at"):
+            object.__setattr__(self, part, tuple(getattr(self, part)))
+
+    @classmethod
+    def load(cls, name_or_path: PathLike) -> Rotor:
+        """A rotor of the project's by name, or the one in a file (.toml).
+
+        Raises TouchdownError where there is no such rotor, or its file has a mistake.
+        """
+        return cls._of(find_rotor(os.fspath(name_or_path)))
+
+    @classmethod
+    def _of(cls, shaft: Shaft) -> Rotor:
+        return cls(**{field.name: getattr(shaft, field.name) for field in fields(shaft)})
+
+    def frequencies(self, modes: int = MODES) -> np.ndarray:
+        """Of the free rotor at rest, in one plane (Hz, ascending); translation and tilt have 0 Hz.
+
+        modes: how many, those two included (0: all). Raises TouchdownError where there are not so many.
+        """
+        return described(self, SPEED, modes).frequencies
+
+    def whirl(self, speed: float, modes: int = MODES) -> tuple[np.ndarray, np.ndarray]:
+        """Of the free rotor at `speed` (rad/s): whirl against the spin, and with it, by mode (Hz).
+
+        Raises TouchdownError where there are not so many modes.
+        """
+        portrait = described(self, speed, modes)
+        return portrait.backward[0], portrait.forward[0]
+
+    @property
+    def plot(self) -> RotorPlot:
+        """Pictures: `plot.modes()`, `plot.campbell()`, `plot.rest()`, each of which returns its axes."""
+        return RotorPlot(lambda: described(self, SPEED, MODES))
+
+    def save(self, path: PathLike) -> Path:
+        """Write it as a rotor file (.toml); returns the path.
+
+        Raises TouchdownError for what such a file cannot hold, and where it cannot be written.
+        """
+        text, path = self._text(), Path(path)
+        with writing_to(path.parent):
+            path.write_text(text, encoding="utf-8")
+        return path
+
+    def __fspath__(self) -> str:
+        """A file of it in the cache: what a scene takes."""
+        own = hashlib.sha256(self._text().encode()).hexdigest()[:16]
+        name = re.sub(r"\W+", "_", self.title, flags=re.ASCII).strip("_").lower() or "rotor"
+        path = user_cache() / "rotors" / f"{name}_{own}.toml"
+        if not path.is_file():
+            with writing_to(path.parent):
+                path.parent.mkdir(parents=True, exist_ok=True)
+            fresh = self.save(path.with_suffix(f".{os.getpid()}"))
+            fresh.replace(path)
+        return str(path)
+
+    def _text(self) -> str:
+        """As a rotor file."""
+        plain = Shaft(**{field.name: getattr(self, field.name) for field in fields(Shaft)})
+        try:
+            return written(plain, f"rotor {self.title}")
+        except ModelError as error:
+            raise TouchdownError(str(error)) from None
+
+    def report(self, speed: float = SPEED, modes: int = MODES) -> str:
+        """All its figures as a table: inertias, places, frequencies, how it lies on its seats.
+
+        speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0:
+        all). Raises TouchdownError where there are not so many.
+        """
+        return report_text(described(self, speed, modes))
+
+    def __repr__(self) -> str:
+        stations = ", ".join(f"{station.name} at node {station.node}" for station in self.stations)
+        return (
+            f"<Rotor {self.title}: {len(self.elements)} elements, {self.nodes} nodes, {self.mass:.5g} kg, "
+            f"{self.positions()[-1]:.5g} m, stations: {stations or 'none'}>"
+        )
+
+
+class RotorPlot:
+    """Pictures of a rotor, drawn on a figure or a part of one; without, pyplot makes one."""
+
+    def __init__(self, portrait: Callable[[], Portrait]) -> None:
+        self._portrait = portrait
+
+    def modes(self, figure: FigureBase | None = None) -> list[Axes]:
+        """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
+        from touchdown.master.results.figures.style import drawable
+        from touchdown.master.studies.rotor.figure import modes
+
+        return modes(drawable(figure), self._portrait())
+
+    def campbell(self, figure: FigureBase | None = None) -> list[Axes]:
+        """Whirl frequencies of the free rotor [Hz] over speed [rpm]."""
+        from touchdown.master.results.figures.style import drawable
+        from touchdown.master.studies.rotor.figure import campbell
+
+        return campbell(drawable(figure), self._portrait())
+
+    def rest(self, figure: FigureBase | None = None) -> list[Axes]:
+        """How it lies on its seats: deflection [µm] and bending stress [MPa].
+
+        Raises TouchdownError where it has less than two to lie on.
+        """
+        from touchdown.master.results.figures.style import drawable
+        from touchdown.master.studies.rotor.figure import rest
+        from touchdown.master.studies.rotor.report import TO_REST
+
+        portrait = self._portrait()
+        if portrait.rest is None:
+            raise TouchdownError(f"this picture {TO_REST}")
+        return rest(drawable(figure), portrait)

@@ -1,0 +1,97 @@
+"""Many runs: a sweep over settings, a comparison of schemes."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TypeVar
+
+from touchdown.master.api.scenes import PathLike, as_scene
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import bar_over, named_progress
+from touchdown.master.common.several import several
+from touchdown.master.common.units import plain
+from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.schemes import SCHEMES, scheme
+from touchdown.master.scene.tables import above_zero
+from touchdown.master.studies.drop.levitation import shortened
+from touchdown.master.studies.schemes import compare as schemes_study
+from touchdown.master.studies.schemes.compare import STEPS, Asked, Comparison, pieces
+from touchdown.master.studies.sweep import sweep as sweep_study
+from touchdown.master.studies.sweep.report import Member
+from touchdown.master.studies.sweep.sweep import Execution
+
+Item = TypeVar("Item")
+
+
+def sweep(
+    scene: PathLike | Scene,
+    variations: Mapping[str, object],
+    folder: PathLike | None = None,
+    *,
+    jobs: int = 2,
+    in_process: bool = False,
+    progress: bool = False,
+) -> list[Member]:
+    """Run a scene with every combination of the values that `variations` has for each setting.
+
+    Values are a list, an array or a single one, each as `Scene.set` takes it.
+    Each member has its `settings`, its `summary`, and in `failed` why it stopped, or nothing. `folder` gets
+    sweep.csv and the summary of each member; without one nothing is left on disk. `jobs` run at a time, in
+    processes of their own: a script needs `if __name__ == "__main__":` around it. After Ctrl-C the members
+    that had not run to their ends are there with `ended` INTERRUPTED. Raises TouchdownError where a setting
+    cannot be.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
+    >>> members = touchdown.sweep(scene, {"bearing.clearance": ["0.2 mm", "0.25 mm"]}, in_process=True)
+    >>> [round(1e3 * member.summary["first_contact_time_s"], 1) for member in members]  # ms
+    [6.5, 7.2]
+    """
+    values = {name: [plain(value) for value in several(given)] for name, given in variations.items()}
+    total = sweep_study.size(values)
+    kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
+    with kept as where, bar_over(total, "runs", not progress) as bar:
+        return sweep_study.sweep(
+            as_scene(scene), values, Path(where), jobs, Execution(in_process), bar.update
+        )
+
+
+def compare(
+    scene: PathLike | Scene,
+    schemes: str | Iterable[str] | None = None,
+    macro_steps: float | str | Iterable[float | str] = STEPS,
+    *,
+    duration: float | str | None = None,
+    in_process: bool = False,
+    progress: bool = False,
+) -> Comparison:
+    """Speed against error: coupling schemes (None: all) at macro steps (s) on one drop.
+
+    Errors are those of the first impacts, or of `duration` (s) from the first contact, against two
+    monolithic solutions; `rows` has them in SI, with the wall time, `recommended()` is the cheapest that is
+    good enough. Raises TouchdownError where nothing touches, and for a macro step or a duration that is not
+    above 0; Ctrl-C raises KeyboardInterrupt, and nothing is left of it.
+
+    >>> comparison = touchdown.compare("disk-caged-simplified", ["hold"], ["100 us"], in_process=True)
+    >>> 1e-6 < comparison.rows[0].errors["position"] < 1e-5  # m
+    True
+    """
+    asked = Asked(
+        schemes=_distinct(SCHEMES if schemes is None else (scheme(name).name for name in several(schemes))),
+        steps=_distinct(above_zero(step, "s", "macro_steps") for step in several(macro_steps)),
+        duration=None if duration is None else above_zero(duration, "s", "duration"),
+        in_process=in_process,
+    )
+    chosen = shortened(as_scene(scene))
+    with named_progress(pieces(chosen, asked), not progress) as begin:
+        return schemes_study.compare_schemes(chosen, asked, begin)
+
+
+def _distinct(items: Iterable[Item]) -> tuple[Item, ...]:
+    """In their order. Raises TouchdownError where there are none."""
+    found = tuple(dict.fromkeys(items))
+    if not found:
+        raise TouchdownError("a comparison needs a scheme and a macro step at least")
+    return found

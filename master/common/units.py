@@ -1,0 +1,55 @@
+"""Values with units, as people write them, and units as FMI and SSP define them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from numbers import Integral, Real
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.modelkit import units
+
+Scale = tuple[float, float]  # factor and offset
+BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit by its SI base units: value in SI = factor * value + offset."""
+
+    exponents: Mapping[str, int] = field(default_factory=dict[str, int])  # of BASE; those that are not 0
+    factor: float = 1.0
+    offset: float = 0.0
+
+    def to(self, other: Unit) -> Scale | None:
+        """Factor and offset that turn values into those of `other`; None where the dimensions differ."""
+        if dict(self.exponents) != dict(other.exponents):
+            return None
+        return self.factor / other.factor, (self.offset - other.offset) / other.factor
+
+
+def then(first: Scale | None, second: Scale | None) -> Scale | None:
+    """The scale that does as `first` and then `second`; None leaves a value as it is, to the last bit."""
+    if first is None or second is None:
+        return first or second
+    return second[0] * first[0], second[0] * first[1] + second[1]
+
+
+def scaled(value: float, scale: Scale | None) -> float:
+    """`value` under a scale."""
+    return value if scale is None else scale[0] * value + scale[1]
+
+
+def plain(value: object) -> object:
+    """A number of numpy's as one of Python's, anything else as it is."""
+    if isinstance(value, (bool, int, float)) or not isinstance(value, Real):
+        return value
+    return int(value) if isinstance(value, Integral) else float(value)
+
+
+def to_si(value: object, unit: str | None, name: str) -> float:
+    """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`."""
+    try:
+        return units.to_si(value, unit, name)
+    except units.UnitError as error:
+        raise TouchdownError(str(error)) from None

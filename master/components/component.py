@@ -1,0 +1,171 @@
+"""What the master knows of a component: named variables, and calls in a fixed order.
+
+    set(...)  enter()  [push() / pull()]...  exit()  then for each macro step  push()  step(t, H)  pull()
+
+`bind` fixes, before `enter`, which variables are exchanged at every step. Broken order is a programming
+error; what a user can cause raises TouchdownError.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import Unit
+from touchdown.modelkit.variables import Causality, Variability
+
+
+class Kind(StrEnum):
+    """Types of FMI 2.0's variables."""
+
+    REAL = "Real"
+    INTEGER = "Integer"
+    BOOLEAN = "Boolean"
+    STRING = "String"
+    ENUMERATION = "Enumeration"
+
+
+REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
+NUMBERS = (Kind.REAL, Kind.INTEGER)  # what is recorded and kept
+SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable of a component."""
+
+    name: str
+    reference: int
+    kind: Kind
+    causality: Causality
+    variability: Variability
+    unit: str | None
+    minimum: float | None
+    maximum: float | None
+    start: float | None
+    description: str
+
+    @property
+    def settable(self) -> bool:
+        """Whether a scene may give it a value."""
+        return self.causality in (Causality.PARAMETER, Causality.INPUT) and self.kind in SETTABLE
+
+    @property
+    def constant(self) -> bool:
+        """Whether its value is settled once the component is initialised."""
+        return self.variability in (Variability.FIXED, Variability.CONSTANT, Variability.TUNABLE)
+
+
+class Component(ABC):
+    """An FMU, or a model stepped in process."""
+
+    def __init__(self, name: str, origin: str, variables: Mapping[str, Variable]) -> None:
+        self.name = name
+        self.origin = origin  # what it is made of, for people
+        self.variables = variables
+        self.units: Mapping[str, Unit] = {}  # those it defines, by name
+        self._own: Mapping[str, str] = {}  # names of variables that go by another name here
+        self.inputs = np.zeros(0)
+        self.outputs = np.zeros(0)
+
+    def variable(self, name: str) -> Variable:
+        """The variable called `name`."""
+        try:
+            return self.variables[name]
+        except KeyError:
+            raise TouchdownError(
+                f"component {self.name} ({self.origin}) has no variable {name}; "
+                + one_of(name, self.variables)
+            ) from None
+
+    def rename(self, names: Mapping[str, str]) -> None:
+        """Let variables go by other names: `names` gives the component's own for each.
+
+        Raises TouchdownError where it has no such variable, or one that goes by the new name already.
+        """
+        owners = {self.variable(own).name: name for name, own in names.items()}
+        for own, name in owners.items():
+            if name in self.variables and name not in owners:
+                raise TouchdownError(
+                    f"component {self.name} ({self.origin}) has a variable {name} of its own; "
+                    f"{own} cannot go by that name"
+                )
+        renamed = {owners.get(name, name): variable for name, variable in self.variables.items()}
+        self.variables = {name: replace(variable, name=name) for name, variable in renamed.items()}
+        self._own = dict(names)
+
+    def own_name(self, name: str) -> str:
+        """What the component itself calls the variable `name`."""
+        return self._own.get(name, name)
+
+    @abstractmethod
+    def set(self, values: Mapping[str, float]) -> None:
+        """Set parameters or inputs before initialisation; values are in SI units and within bounds."""
+
+    @abstractmethod
+    def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
+        """Exchange real `inputs` through self.inputs, and read real variables `names` into `outputs`."""
+
+    @abstractmethod
+    def enter(self, start_time: float) -> None:
+        """Enter initialisation."""
+
+    @abstractmethod
+    def exit(self) -> None:
+        """Leave initialisation; the component may be stepped."""
+
+    @abstractmethod
+    def push(self) -> None:
+        """Hand self.inputs over."""
+
+    @abstractmethod
+    def pull(self) -> None:
+        """Fetch self.outputs."""
+
+    @abstractmethod
+    def step(self, time: float, step: float) -> None:
+        """Advance from `time` by `step` (s)."""
+
+    @abstractmethod
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        """A function that fetches the values of any variables, for many calls; its array is its own."""
+
+    def read(self, names: Sequence[str]) -> list[float]:
+        """Values of any variables, integers as such."""
+        values = self.reader(names)()
+        kinds = [self.variable(name).kind for name in names]
+        return [int(v) if k is Kind.INTEGER else float(v) for v, k in zip(values, kinds, strict=True)]
+
+    can_save = True  # whether its state can be saved
+
+    @abstractmethod
+    def save(self) -> object:
+        """The whole state, for `restore`; to be given to `release` when it is not needed any more."""
+
+    @abstractmethod
+    def restore(self, state: object) -> None:
+        """Go back to a saved state."""
+
+    def release(self, state: object) -> None:  # noqa: B027 - most hold nothing outside Python
+        """Free a saved state."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Free what the component holds; nothing may be called after it."""
+
+
+def check_value(component: Component, variable: Variable, value: float) -> None:
+    """Raise TouchdownError where `value` is out of the bounds the component declares."""
+    unit = f" {variable.unit}" if variable.unit not in (None, "1") else ""
+    what = f"{component.name}.{variable.name} = {value:g}{unit}"
+    if variable.minimum is not None and value < variable.minimum:
+        raise TouchdownError(f"{what} must be at least {variable.minimum:g}")
+    if variable.maximum is not None and value > variable.maximum:
+        raise TouchdownError(f"{what} must be at most {variable.maximum:g}")
+    if variable.kind is not Kind.REAL and value != round(value):
+        raise TouchdownError(f"{what} must be a whole number")

@@ -1,0 +1,63 @@
+"""What a model description must not say: it decides which library is loaded and which memory is written."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+from xml.parsers import expat
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import Kind
+from touchdown.modelkit.variables import Causality, Variability
+
+
+def refuse_definitions(path: Path) -> None:
+    """Raise ValueError where an XML file defines entities: they may read files or grow without end."""
+
+    def refuse(*_: Any) -> None:
+        raise ValueError("it has a document type definition, which FMI has no use for")
+
+    parser = expat.ParserCreate()
+    parser.StartDoctypeDeclHandler = refuse
+    parser.Parse(path.read_bytes(), True)
+
+
+def refuse_lies(path: Path, description: Any) -> None:
+    """Raise TouchdownError where names or value references cannot be what they are for.
+
+    `description` is fmpy's, `path` that of the FMU.
+    """
+    identifier = description.coSimulation.modelIdentifier or ""
+    if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
+        raise TouchdownError(f"{path}: the modelIdentifier {identifier!r} is no name of a library")
+    names: set[str] = set()
+    owners: dict[tuple[str, int], str] = {}
+    for v in description.modelVariables:
+        what = f"{path}: variable {v.name}"
+        if v.name in names:
+            raise TouchdownError(f"{what} is declared twice")
+        names.add(v.name)
+        if not 0 <= v.valueReference < 2**32:
+            raise TouchdownError(f"{what} has the value reference {v.valueReference}; it must fit 32 bits")
+        _refuse_unknown(what, v)
+        if v.causality in (Causality.PARAMETER, Causality.INPUT):
+            other = owners.setdefault((v.type, v.valueReference), v.name)
+            if other != v.name:
+                raise TouchdownError(
+                    f"{what} and {other} can both be set and share the value reference {v.valueReference}"
+                )
+
+
+def _refuse_unknown(what: str, variable: Any) -> None:
+    """Raise TouchdownError where a variable is of a type, causality or variability that FMI 2.0 lacks."""
+    for kind, stated in (
+        (Kind, variable.type),
+        (Causality, variable.causality),
+        (Variability, variable.variability),
+    ):
+        known = [str(one) for one in kind]
+        if stated is not None and stated not in known:
+            raise TouchdownError(
+                f"{what} has the {kind.__name__.lower()} {stated}; FMI 2.0 has {', '.join(known)}"
+            )

@@ -1,0 +1,337 @@
+"""The one module that speaks FMI: a component that is an FMU, driven through fmpy.
+
+Values travel through arrays allocated once, and the FMI functions are called with their addresses, so a
+call costs the crossing and nothing else.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from fmpy import calloc, free, read_model_description, sharedLibraryExtension
+from fmpy import platform as fmi_platform
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2CoSimulation,
+    fmi2False,
+    fmi2True,
+)
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import BASE, Unit
+from touchdown.master.components.component import Component, Kind, Variable
+from touchdown.master.components.description import refuse_definitions, refuse_lies
+from touchdown.master.components.unpack import unpack
+from touchdown.modelkit.variables import Causality, Variability
+
+OK, WARNING = 0, 1
+STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
+
+
+def describe(path: Path, folder: Path) -> Any:
+    """fmpy's model description of an unpacked FMU that can be co-simulated here."""
+    try:
+        refuse_definitions(folder / "modelDescription.xml")
+        description = read_model_description(str(folder), validate=False)
+    except Exception as error:
+        first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({first})") from None
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        kind = "co-simulation" if description.coSimulation else "model exchange only"
+        raise TouchdownError(
+            f"{path} is FMI {description.fmiVersion}, {kind}; FMI 2.0 for co-simulation is needed"
+        )
+    identifier = description.coSimulation.modelIdentifier
+    refuse_lies(path, description)
+    if not (folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}").is_file():
+        there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
+        raise TouchdownError(
+            f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
+        )
+    if _by_pythonfmu(description):
+        _check_script(path, folder)
+    return description
+
+
+def _by_pythonfmu(description: Any) -> bool:
+    return "PythonFMU" in (description.generationTool or "")
+
+
+def _check_script(path: Path, folder: Path) -> None:
+    """pythonfmu's library ends the process where the script it is to run is missing."""
+    name = folder / "resources" / "slavemodule.txt"
+    module = name.read_bytes().decode("utf-8", "replace").strip() if name.is_file() else ""
+    if not module.isidentifier() or not (name.parent / f"{module}.py").is_file():
+        raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
+
+
+def variables_of(description: Any) -> dict[str, Variable]:
+    """Variables by name."""
+
+    def number(text: object) -> float | None:
+        try:
+            return None if text is None else float(str(text))
+        except ValueError:
+            return None
+
+    return {
+        v.name: Variable(
+            name=v.name,
+            reference=v.valueReference,
+            kind=Kind(v.type),
+            causality=Causality(v.causality or Causality.LOCAL),
+            variability=Variability(v.variability or Variability.CONTINUOUS),
+            unit=(v.unit or (v.declaredType.unit if v.declaredType else None))
+            if v.type == Kind.REAL
+            else "1",
+            minimum=number(v.min),
+            maximum=number(v.max),
+            start=number(v.start),
+            description=v.description or "",
+        )
+        for v in description.modelVariables
+    }
+
+
+def _resources(folder: Path, description: Any) -> str:
+    """URI of an unpacked FMU's resources.
+
+    pythonfmu's library knows %20 for a space and takes everything else as it is; where that is not there
+    it crashes.
+    """
+    path = (folder / "resources").absolute()
+    if not _by_pythonfmu(description):
+        return path.as_uri()
+    if "%20" in str(path):
+        raise TouchdownError(f"pythonfmu cannot read {path}: it has %20 in it; set another TOUCHDOWN_CACHE")
+    return f"file://{path}"
+
+
+def units_of(description: Any) -> dict[str, Unit]:
+    """Units that the description defines by SI base units, by name."""
+    units: dict[str, Unit] = {}
+    for unit in description.unitDefinitions:
+        base = unit.baseUnit
+        if base is not None:
+            exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
+            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
+    return units
+
+
+def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
+    """Variables and units of an FMU, which is not loaded."""
+    description = describe(path, unpack(path, cache))
+    return variables_of(description), units_of(description)
+
+
+class _Fetch(NamedTuple):
+    """A call that fetches all values of one type; the arrays must outlive their addresses."""
+
+    call: Callable[..., int]
+    at: np.ndarray  # where the values go
+    references: np.ndarray
+    data: np.ndarray
+    of: int  # address of `references`
+    into: int  # address of `data`
+
+
+class FmuComponent(Component):
+    """An FMU that is stepped."""
+
+    def __init__(self, name: str, path: Path, cache: Path, origin: str = "") -> None:
+        folder = unpack(path, cache)
+        description = describe(path, folder)
+        super().__init__(name, origin or str(path), variables_of(description))
+        self.can_save = bool(description.coSimulation.canGetAndSetFMUstate)
+        self.path = path
+        self.units = units_of(description)
+        self._messages: list[str] = []
+        self._open = False
+        here = Path.cwd()
+        try:
+            self._fmu = FMU2Slave(
+                guid=description.guid,
+                modelIdentifier=description.coSimulation.modelIdentifier,
+                unzipDirectory=str(folder),
+                instanceName=name,
+            )
+            self._callbacks = self._make_callbacks()
+            self._instantiate(_resources(folder, description))
+        except Exception as error:
+            os.chdir(here)  # fmpy leaves the library's folder current where loading fails
+            raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
+        self._open = True
+        self._component = self._fmu.component
+        self._bind_functions()
+        self._in: tuple[int, int, int] = (0, 0, 0)
+        self._out: tuple[int, int, int] = (0, 0, 0)
+
+    def _instantiate(self, resources: str) -> None:
+        self._fmu.component = self._fmu.fmi2Instantiate(
+            self.name.encode(),
+            fmi2CoSimulation,
+            self._fmu.guid.encode(),
+            resources.encode("utf-8", "surrogateescape"),
+            ctypes.byref(self._callbacks),
+            fmi2False,
+            fmi2True,
+        )
+        if self._fmu.component is None:
+            raise RuntimeError("it gave no instance")
+
+    def _make_callbacks(self) -> fmi2CallbackFunctions:
+        def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes) -> None:
+            if status > OK:
+                self._messages.append(message.decode("utf-8", "replace").strip())
+
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(log)
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        return callbacks
+
+    def _bind_functions(self) -> None:
+        """The FMI functions of the step, called with plain addresses and without leaving the GIL.
+
+        A pythonfmu FMU runs in this interpreter and would take the lock again at once.
+        """
+        pointer, size, real, integer = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
+        exchange = ctypes.PYFUNCTYPE(integer, pointer, pointer, size, pointer)
+        step = ctypes.PYFUNCTYPE(integer, pointer, real, real, integer)
+        self._set_real = exchange(("fmi2SetReal", self._fmu.dll))
+        self._get_real = exchange(("fmi2GetReal", self._fmu.dll))
+        self._set_boolean = exchange(("fmi2SetBoolean", self._fmu.dll))
+        self._set_integer = exchange(("fmi2SetInteger", self._fmu.dll))
+        self._get_integer = exchange(("fmi2GetInteger", self._fmu.dll))
+        self._do_step = step(("fmi2DoStep", self._fmu.dll))
+
+    # -- values --------------------------------------------------------------------------------------
+
+    def _references(self, names: Sequence[str]) -> np.ndarray:
+        return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
+
+    def set(self, values: Mapping[str, float]) -> None:
+        calls = (
+            (Kind.REAL, self._set_real, "f8"),
+            (Kind.INTEGER, self._set_integer, "i4"),
+            (Kind.ENUMERATION, self._set_integer, "i4"),
+            (Kind.BOOLEAN, self._set_boolean, "i4"),
+        )
+        for kind, call, dtype in calls:
+            names = [n for n in values if self.variable(n).kind is kind]
+            if names:
+                references = self._references(names)
+                data = np.array([values[n] for n in names]).astype(dtype)
+                self._check(
+                    call(self._component, references.ctypes.data, len(names), data.ctypes.data),
+                    "setting values",
+                )
+
+    def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
+        self.inputs = np.zeros(len(inputs))
+        self.outputs = outputs
+        self._held = self._references(inputs), self._references(names)
+        self._in = self._held[0].ctypes.data, len(inputs), self.inputs.ctypes.data
+        self._out = self._held[1].ctypes.data, len(names), outputs.ctypes.data
+
+    def push(self) -> None:
+        status = self._set_real(self._component, *self._in)
+        if status > WARNING:
+            self._check(status, "setting inputs")
+
+    def pull(self) -> None:
+        status = self._get_real(self._component, *self._out)
+        if status > WARNING:
+            self._check(status, "reading outputs")
+
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        values = np.zeros(len(names))
+        fetches: list[_Fetch] = []
+        for kind, call, dtype in (
+            (Kind.REAL, self._get_real, "f8"),
+            (Kind.INTEGER, self._get_integer, "i4"),
+        ):
+            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind is kind], dtype=np.intp)
+            if len(at):
+                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
+                addresses = references.ctypes.data, data.ctypes.data
+                fetches.append(_Fetch(call, at, references, data, *addresses))
+
+        def fetch() -> np.ndarray:
+            for call, at, references, data, of, into in fetches:
+                status = call(self._component, of, len(references), into)
+                if status > WARNING:
+                    self._check(status, "reading")
+                values[at] = data
+            return values
+
+        return fetch
+
+    # -- life cycle ----------------------------------------------------------------------------------
+
+    def enter(self, start_time: float) -> None:
+        self._guard("initialising", lambda: self._fmu.setupExperiment(startTime=start_time))
+        self._guard("initialising", self._fmu.enterInitializationMode)
+
+    def exit(self) -> None:
+        self._guard("initialising", self._fmu.exitInitializationMode)
+
+    def step(self, time: float, step: float) -> None:
+        status = self._do_step(self._component, time, step, 1)
+        if status > WARNING:
+            self._check(status, f"the step from t = {time:.9g} s")
+
+    def save(self) -> object:
+        state = ctypes.c_void_p()
+        self._guard(
+            "saving its state", lambda: self._fmu.fmi2GetFMUstate(self._component, ctypes.byref(state))
+        )
+        return state
+
+    def restore(self, state: object) -> None:
+        assert isinstance(state, ctypes.c_void_p)
+        self._guard("restoring its state", lambda: self._fmu.fmi2SetFMUstate(self._component, state))
+
+    def release(self, state: object) -> None:
+        assert isinstance(state, ctypes.c_void_p)
+        self._guard(
+            "freeing a state",
+            lambda: self._fmu.fmi2FreeFMUstate(self._component, ctypes.byref(state)),
+        )
+
+    def close(self) -> None:
+        if self._open:
+            self._open = False
+            self._fmu.fmi2FreeInstance(self._component)
+
+    # -- failure -------------------------------------------------------------------------------------
+
+    def _guard(self, doing: str, call: Any) -> None:
+        try:
+            call()
+        except TouchdownError:
+            raise
+        except Exception as error:
+            raise TouchdownError(
+                f"component {self.name}: {self._reason(str(error))} (while {doing})"
+            ) from None
+
+    def _check(self, status: int, doing: str) -> None:
+        if status > WARNING:
+            reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
+            raise TouchdownError(f"component {self.name}: {reason} (at {doing})")
+
+    def _reason(self, fallback: str) -> str:
+        """The last thing the FMU said that is meant for people."""
+        spoken = [m for m in self._messages if not m.startswith("Fatal py exception")]
+        lines = (spoken or self._messages or [fallback])[-1].splitlines()
+        return next((line for line in reversed(lines) if line.strip()), fallback)

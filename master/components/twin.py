@@ -1,0 +1,126 @@
+"""A component stepped in process: the FMU's model without the FMU.
+
+It drives the same instance class as the FMU's slave through the same calls, so both agree bit for bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from touchdown.fmus.description import causality
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import Component, Kind, Variable
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError, Slot
+from touchdown.modelkit.variables import Scalar
+
+
+def _variable(slot: Slot) -> Variable:
+    spec = slot.variable.spec
+    role, variability, _ = causality(slot)
+    return Variable(
+        name=slot.variable.name,
+        reference=slot.index,
+        kind=Kind.REAL if spec.kind is Scalar.REAL else Kind.INTEGER,
+        causality=role,
+        variability=variability,
+        unit=spec.unit,
+        minimum=spec.minimum if spec.minimum is not None else spec.above,
+        maximum=spec.maximum,
+        start=slot.variable.default,
+        description=spec.meaning,
+    )
+
+
+class _Fetch(NamedTuple):
+    """Values of one type."""
+
+    store: np.ndarray  # the instance's memory, seen as that type
+    references: np.ndarray  # in it
+    at: np.ndarray  # where the values go
+
+
+class TwinComponent(Component):
+    """A model of the project, stepped without the FMI in between."""
+
+    def __init__(self, name: str, model: Model) -> None:
+        self.instance = Instance(model)
+        variables = [_variable(slot) for slot in self.instance.slots]
+        super().__init__(name, f"{model.name}, in process", {v.name: v for v in variables})
+        self._words = self.instance.words
+        self._initialising = False
+        self._start_time = 0.0
+
+    def set(self, values: Mapping[str, float]) -> None:
+        for name, value in values.items():
+            v = self.variable(name)
+            if v.kind is Kind.REAL:
+                self.instance.reals[v.reference] = value
+            else:
+                self.instance.integers[v.reference] = int(value)
+
+    def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
+        self.inputs = np.zeros(len(inputs))
+        self.outputs = outputs
+        self._in = np.array([self.variable(n).reference for n in inputs], dtype=np.intp)
+        self._out = np.array([self.variable(n).reference for n in names], dtype=np.intp)
+
+    def enter(self, start_time: float) -> None:
+        self._initialising = True
+        self._start_time = start_time
+
+    def exit(self) -> None:
+        self._start()
+        self._initialising = False
+
+    def push(self) -> None:
+        self._words[self._in] = self.inputs
+
+    def pull(self) -> None:
+        if self._initialising:
+            self._start()
+        self.outputs[:] = self._words[self._out]
+
+    def step(self, time: float, step: float) -> None:
+        try:
+            self.instance.step(time, step)
+        except ModelError as error:
+            raise TouchdownError(f"component {self.name}: {error}") from None
+
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        values = np.zeros(len(names))
+        variables = [self.variable(n) for n in names]
+        integers = self._words.view("i8")
+        fetches: list[_Fetch] = []
+        for kind, store in ((Kind.REAL, self._words), (Kind.INTEGER, integers)):
+            at = np.array([i for i, v in enumerate(variables) if v.kind is kind], dtype=np.intp)
+            references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
+            fetches.append(_Fetch(store, references, at))
+
+        def fetch() -> np.ndarray:
+            if self._initialising:
+                self._start()
+            for store, references, at in fetches:
+                values[at] = store[references]
+            return values
+
+        return fetch
+
+    def save(self) -> object:
+        return self.instance.save()
+
+    def restore(self, state: object) -> None:
+        assert isinstance(state, bytes)
+        self.instance.restore(state)
+
+    def close(self) -> None:
+        """Nothing to free."""
+
+    def _start(self) -> None:
+        try:
+            self.instance.start(self._start_time)
+        except ModelError as error:
+            raise TouchdownError(f"component {self.name}: {error}") from None

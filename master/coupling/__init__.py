@@ -1,0 +1,1 @@
+"""Components connected and stepped together: system, steppers, loop, ledger and recorder."""

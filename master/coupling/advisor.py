@@ -1,0 +1,69 @@
+"""Which macro step a scheme bears, told before a run.
+
+A touchdown bearing says at which rate the journal swings on its contact: from the contact's stiffness, and
+from the masses and elastic modes that the journal moves with (`contact.rate`, rad/s). A scheme bears so
+many radians of that swing in a macro step (`Scheme.bears`, measured: docs/coupling.md).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.schemes import Scheme, scheme
+from touchdown.master.scene.step_sizes import tidy
+
+RATE = "contact.rate"
+LONGEST = 1e-4  # s; what happens within a longer macro step is lost to recording and ledger
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A macro step, and why."""
+
+    macro_step: float  # s
+    reason: str
+
+
+def fastest_contact(system: System) -> tuple[str, float]:
+    """The bearing whose contact asks for the shortest macro step, and its rate (rad/s).
+
+    A bearing that takes several macro steps in one counts as that much faster.
+
+    Raises TouchdownError where no bearing states one.
+    """
+    rates = {
+        name: system.every[name] * system.value(f"{name}.{RATE}")
+        for name in dict.fromkeys(a.bearing for a in system.attachments)
+        if RATE in system.components[name].variables
+    }
+    if not any(rates.values()):
+        raise TouchdownError(
+            f"no bearing says how fast its contact is (output {RATE}), so no macro step can be advised; "
+            "give one"
+        )
+    return max(rates.items(), key=lambda item: item[1])
+
+
+def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice]:
+    """The macro step that each of the schemes `names` bears in `scene`; without names, the scene's own.
+
+    Raises TouchdownError where the scene cannot be assembled, or no bearing states its contact's rate.
+    """
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        bearing, rate = fastest_contact(system)
+    return {name: _for(scheme(name), bearing, rate) for name in names or [scene.run.scheme.name]}
+
+
+def _for(chosen: Scheme, bearing: str, rate: float) -> Advice:
+    return Advice(
+        tidy(min(chosen.bears / rate, LONGEST)),
+        f"the journal swings at {rate / (2.0 * math.pi):.3g} Hz on the contact of {bearing}, and scheme "
+        f"{chosen.name} bears {chosen.bears:g} rad of that in a macro step, up to {1e6 * LONGEST:g} us",
+    )

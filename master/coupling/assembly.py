@@ -1,0 +1,105 @@
+"""A scene's components loaded, their parameters set, and wired up to a system."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+
+from touchdown.fmus.recipes import preset
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import to_si
+from touchdown.master.components.component import Component, check_value
+from touchdown.master.coupling.connections import (
+    Attachment,
+    Connection,
+    attachment,
+    check_connections,
+    connection,
+    port_connections,
+    recognised,
+    sensor_connections,
+)
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.schemes import Scheme
+
+ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
+
+
+def assemble(scene: Scene, load: Callable[[str, str], Component]) -> System:
+    """Load a scene's components with load(name, fmu), and wire them up as its scheme has it.
+
+    Raises TouchdownError where a component is missing, a setting cannot be, or the ports do not fit.
+    """
+    components: dict[str, Component] = {}
+    try:
+        for name, spec in scene.components.items():
+            components[name] = load(name, spec.fmu)
+            components[name].rename(spec.names)
+        return _wired(scene, components)
+    except BaseException:
+        for component in components.values():
+            component.close()
+        raise
+
+
+def _wired(scene: Scene, components: dict[str, Component]) -> System:
+    scheme = scene.run.scheme
+    settings: dict[tuple[str, str], float] = {}
+    for name, component in components.items():
+        values = _settings(component, scene.components[name], scheme)
+        component.set(values)
+        settings |= {(name, key): value for key, value in values.items()}
+    connections = _connections(scene, scheme, components)
+    attachments = recognised(connections)
+    if scheme.lead:
+        _require_lead(attachments, components)
+    every = {name: spec.every for name, spec in scene.components.items()}
+    return System(components, attachments, connections, settings, every)
+
+
+def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Component]) -> list[Connection]:
+    """All that the scene attaches, senses and connects, checked."""
+    attached = [attachment(pair, components) for pair in scene.attach]
+    connections = [c for a in attached for c in port_connections(a, components, scheme)]
+    connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    connections += [connection(wire, components) for wire in scene.connect]
+    check_connections(connections, components)
+    for c in connections:
+        if c.input in scene.components[c.target].set:
+            raise TouchdownError(f"{c.target_name} cannot be set: it is connected to {c.source_name}")
+    return connections
+
+
+def _settings(component: Component, spec: ComponentSpec, scheme: Scheme) -> dict[str, float]:
+    """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
+    optional: dict[str, object] = {**(preset(spec.preset) if spec.preset else {}), **spec.inherited}
+    given = {key: value for key, value in optional.items() if key in component.variables}
+    values = {key: _checked(component, key, value) for key, value in {**given, **spec.set}.items()}
+    for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
+        if key in spec.set:
+            raise TouchdownError(f"{component.name}.{key} follows from the scheme; set run.scheme instead")
+        if key in component.variables:
+            values[key] = value
+    return values
+
+
+def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Component]) -> None:
+    for a in attachments:
+        bearing = components[a.bearing]
+        if LEAD not in bearing.variables:
+            raise TouchdownError(
+                f"{a.bearing} ({bearing.origin}) cannot lead: it has no parameter {LEAD}; choose a "
+                "scheme that steps bearings first"
+            )
+
+
+def _checked(component: Component, name: str, given: object) -> float:
+    """A setting's value in SI, if the component can take it."""
+    variable = component.variable(name)
+    if not variable.settable:
+        raise TouchdownError(
+            f"{component.name}.{name} has the causality {variable.causality} and cannot be set"
+        )
+    value = to_si(given, variable.unit, f"{component.name}.{name}")
+    check_value(component, variable, value)
+    return value

@@ -1,0 +1,274 @@
+"""What is connected to what: single variables, and the ports of the contract.
+
+A bearing's port on a body's port means motion one way and load the other, for the variables that both
+have. A rotor's elastic modes cross with them where the scheme asks for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import count
+from typing import NamedTuple
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import Scale
+from touchdown.master.components.component import Component, Kind, Variable
+from touchdown.master.components.contract import (
+    FORCE,
+    LOAD,
+    MODE_LOAD,
+    MODE_MOTION,
+    MOTION,
+    NEEDED,
+    POSITION,
+    SENSED,
+    SLOPE,
+)
+from touchdown.master.scene.scene import Wire
+from touchdown.master.scene.schemes import Scheme
+from touchdown.modelkit.variables import Causality
+
+GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be
+
+
+def full(component: str, variable: str) -> str:
+    """COMPONENT.VARIABLE, as scenes and recordings name it."""
+    return f"{component}.{variable}"
+
+
+class Port(NamedTuple):
+    """Variables of a component that belong together: PORT.x, PORT.fx and so on."""
+
+    component: str
+    name: str
+
+    def own(self, variable: str) -> str:
+        """What the component calls a variable of the port, such as A.x."""
+        return f"{self.name}.{variable}"
+
+    def full(self, variable: str) -> str:
+        """COMPONENT.VARIABLE, such as rotor.A.x."""
+        return f"{self.component}.{self.name}.{variable}"
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        return f"{self.component}.{self.name}"
+
+
+@dataclass(frozen=True)
+class Connection:
+    """One variable feeding another."""
+
+    source: str  # component
+    output: str
+    target: str  # component
+    input: str
+    scale: Scale | None = None  # where given, the input is factor * output + offset
+
+    @property
+    def source_name(self) -> str:
+        """COMPONENT.VARIABLE that feeds."""
+        return full(self.source, self.output)
+
+    @property
+    def target_name(self) -> str:
+        """COMPONENT.VARIABLE that is fed."""
+        return full(self.target, self.input)
+
+
+@dataclass(frozen=True)
+class Attachment:
+    """A bearing's port on a body's port: motion one way, load the other."""
+
+    bearing: str
+    bearing_port: str
+    body: str
+    body_port: str
+
+    @property
+    def bearing_end(self) -> Port:
+        """The bearing's port."""
+        return Port(self.bearing, self.bearing_port)
+
+    @property
+    def body_end(self) -> Port:
+        """The body's port."""
+        return Port(self.body, self.body_port)
+
+    def motion(self, variable: str) -> str:
+        """COMPONENT.VARIABLE of what the body gives, such as rotor.A.x."""
+        return self.body_end.full(variable)
+
+    def load(self, variable: str) -> str:
+        """COMPONENT.VARIABLE of what the bearing gives, such as bearing.journal.fx."""
+        return self.bearing_end.full(variable)
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        return f"{self.bearing_end.title} on {self.body_end.title}"
+
+
+def split(name: str, components: Mapping[str, Component]) -> tuple[Component, Variable]:
+    """Component and variable of COMPONENT.VARIABLE."""
+    head, _, tail = name.partition(".")
+    if head not in components:
+        raise TouchdownError(f"{name}: there is no component {head}; {one_of(head, components)}")
+    return components[head], components[head].variable(tail)
+
+
+def attachment(pair: tuple[str, str], components: Mapping[str, Component]) -> Attachment:
+    """What a pair of COMPONENT.PORT, the bearing's first, attaches; TouchdownError where there is none."""
+    parts: list[str] = []
+    for end in pair:
+        head, _, port = end.partition(".")
+        if head not in components:
+            raise TouchdownError(f"attach {end}: there is no component {head}; {one_of(head, components)}")
+        parts += [head, port]
+    return Attachment(*parts)
+
+
+@dataclass(frozen=True)
+class Way:
+    """From a port to another: a variable that both have can cross."""
+
+    source: Port
+    target: Port
+    components: Mapping[str, Component]
+
+    def connection(self, variable: str) -> Connection | None:
+        """Of a variable, where both ports have it."""
+        if self._lacking(variable) is not None:
+            return None
+        return Connection(
+            self.source.component,
+            self.source.own(variable),
+            self.target.component,
+            self.target.own(variable),
+        )
+
+    def needed(self, variable: str, what: str) -> Connection:
+        """Of a variable that both must have; raises TouchdownError, about `what`, where one has not."""
+        crossing = self.connection(variable)
+        if crossing is not None:
+            return crossing
+        lacking = self._lacking(variable) or self.target
+        kind = "motion" if variable in MOTION else "load"
+        raise TouchdownError(
+            f"{what}: {self.components[lacking.component].origin} has no variable {lacking.own(variable)}, "
+            f"which carries the {kind}; check the port's name or the FMU"
+        )
+
+    def _lacking(self, variable: str) -> Port | None:
+        """The port that does not have a variable, the source first."""
+        for port in (self.source, self.target):
+            if port.own(variable) not in self.components[port.component].variables:
+                return port
+        return None
+
+
+def port_connections(
+    a: Attachment, components: Mapping[str, Component], scheme: Scheme
+) -> Iterable[Connection]:
+    """Motion from body to bearing, load from bearing to body, for the variables both sides have."""
+    motion = Way(a.body_end, a.bearing_end, components)
+    load = Way(a.bearing_end, a.body_end, components)
+    for way, variables in ((motion, MOTION), (load, LOAD + SLOPE if scheme.slopes else LOAD)):
+        for variable in variables:
+            if variable in NEEDED:
+                yield way.needed(variable, f"attach {a.title}")
+            elif (crossing := way.connection(variable)) is not None:
+                yield crossing
+    if scheme.modes:
+        yield from _mode_connections(motion, load)
+
+
+def _mode_connections(motion: Way, load: Way) -> Iterable[Connection]:
+    """Those of all elastic modes that both sides have."""
+    for k in count(1):
+        given = [motion.connection(f"mode[{k}].{variable}") for variable in MODE_MOTION]
+        if None in given:
+            return
+        given += [load.connection(f"mode[{k}].{variable}") for variable in MODE_LOAD]
+        yield from (c for c in given if c is not None)
+
+
+def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component]) -> Iterable[Connection]:
+    """Motion from a body's port to a sensor, which gives no load."""
+    a = attachment(pair, components)
+    way = Way(a.body_end, a.bearing_end, components)
+    for variable in SENSED:
+        yield way.needed(variable, f"sense {a.title}")
+
+
+def used_modes(connections: Iterable[Connection], components: Mapping[str, Component]) -> list[Connection]:
+    """`connections` without those of modes that the body does not have (inv_m = 0), once it is started."""
+    kept = list(connections)
+    gains = [c for c in kept if c.input.endswith("].inv_m")]
+    absent: set[tuple[str, str]] = set()
+    for source in dict.fromkeys(c.source for c in gains):
+        theirs = [c for c in gains if c.source == source]
+        for c, gain in zip(theirs, components[source].read([c.output for c in theirs]), strict=True):
+            if gain == 0.0:
+                absent.add((c.source, c.output.rpartition(".")[0]))
+                absent.add((c.target, c.input.rpartition(".")[0]))
+
+    def used(component: str, variable: str) -> bool:
+        return (component, variable.rpartition(".")[0]) not in absent
+
+    return [c for c in kept if used(c.source, c.output) and used(c.target, c.input)]
+
+
+def connection(wire: Wire, components: Mapping[str, Component]) -> Connection:
+    """Of a single wire; raises TouchdownError where one of its ends is not there."""
+    (source, output), (target, given) = (split(end, components) for end in (wire.source, wire.target))
+    return Connection(source.name, output.name, target.name, given.name, wire.scale)
+
+
+def recognised(connections: Iterable[Connection]) -> list[Attachment]:
+    """Bearings' ports on bodies' ports that the connections amount to: motion one way and load the other.
+
+    A port is what stands before the last dot of the names; both sides call the variables the same.
+    """
+    crossing: dict[tuple[Port, Port], set[str]] = {}
+    for c in connections:
+        output_port, _, output = c.output.rpartition(".")
+        input_port, _, given = c.input.rpartition(".")
+        if output == given:
+            ends = Port(c.source, output_port), Port(c.target, input_port)
+            crossing.setdefault(ends, set()).add(output)
+    return [
+        Attachment(*bearing, *body)
+        for (bearing, body), loads in crossing.items()
+        if loads.issuperset(FORCE) and crossing.get((body, bearing), set()).issuperset(POSITION)
+    ]
+
+
+def check_connections(connections: Iterable[Connection], components: Mapping[str, Component]) -> None:
+    """Raise TouchdownError where one cannot be: causality, type, unit, or an input with two sources."""
+    fed: dict[str, Connection] = {}
+    for c in connections:
+        _check_connection(
+            c, components[c.source].variable(c.output), components[c.target].variable(c.input)
+        )
+        first = fed.setdefault(c.target_name, c)
+        if first is not c:
+            raise TouchdownError(
+                f"{c.target_name} has two sources, {first.source_name} and {c.source_name}; remove one"
+            )
+
+
+def _check_connection(c: Connection, output: Variable, given: Variable) -> None:
+    what = f"connection {c.source_name} to {c.target_name}"
+    if output.causality not in GIVING:
+        raise TouchdownError(f"{what}: {c.source_name} has the causality {output.causality}, not output")
+    if given.causality is not Causality.INPUT:
+        raise TouchdownError(f"{what}: {c.target_name} has the causality {given.causality}, not input")
+    if (output.kind, given.kind) != (Kind.REAL, Kind.REAL):
+        raise TouchdownError(f"{what}: only Real variables can be connected")
+    if c.scale is None and output.unit and given.unit and output.unit != given.unit:
+        raise TouchdownError(
+            f"{what}: the units {output.unit} and {given.unit} differ; give factor and offset"
+        )

@@ -1,0 +1,95 @@
+"""Where everything that is exchanged stands: one array of signals, and what each component takes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from touchdown.master.components.component import Component
+from touchdown.master.components.contract import JUMP, WORK
+from touchdown.master.coupling.connections import Attachment, Connection, full
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """Scales of a component's exchanged inputs."""
+
+    factors: np.ndarray
+    offsets: np.ndarray
+
+    def cut(self, inputs: np.ndarray, number: int = 0) -> None:
+        """Apply them to `inputs`, in whatever macro step."""
+        inputs *= self.factors
+        inputs += self.offsets
+
+
+@dataclass(frozen=True)
+class Intake:
+    """What a component takes of the signals, in the order of its inputs."""
+
+    inputs: tuple[str, ...]  # its variables
+    places: np.ndarray  # in the signals
+    scalings: tuple[Scaling, ...] = ()  # one, where an input has a scale
+
+    def of(self, signals: np.ndarray) -> np.ndarray:
+        """The inputs, in the component's own units."""
+        inputs = signals[self.places]
+        for scaling in self.scalings:
+            scaling.cut(inputs)
+        return inputs
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Places of exchanged outputs; the components read into `signals`."""
+
+    signals: np.ndarray
+    position: Mapping[str, int]  # of COMPONENT.VARIABLE in the signals
+    intakes: Mapping[str, Intake]  # by component
+
+
+def lay_out(
+    components: Mapping[str, Component],
+    connections: Sequence[Connection],
+    attachments: Iterable[Attachment],
+) -> Layout:
+    """Give every exchanged output, and every account, its place, and bind the components to them."""
+    outputs = _outputs(components, connections, attachments)
+    names = [full(name, variable) for name, given in outputs.items() for variable in given]
+    position = {name: i for i, name in enumerate(names)}
+    signals = np.zeros(len(names))
+    intakes: dict[str, Intake] = {}
+    start = 0
+    for name, component in components.items():
+        end = start + len(outputs[name])
+        intakes[name] = _intake([c for c in connections if c.target == name], position)
+        component.bind(intakes[name].inputs, signals[start:end], outputs[name])
+        start = end
+    return Layout(signals, position, intakes)
+
+
+def _outputs(
+    components: Mapping[str, Component],
+    connections: Iterable[Connection],
+    attachments: Iterable[Attachment],
+) -> dict[str, list[str]]:
+    """What each component gives: outputs that are connected, and the accounts of attachments."""
+    outputs: dict[str, dict[str, None]] = {name: {} for name in components}
+    for c in connections:
+        outputs[c.source][c.output] = None
+    for a in attachments:
+        for end in (a.bearing_end, a.body_end):
+            accounts = (end.own(account) for account in (WORK, JUMP))
+            has = components[end.component].variables
+            outputs[end.component] |= dict.fromkeys(name for name in accounts if name in has)
+    return {name: list(given) for name, given in outputs.items()}
+
+
+def _intake(fed: Sequence[Connection], position: Mapping[str, int]) -> Intake:
+    places = np.array([position[c.source_name] for c in fed], dtype=np.intp)
+    scalings: tuple[Scaling, ...] = ()
+    if any(c.scale for c in fed):
+        scalings = (Scaling(*np.array([c.scale or (1.0, 0.0) for c in fed]).T),)
+    return Intake(tuple(c.input for c in fed), places, scalings)

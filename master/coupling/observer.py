@@ -1,0 +1,84 @@
+"""What watches a run: small objects that the loop tells of every macro step."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.coupling.system import System
+
+BEAT = 64  # macro steps between looks at what needs none at every step
+
+
+@dataclass(slots=True)
+class Moment:
+    """Where a run stands. There is one of a run: the loop moves it on, and observers read it."""
+
+    system: System
+    zero: float  # s, the scene's zero on the simulation's clock
+    steps: int  # macro steps of the whole run
+    done: int = 0  # macro steps taken
+    time: float = 0.0  # s, on the simulation's clock: the end of the last macro step
+    last: bool = False  # whether no macro step is left
+    beat: bool = False  # whether it is one of those at which slow looks are taken
+    kept: int = 0  # the last macro step that somebody wants recorded
+    ended: Ended | None = None  # None: it goes on
+    reason: str = ""
+
+    @property
+    def since_zero(self) -> float:
+        """Time from the scene's zero (s)."""
+        return self.time - self.zero
+
+    def move(self, done: int, step: float) -> None:
+        """On to the end of macro step `done` (from 1), each of `step` (s)."""
+        self.done = done
+        self.time = done * step
+        self.last = done == self.steps
+        self.beat = self.last or done % BEAT == 0
+
+    def keep(self) -> None:
+        """Have this moment recorded, whatever the scene's record_every is."""
+        self.kept = self.done
+
+    def stop(self, reason: str, ended: Ended = Ended.AS_WANTED) -> None:
+        """End the run here; what is asked first counts. The other observers still see this step."""
+        if self.ended is None:
+            self.ended, self.reason = ended, reason
+
+    def fail(self, reason: str) -> None:
+        """The run cannot go on, unless it has ended badly already."""
+        if self.ended in (None, Ended.AS_WANTED):
+            self.ended, self.reason = Ended.STOPPED, reason
+
+
+class Observer(ABC):
+    """Is told of a run. A TouchdownError from it stops the run; anything else goes on to the caller."""
+
+    at_beats_only: ClassVar[bool] = False  # whether it is told now and then, and at the end, only
+
+    @abstractmethod
+    def stepped(self, now: Moment) -> None:
+        """A macro step was taken; `now.stop(reason)` ends the run here."""
+
+    def retired(self, names: Sequence[str]) -> None:  # noqa: B027 - most have nothing to do
+        """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""
+
+
+class EveryStep(Observer):
+    """Calls a function after every macro step."""
+
+    def __init__(self, call: Callable[[Moment], object]) -> None:
+        self._call = call
+
+    def stepped(self, now: Moment) -> None:
+        self._call(now)
+
+
+class EveryBeat(EveryStep):
+    """Calls a function now and then, and at the end."""
+
+    at_beats_only = True

@@ -1,0 +1,62 @@
+"""Sequences in which the components of a system take a macro step, one module each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
+from touchdown.master.coupling.steppers.halving import Halving
+from touchdown.master.coupling.steppers.iterated import Iterated
+from touchdown.master.coupling.steppers.jacobi import Jacobi
+from touchdown.master.coupling.steppers.stepper import Stepper
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.run_spec import RunSpec
+
+_OWN: Mapping[str, type[Stepper]] = {
+    "gauss-seidel": GaussSeidel,
+    "jacobi": Jacobi,
+    "iterated": Iterated,
+    "halving": Halving,
+}
+_sequences: dict[str, type[Stepper]] = dict(_OWN)
+SEQUENCES: Mapping[str, type[Stepper]] = MappingProxyType(_sequences)
+"""All there are, by name: the project's own, then those that were registered."""
+
+
+def register(name: str, stepper: type[Stepper]) -> None:
+    """Let schemes name the sequence `name`. Raises TouchdownError as `check` does."""
+    check(name, stepper)
+    _sequences[name] = stepper
+
+
+def check(name: str, stepper: object) -> None:
+    """Raise TouchdownError where `stepper` is none, or its name is another's.
+
+    The class of a notebook's cell that is run again is not the same, but has the same name.
+    """
+    if not (isinstance(stepper, type) and issubclass(stepper, Stepper)):
+        raise TouchdownError(f"sequence {name}: {stepper!r} is no subclass of Stepper")
+    if name in SEQUENCES and _full_name(SEQUENCES[name]) != _full_name(stepper):
+        raise TouchdownError(f"there is a sequence {name} already; give this one another name")
+
+
+def _full_name(kind: type) -> tuple[str, str]:
+    return kind.__module__, kind.__qualname__
+
+
+def registered() -> dict[str, type[Stepper]]:
+    """Those that are not the project's own, by name."""
+    return {name: kind for name, kind in SEQUENCES.items() if name not in _OWN}
+
+
+def stepper(system: System, run: RunSpec) -> Stepper:
+    """What steps `system` by the scheme of `run`. Raises TouchdownError where this process has it not."""
+    name = run.scheme.sequence
+    if name not in SEQUENCES:
+        raise TouchdownError(
+            f"this process does not know the sequence {name}; put its stepper at the top of a module that "
+            "can be imported, and register it from there"
+        )
+    return SEQUENCES[name](system, run)

@@ -1,0 +1,52 @@
+"""Bearings first, from the bodies' state; then the bodies, under the loads just handed over."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from touchdown.master.components.component import Component
+from touchdown.master.coupling.layout import Scaling
+from touchdown.master.coupling.steppers.rates import Part, Rates
+from touchdown.master.coupling.steppers.stepper import Stepper
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.run_spec import RunSpec
+
+
+class Turn(NamedTuple):
+    """What a component does in a macro step: take its inputs, cut them, step, give."""
+
+    component: Component
+    places: np.ndarray  # of its inputs in the signals
+    every: int  # macro steps of the run that it takes in one
+    cuts: tuple[Scaling | Part, ...]  # what is done to its inputs
+
+
+class GaussSeidel(Stepper):
+    """One component after another, in the system's order."""
+
+    def __init__(self, system: System, run: RunSpec) -> None:
+        super().__init__(system, run)
+        self.follow()
+
+    def follow(self) -> None:
+        rates = Rates(self.system, self.run.macro_step)
+        self._turns = [self._turn(name, rates) for name in self.system.order]
+
+    def _turn(self, name: str, rates: Rates) -> Turn:
+        system, intake = self.system, self.system.intakes[name]
+        cuts = (*intake.scalings, *rates.parts(name))
+        return Turn(system.components[name], intake.places, system.every[name], cuts)
+
+    def step(self, number: int, time: float, step: float) -> None:
+        signals = self.system.signals
+        for component, places, every, cuts in self._turns:
+            if number % every:
+                continue
+            component.inputs[:] = signals[places]
+            for part in cuts:
+                part.cut(component.inputs, number)
+            component.push()
+            component.step(time, every * step)
+            component.pull()

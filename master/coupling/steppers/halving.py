@@ -1,0 +1,82 @@
+"""Steps taken whole and in two halves: where they differ by more than the tolerance, they are divided.
+
+The difference of where the bodies end is the estimate of the coupling's error over the step, and what is
+kept is the finer result. A macro step starts with the division that the one before needed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import POSITION
+from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_states
+from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
+from touchdown.master.coupling.steppers.stepper import Stepper
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.run_spec import RunSpec
+
+DEEPEST = 12  # halvings of a macro step
+EASY = 1.0 / 32.0  # of the tolerance; below it twice the step will do (third order, with a margin)
+
+
+class Halving(Stepper):
+    """Takes every step twice, and divides it where that is needed."""
+
+    def __init__(self, system: System, run: RunSpec) -> None:
+        super().__init__(system, run)
+        require_states(system, run.scheme.name)
+        self._inner = GaussSeidel(system, run)
+        self._level = 0  # halvings at the end of the last macro step
+        self._deepest = 0
+        self._error = 0.0  # m, largest estimate of what was kept
+        self.follow()
+
+    def follow(self) -> None:
+        self._inner.follow()
+        self._places = positions(self.system)
+
+    def step(self, number: int, time: float, step: float) -> None:
+        parts = 2**self._level
+        deepest, worst = self._level, 0.0
+        for part in range(parts):
+            level, error = self._advance(time + part * step / parts, step / parts, self._level)
+            deepest, worst = max(deepest, level), max(worst, error)
+        self._error = max(self._error, worst)
+        self._deepest = max(self._deepest, deepest)
+        easy = deepest > 0 and worst < EASY * self.run.tolerance
+        self._level = deepest - 1 if easy else deepest
+
+    def _advance(self, time: float, step: float, level: int) -> tuple[int, float]:
+        """Take a step, divided as needed: (halvings of the macro step, largest error estimate in m)."""
+        with Checkpoint(self.system) as before:
+            self._inner.step(0, time, step)
+            whole = self.system.signals[self._places]
+            before.restore()
+            self._inner.step(0, time, 0.5 * step)
+            self._inner.step(0, time + 0.5 * step, 0.5 * step)
+            error = float(np.max(np.abs(self.system.signals[self._places] - whole), initial=0.0))
+            if error <= self.run.tolerance:
+                return level, error
+            if level == DEEPEST:
+                raise TouchdownError(
+                    f"steps of {step:g} s and its half still differ by {error:.2g} m at t = {time:.9g} s; "
+                    f"take a larger run.tolerance than {self.run.tolerance:g} m, or a smaller macro step"
+                )
+            before.restore()
+        first = self._advance(time, 0.5 * step, level + 1)
+        second = self._advance(time + 0.5 * step, 0.5 * step, level + 1)
+        return max(first[0], second[0]), max(first[1], second[1])
+
+    @property
+    def figures(self) -> dict[str, float]:
+        return {
+            "smallest_step_us": 1e6 * self.run.macro_step / 2**self._deepest,
+            "largest_step_error_um": 1e6 * self._error,
+        }
+
+
+def positions(system: System) -> np.ndarray:
+    """Where the bodies' positions at the bearings stand in the signals."""
+    names = {a.motion(axis) for a in system.attachments for axis in POSITION}
+    return np.array(sorted(system.position[name] for name in names & system.position.keys()), dtype=np.intp)

@@ -1,0 +1,125 @@
+"""A system: components that are wired up, exchange what they give, and can be stepped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from touchdown.master.common.units import scaled
+from touchdown.master.components.component import Component
+from touchdown.master.coupling.connections import Attachment, Connection, split, used_modes
+from touchdown.master.coupling.layout import Intake, lay_out
+
+
+@dataclass
+class System:
+    """Components ready to be stepped; `signals` holds every exchanged output."""
+
+    components: dict[str, Component]
+    attachments: list[Attachment]
+    connections: list[Connection]
+    settings: dict[tuple[str, str], float]
+    every: dict[str, int]  # macro steps of the run that each component takes in one
+    order: list[str] = field(init=False)  # bearings first
+    signals: np.ndarray = field(init=False)
+    position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
+    intakes: Mapping[str, Intake] = field(init=False)  # by component: what it takes of the signals
+    retired: set[str] = field(init=False, default_factory=set[str])
+
+    def __post_init__(self) -> None:
+        bearings = dict.fromkeys(a.bearing for a in self.attachments)
+        self.order = [*bearings, *(name for name in self.components if name not in bearings)]
+        self._lay_out()
+
+    def close(self) -> None:
+        """Free every component."""
+        for component in self.components.values():
+            component.close()
+
+    def value(self, name: str) -> float:
+        """Value of COMPONENT.VARIABLE."""
+        component, variable = split(name, self.components)
+        return component.read([variable.name])[0]
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is COMPONENT.VARIABLE."""
+        head, _, tail = name.partition(".")
+        return head in self.components and tail in self.components[head].variables
+
+    def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
+        """A function that fetches COMPONENT.VARIABLE of one component, for many calls."""
+        (component,) = {split(name, self.components)[0] for name in names}
+        return component.reader([name.partition(".")[2] for name in names])
+
+    def signal(self, name: str) -> float:
+        """What an exchanged COMPONENT.VARIABLE last gave."""
+        return float(self.signals[self.position[name]])
+
+    def constant(self, c: Connection) -> bool:
+        """Whether what crosses is settled once its source is initialised."""
+        return self.components[c.source].variable(c.output).constant
+
+    def initialise(self) -> None:
+        """Bring all components through initialisation, exchanging until every input has its value."""
+        for component in self.components.values():
+            component.enter(0.0)
+        bodies_first = list(reversed(self.order))
+        for _ in range(2):  # bodies to bearings, and loads back
+            for name in bodies_first:
+                self.feed(name)
+                self.components[name].pull()
+        self._feed_constants()
+        self.connections = used_modes(self.connections, self.components)
+        self._lay_out()
+        for name in bodies_first:
+            self.components[name].pull()
+        for name in bodies_first:
+            self.feed(name)
+            self.components[name].exit()
+            self.components[name].pull()
+
+    def feed(self, name: str) -> None:
+        """Hand a component its inputs from the signals."""
+        self.take_inputs(name)
+        self.components[name].push()
+
+    def take_inputs(self, name: str) -> None:
+        """Fill a component's inputs from the signals, not yet handing them over."""
+        self.components[name].inputs[:] = self.intakes[name].of(self.signals)
+
+    def retire(self, names: Iterable[str]) -> None:
+        """Stop exchanging with components that have nothing left to do; what they gave last stays."""
+        for name in self.order:  # the last of what the retired gave, where it has not been taken yet
+            self.feed(name)
+        self.retired |= set(names)
+        self.order = [name for name in self.order if name not in self.retired]
+        self._lay_out()
+        for name in self.order:
+            self.components[name].pull()
+
+    def _feed_constants(self) -> None:
+        constant = [c for c in self.connections if self.constant(c)]
+        for target in dict.fromkeys(c.target for c in constant):
+            mine = [c for c in constant if c.target == target]
+            values: dict[str, float] = {}
+            for source in dict.fromkeys(c.source for c in mine):
+                theirs = [c for c in mine if c.source == source]
+                outputs = self.components[source].read([c.output for c in theirs])
+                values |= {
+                    c.input: scaled(value, c.scale) for c, value in zip(theirs, outputs, strict=True)
+                }
+            self.components[target].set(values)
+
+    def _live(self) -> list[Connection]:
+        """Connections that carry something at every step."""
+        return [
+            c for c in self.connections if not self.constant(c) and not self.retired & {c.source, c.target}
+        ]
+
+    def _lay_out(self) -> None:
+        """Give everything that is exchanged its place, as it is exchanged from now on."""
+        attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
+        layout = lay_out(self.components, self._live(), attachments)
+        self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes

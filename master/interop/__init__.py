@@ -1,0 +1,1 @@
+"""FMUs and systems as other tools see them: checks, trials, containers, SSP packages, the contract."""

@@ -1,0 +1,95 @@
+"""Check an FMU: is it valid, what can it stand in for, and does it run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from fmpy.validation import validate_fmu
+
+from touchdown.fmus.build import cached
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import NUMBERS, Component
+from touchdown.master.components.fmu import FmuComponent
+from touchdown.master.components.library import locate
+from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
+from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.variables import Causality
+
+DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
+DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
+DRY_RUN_FORCE = 1e-2  # N, on a body
+
+
+def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | None = None) -> Report:
+    """Check the FMU at a path, or one of the project's own by name.
+
+    With a role ("bearing", "rotor", "amb", "housing"), whether it can stand in for one; `names` gives what
+    it calls the variables of the contract. Raises TouchdownError where there is nothing to check
+    (missing, damaged, no co-simulation here).
+    """
+    source = locate(name)
+    path = source if isinstance(source, Path) else cached(source)
+    component = FmuComponent("checked", path, user_cache())
+    report = Report(name)
+    try:
+        component.rename(names or {})
+        complaints = validate_fmu(str(path))
+        if not complaints:
+            report.lines.append("valid FMI 2.0 for co-simulation")
+        elif role is None:
+            report.problems += complaints
+        else:  # what this master does not need
+            report.lines += [f"not valid FMI 2.0: {problem}" for problem in complaints]
+        check_ports(component, report)
+        if role is not None:
+            check_role(component, role, report)
+        _dry_run(component, report)
+    finally:
+        component.close()
+    if role is not None:
+        can = "cannot" if report.problems else "can"
+        report.lines.append(f"it {can} stand in for {ROLES[role].title}")
+    return report
+
+
+def _dry_run(component: Component, report: Report) -> None:
+    """A few steps from the defaults, set as such, under small motions and loads: outputs are finite."""
+    outputs = [
+        v.name
+        for v in component.variables.values()
+        if v.causality is Causality.OUTPUT and v.kind in NUMBERS
+    ]
+    settable = [v for v in component.variables.values() if v.settable and v.start is not None]
+    fed = [f"{port}.{suffix}" for port in ports(component) for suffix in ("y", "vy", "fy")]
+    fed = [
+        n for n in fed if n in component.variables and component.variable(n).causality is Causality.INPUT
+    ]
+    try:
+        component.set({v.name: v.start for v in settable if v.start is not None})
+        component.bind(fed, np.zeros(0), [])
+        component.enter(0.0)
+        component.exit()
+        values = component.read(outputs)
+        for k in range(DRY_RUN_STEPS):
+            time = k * DRY_RUN_STEP
+            component.inputs[:] = [_small(name, time) for name in fed]
+            component.push()
+            component.step(time, DRY_RUN_STEP)
+            values = component.read(outputs)
+    except TouchdownError as error:
+        report.problems.append(f"dry run: {error}")
+        return
+    wrong = [n for n, value in zip(outputs, values, strict=True) if not math.isfinite(value)]
+    if wrong:
+        report.problems.append(f"dry run: {', '.join(wrong)} not finite")
+    else:
+        report.lines.append(f"dry run: {DRY_RUN_STEPS} steps of {DRY_RUN_STEP:g} s, outputs finite")
+
+
+def _small(name: str, time: float) -> float:
+    """A small motion, or load, at a port."""
+    kinds = {"y": -DRY_RUN_SPEED * time, "vy": -DRY_RUN_SPEED, "fy": DRY_RUN_FORCE}
+    return kinds[name.rpartition(".")[2]]

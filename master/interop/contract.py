@@ -1,0 +1,176 @@
+"""The contract as a check of a component: its ports, their variables and units, and what it can be.
+
+docs/contract.md has the tables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from touchdown.master.components.component import Component, Kind, Variable
+from touchdown.master.components.contract import (
+    FORCE,
+    LOAD,
+    MODE_LOAD,
+    MODE_MOTION,
+    MOTION,
+    MOUNT,
+    NEEDED,
+    POSITION,
+    SLOPE,
+    SPIN,
+    STATIC,
+    UNITS,
+)
+from touchdown.modelkit.ports import MODES
+from touchdown.modelkit.variables import Causality
+
+TAKING = (Causality.INPUT,)
+GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
+
+
+class Side(StrEnum):
+    """Whose port it is."""
+
+    BEARING = "bearing"  # takes motion and gives load
+    BODY = "body"  # the other way round
+    SENSOR = "sensor"  # takes motion only
+
+
+_MODE = {Side.BEARING: MODE_LOAD[0], Side.BODY: MODE_MOTION[0]}  # by which an elastic mode is counted
+
+
+@dataclass
+class Report:
+    """What was found out about an FMU."""
+
+    name: str
+    problems: list[str] = field(default_factory=list)
+    lines: list[str] = field(default_factory=list)
+    unitless: list[str] = field(default_factory=list)  # variables that state no unit, and what is assumed
+
+    @property
+    def text(self) -> str:
+        """For people."""
+        verdict = "passed" if not self.problems else f"{len(self.problems)} problem(s)"
+        body = [f"  {line}" for line in self.lines]
+        if self.unitless:
+            body.append(f"  no unit stated, taken to be: {', '.join(dict.fromkeys(self.unitless))}")
+        body += [f"  problem: {p}" for p in self.problems]
+        return "\n".join([f"{self.name}: {verdict}", *body])
+
+
+def ports(component: Component) -> dict[str, Side]:
+    """Sides of a component's ports, by the ports' names."""
+    sides: dict[str, Side] = {}
+    for variable in component.variables.values():
+        port, _, suffix = variable.name.rpartition(".")
+        if not port or port.endswith("]"):  # modes belong to their seat
+            continue
+        if variable.causality is Causality.INPUT and suffix in POSITION:
+            loaded = any(f"{port}.{load}" in component.variables for load in FORCE)
+            sides[port] = Side.BEARING if loaded else Side.SENSOR
+        elif variable.causality is Causality.INPUT and suffix in FORCE:
+            sides[port] = Side.BODY
+    return sides
+
+
+@dataclass(frozen=True)
+class Role:
+    """What a component can be in a scene."""
+
+    title: str
+    side: Side  # of its ports
+    ports: tuple[str, ...] = ()  # by the names that the project's scenes attach; none: any
+    optional: tuple[str, ...] = ()  # ports it may have
+    parameters: Mapping[str, str] = field(default_factory=dict)  # names and units
+
+
+ROLES = {
+    "bearing": Role("a bearing", Side.BEARING, ("journal",), ("housing",)),
+    "amb": Role("a magnetic bearing", Side.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
+    "rotor": Role("a rotor", Side.BODY),  # whatever its seats are called
+    "housing": Role("a housing", Side.BODY, ("seat",)),
+}
+
+
+def check_ports(component: Component, report: Report) -> None:
+    """Check every port that a component has."""
+    sides = ports(component)
+    if not sides:
+        report.lines.append("no port of a bearing or a body: it can only be connected variable by variable")
+    for port, side in sides.items():
+        if side is Side.SENSOR:
+            report.lines.append(f"port {port}: of a sensor")
+        else:
+            _check_port(component, port, side, report)
+
+
+def check_role(component: Component, role: str, report: Report) -> None:
+    """Check what a component needs beyond the ports it has to be that (a key of ROLES)."""
+    wanted = ROLES[role]
+    sides = ports(component)
+    for port in (*wanted.ports, *(p for p in wanted.optional if p in sides)):
+        if port not in sides:
+            _check_port(component, port, wanted.side, report)
+        elif sides[port] is not wanted.side:
+            report.problems.append(f"port {port} is of a {sides[port]}, not of a {wanted.side}")
+    seats = [p for p, side in sides.items() if side is wanted.side and _spins(component, p)]
+    if not wanted.ports and not seats:
+        report.problems.append(
+            f"no port of a {wanted.side} that spins; {wanted.title} needs for each of its seats, called A "
+            "for one, A.x, A.y (output in m), A.omega (output in rad/s) and A.fx, A.fy (input in N)"
+        )
+    for name, unit in wanted.parameters.items():
+        variable = component.variables.get(name)
+        if variable is None or variable.causality is not Causality.PARAMETER:
+            report.problems.append(f"{name} is missing (parameter in {unit}); scenes count from it")
+        else:
+            _check_variable(variable, (Causality.PARAMETER,), unit, report)
+
+
+def _spins(component: Component, port: str) -> bool:
+    return any(f"{port}.{suffix}" in component.variables for suffix in SPIN)
+
+
+def _check_port(component: Component, port: str, side: Side, report: Report) -> None:
+    takes, gives = (MOTION, LOAD + SLOPE) if side is Side.BEARING else (LOAD + SLOPE, MOTION)
+    missing: list[str] = []
+    for suffixes, causes in ((takes, TAKING), (gives, GIVING)):
+        for suffix in suffixes:
+            variable = component.variables.get(f"{port}.{suffix}")
+            if variable is not None:
+                _check_variable(variable, causes, UNITS[suffix], report)
+                continue
+            missing.append(suffix)
+            if suffix in NEEDED:
+                report.problems.append(
+                    f"{port}.{suffix} is missing ({causes[0]} in {UNITS[suffix]}); "
+                    f"no {side} works without it"
+                )
+    if any(f"{port}.{suffix}" in component.variables for suffix in (*takes, *gives)):
+        report.lines.append(_portrait(component, port, side, missing))
+
+
+def _check_variable(variable: Variable, causes: Sequence[Causality], unit: str, report: Report) -> None:
+    if variable.causality not in causes:
+        report.problems.append(f"{variable.name} has the causality {variable.causality}, not {causes[0]}")
+    elif variable.kind is not Kind.REAL:
+        report.problems.append(f"{variable.name} is of the type {variable.kind}, not Real")
+    elif variable.unit is None:
+        report.unitless.append(f"{variable.name} in {unit}")
+    elif variable.unit != unit:
+        report.problems.append(f"{variable.name} is in {variable.unit}, not in {unit}")
+
+
+def _portrait(component: Component, port: str, side: Side, missing: Sequence[str]) -> str:
+    """What a port is, and what it does without."""
+    spins = _spins(component, port)
+    text = f"port {port}: of a {side}, {'seat of a journal' if spins else 'mount of a housing'}"
+    modes = sum(f"{port}.mode[{k}].{_MODE[side]}" in component.variables for k in range(1, MODES + 1))
+    text += f", with up to {modes} elastic modes" if modes else ""
+    rare = (*NEEDED, *STATIC, *(MOUNT if spins else SPIN))
+    optional = [suffix for suffix in missing if suffix not in rare]
+    return text + (f"; without {', '.join(optional)}" if optional else "")

@@ -1,0 +1,111 @@
+"""XML of a package: read with care, since others wrote it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from urllib.parse import unquote
+from xml.etree.ElementTree import Element, ParseError, fromstring
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import BASE, Scale, Unit
+from touchdown.master.interop.ssp.names import NAMESPACES
+
+CHOICES = ("BooleanMapping", "IntegerMapping", "EnumerationMapping")  # transformations that are not read
+
+
+def tag(name: str) -> str:
+    """ElementTree's name of PREFIX:NAME."""
+    prefix, _, local = name.partition(":")
+    return f"{{{NAMESPACES[prefix]}}}{local}"
+
+
+def children(element: Element, path: str) -> list[Element]:
+    """Elements at `path`, such as ssd:Elements/ssd:Component."""
+    return element.findall(path, NAMESPACES)
+
+
+def child(element: Element, path: str) -> Element | None:
+    """The first element at `path`."""
+    return element.find(path, NAMESPACES)
+
+
+def read_xml(path: Path, where: str, root: str) -> Element:
+    """The root element of a file, which must be `root` (PREFIX:NAME). Raises TouchdownError."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise TouchdownError(f"{where}: cannot read it ({error.strerror})") from None
+    if b"<!DOCTYPE" in content:
+        raise TouchdownError(f"{where}: it declares a document type, which SSP does not; refused")
+    try:
+        element = fromstring(content)
+    except (ParseError, ValueError, LookupError) as error:
+        raise TouchdownError(f"{where}: it is not valid XML ({error})") from None
+    if element.tag != tag(root):
+        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP 1.0")
+    return element
+
+
+def required(element: Element, name: str, where: str) -> str:
+    """A text attribute that must be there."""
+    value = element.get(name)
+    if not value:
+        kind = element.tag.rpartition("}")[2]
+        raise TouchdownError(f"{where}: a {kind} has no {name}")
+    return value
+
+
+def number(element: Element, name: str, where: str, default: float | None = None) -> float:
+    """A numeric attribute; it must be there where there is no default."""
+    if default is not None and element.get(name) is None:
+        return default
+    text = required(element, name, where)
+    try:
+        return float(text)
+    except ValueError:
+        raise TouchdownError(f"{where}: {name} = {text!r} is not a number") from None
+
+
+def switch(element: Element, name: str, where: str) -> bool:
+    """A boolean attribute, false by default."""
+    text = element.get(name, "false")
+    if text not in ("true", "false", "1", "0"):
+        raise TouchdownError(f"{where}: {name} = {text!r} is neither true nor false")
+    return text in ("true", "1")
+
+
+def transformation(element: Element, where: str) -> Scale | None:
+    """The linear transformation in an element; others are refused."""
+    for kind in CHOICES:
+        if child(element, f"ssc:{kind}Transformation") is not None:
+            raise TouchdownError(f"{where}: {kind}Transformation is not supported, only linear ones are")
+    linear = child(element, "ssc:LinearTransformation")
+    if linear is None:
+        return None
+    return number(linear, "factor", where, 1.0), number(linear, "offset", where, 0.0)
+
+
+def unit_definitions(element: Element, path: str, where: str) -> dict[str, Unit]:
+    """The units defined at `path`, by name."""
+    units: dict[str, Unit] = {}
+    for unit in children(element, f"{path}/ssc:Unit"):
+        base = child(unit, "ssc:BaseUnit")
+        if base is not None:
+            name = required(unit, "name", where)
+            exponents = {s: int(number(base, s, f"{where}: unit {name}", 0.0)) for s in BASE}
+            factor = number(base, "factor", f"{where}: unit {name}", 1.0)
+            if factor == 0.0:
+                raise TouchdownError(f"{where}: unit {name} has the factor 0")
+            offset = number(base, "offset", f"{where}: unit {name}", 0.0)
+            units[name] = Unit({s: n for s, n in exponents.items() if n}, factor, offset)
+    return units
+
+
+def inside(folder: Path, source: str, where: str) -> Path:
+    """The file of the package that the URI `source` names. Raises TouchdownError for any other."""
+    path = unquote(source)
+    if ":" in path or path.startswith("/") or "\\" in path or ".." in path.split("/"):
+        raise TouchdownError(f"{where}: {source!r} is not a file inside the package; pack it with it")
+    if not (folder / path).is_file():
+        raise TouchdownError(f"{where}: the package has no file {path!r}")
+    return folder / path

@@ -1,0 +1,124 @@
+"""A run that is over: what it leaves in memory for figures and pictures drawn later.
+
+What is asked of a system when it has ended (values, which variables there are, how it is connected) can
+be asked of its `Ending` as well, which holds no FMU any more. Functions that take either say `Readable`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import NUMBERS, Component, Variable
+from touchdown.master.coupling.connections import Attachment, Connection, full
+from touchdown.master.coupling.system import System
+from touchdown.master.results.recording import Recording
+from touchdown.master.scene.scene import Scene
+
+HOUSING = "housing.x"  # what a bearing knows of the housing it moves with
+
+
+class Teller(Protocol):
+    """A component, or what is known of one."""
+
+    @property
+    def variables(self) -> Mapping[str, Variable]:
+        """All of them, by name."""
+        ...
+
+    def read(self, names: Sequence[str]) -> list[float]:
+        """Values of variables, integers as such."""
+        ...
+
+
+class Readable(Protocol):
+    """A system that ended, or its `Ending`."""
+
+    @property
+    def components(self) -> Mapping[str, Teller]:
+        """By name."""
+        ...
+
+    @property
+    def attachments(self) -> Sequence[Attachment]:
+        """Bearings' ports on bodies' ports."""
+        ...
+
+    @property
+    def connections(self) -> Sequence[Connection]:
+        """What feeds what."""
+        ...
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is COMPONENT.VARIABLE."""
+        ...
+
+    def value(self, name: str) -> float:
+        """Value of COMPONENT.VARIABLE."""
+        ...
+
+
+@dataclass(frozen=True)
+class LastValues:
+    """What a component gave in the end: the values of all its numbers, or of none where it refused."""
+
+    variables: Mapping[str, Variable]  # those that have a value
+    values: Mapping[str, float]
+
+    def read(self, names: Sequence[str]) -> list[float]:
+        """Values of real and integer variables, integers as such."""
+        return [self.values[name] for name in names]
+
+
+@dataclass(frozen=True)
+class Ending:
+    """A system as it ended."""
+
+    components: Mapping[str, LastValues]
+    attachments: Sequence[Attachment]
+    connections: Sequence[Connection]
+
+    def __contains__(self, name: str) -> bool:
+        """Whether it has the value of COMPONENT.VARIABLE."""
+        component, _, variable = name.partition(".")
+        return component in self.components and variable in self.components[component].values
+
+    def value(self, name: str) -> float:
+        """Value of COMPONENT.VARIABLE. Raises TouchdownError where there is none."""
+        if name not in self:
+            raise TouchdownError(f"there is no value of {name}; it is no number, or was not told")
+        component, _, variable = name.partition(".")
+        return self.components[component].values[variable]
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A run that is over."""
+
+    scene: Scene
+    system: Readable
+    recording: Recording
+
+
+def ending(system: System) -> Ending:
+    """What `system` says now, once and for all."""
+    told = {name: _last_values(component) for name, component in system.components.items()}
+    return Ending(told, tuple(system.attachments), tuple(system.connections))
+
+
+def _last_values(component: Component) -> LastValues:
+    numbers = {name: v for name, v in component.variables.items() if v.kind in NUMBERS}
+    try:
+        return LastValues(numbers, dict(zip(numbers, component.read(list(numbers)), strict=True)))
+    except TouchdownError:  # one that failed may answer nothing more
+        return LastValues({}, {})
+
+
+def housing_port(system: Readable, a: Attachment) -> str | None:
+    """COMPONENT.PORT that the bearing's outer ring moves with; None where it stands in the ground."""
+    for c in system.connections:
+        if c.target_name == full(a.bearing, HOUSING):
+            return c.source_name.rpartition(".")[0]
+    return None

@@ -1,0 +1,158 @@
+"""Pictures of a run, drawn when they are asked for: `result.plot.orbit()` and so on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.results.ending import Finished
+from touchdown.master.results.stresses import stressed
+from touchdown.master.results.summary import energy_total, touchdown_seats
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+
+
+class Plot:
+    """The pictures of a run.
+
+    Those of one panel take the axes to draw on and return them; those of several take a figure, or a part
+    of one, and return all their axes. Without, they make a figure of their own with pyplot, so that a
+    notebook shows it. Those of a bearing are of the scene's first, unless one is named. All raise
+    TouchdownError where the run has not what they show.
+    """
+
+    def __init__(self, run: Callable[[], Finished]) -> None:
+        self._run = run
+
+    def __repr__(self) -> str:
+        names = [name for name in vars(type(self)) if not name.startswith("_")]
+        return f"<pictures of a run: {', '.join(names)}>"
+
+    def orbit(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
+        """The rotor in the clearance circle of a bearing [µm]."""
+        from touchdown.master.results.figures.motion import draw_orbit
+
+        return draw_orbit(_axes(ax), self._run(), self._seat(bearing))
+
+    def paths(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
+        """The rotor in the clearance circle, its landing from near, and where rings and cage go [µm]."""
+        from touchdown.master.results.figures.motion import paths
+
+        return paths(_figure(figure), self._run(), self._seat(bearing))
+
+    def orbits(self, figure: FigureBase | None = None) -> list[Axes]:
+        """The rotor in all its bearings side by side [µm]."""
+        from touchdown.master.results.figures.orbits import orbits
+
+        self._seat(None)
+        return orbits(_figure(figure), self._run(), touchdown_seats(self._run().system))
+
+    def forces(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
+        """Contact forces in a bearing over time [N]: of the rotor, and of the ball hit hardest."""
+        from touchdown.master.results.figures.forces import forces
+
+        seat = self._seat(bearing)
+        self._require(f"{seat.bearing}.contact.force")
+        return forces(_figure(figure), self._run(), seat)
+
+    def speeds(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
+        """Circumferential speeds of rotor, ring, balls and cage over time [m/s]."""
+        from touchdown.master.results.figures.motion import speeds
+
+        seat = self._seat(bearing)
+        self._require(f"{seat.bearing}.speed.ring")
+        return speeds(_figure(figure), self._run(), seat)
+
+    def contacts(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
+        """The balls of a detailed bearing at the end of the run, and which of them are pressed."""
+        from touchdown.master.results.figures.contacts import draw_contacts, has_contacts
+
+        run, seat = self._run(), self._seat(bearing)
+        if not has_contacts(run.system, seat):
+            raise TouchdownError(
+                f"{seat.bearing} does not tell of single balls; swap in a detailed bearing"
+            )
+        return draw_contacts(_axes(ax), run, seat)
+
+    def energy(self, figure: FigureBase | None = None) -> list[Axes]:
+        """Where the energy is, and its balance [J]."""
+        from touchdown.master.results.figures.energy import energy
+
+        run = self._run()
+        if energy_total(run.system, run.recording) is None:
+            raise TouchdownError("not all components state and record their energies; see run.record")
+        return energy(_figure(figure), run)
+
+    def spectrum(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
+        """Amplitude of the inner ring's velocity over frequency, after the landing [m/s, Hz]."""
+        from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
+        from touchdown.master.results.spectra import BEGIN, LENGTH
+
+        run, seat = self._run(), self._seat(bearing)
+        self._require(f"{seat.bearing}.ring.x")
+        if not has_spectrum(run.recording, seat):
+            raise TouchdownError(f"a spectrum needs a run.duration of {BEGIN + LENGTH:.3g} s or more")
+        return spectrum(_figure(figure), run, seat)
+
+    def waterfall(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
+        """Spectra of the rotor's motion one behind the other, while it slows down."""
+        from touchdown.master.results.figures.waterfall import (
+            COARSEST,
+            SHORTEST,
+            has_waterfall,
+            motion_waterfall,
+        )
+
+        run, seat = self._run(), self._seat(bearing)
+        if not has_waterfall(run.recording, seat):
+            raise TouchdownError(
+                f"a waterfall needs a run.duration of {SHORTEST:g} s or more, recorded at {COARSEST:g} Hz "
+                "or more; see run.record_every and run.record"
+            )
+        return motion_waterfall(_figure(figure), run, seat)
+
+    def stress(self, figure: FigureBase | None = None, rotor: str | None = None) -> list[Axes]:
+        """Stresses of a flexible rotor [MPa] along its axis and over time; of the scene's first."""
+        from touchdown.master.results.figures.stress import has_stress, stress
+
+        run = self._run()
+        known = [name for name in stressed(run.system) if has_stress(run.system, name)]
+        if not known:
+            raise TouchdownError(
+                f"no rotor of scene {run.scene.name} has a stress to show; rotor.stress.active = 1 asks a "
+                "flexible one for it"
+            )
+        if rotor is not None and rotor not in known:
+            raise TouchdownError(f"{rotor} has no stress to show; {one_of(rotor, known)}")
+        return stress(_figure(figure), run, rotor or known[0])
+
+    def _seat(self, bearing: str | None) -> Attachment:
+        """Of the bearing of that name, or of the first."""
+        run = self._run()
+        seats = {a.bearing: a for a in touchdown_seats(run.system)}
+        if not seats:
+            raise TouchdownError(f"scene {run.scene.name} has no touchdown bearing to show")
+        if bearing is not None and bearing not in seats:
+            raise TouchdownError(f"there is no touchdown bearing {bearing}; {one_of(bearing, seats)}")
+        return seats[bearing] if bearing else next(iter(seats.values()))
+
+    def _require(self, name: str) -> None:
+        """Raise NotRecordedError where COMPONENT.VARIABLE was not recorded."""
+        if name not in self._run().recording:
+            self._run().recording[name]
+
+
+def _axes(ax: Axes | None) -> Axes:
+    from touchdown.master.results.figures.style import drawable
+
+    return drawable(None).subplots() if ax is None else ax
+
+
+def _figure(figure: FigureBase | None) -> FigureBase:
+    from touchdown.master.results.figures.style import drawable
+
+    return drawable(figure)

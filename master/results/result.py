@@ -1,0 +1,125 @@
+"""What a run left behind, to be looked at from Python."""
+
+from __future__ import annotations
+
+import html
+import shutil
+import tempfile
+import weakref
+from collections.abc import Iterable
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.several import several
+from touchdown.master.results.ending import Ending, Finished
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.summary import table
+from touchdown.master.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from touchdown.master.results.figures.plot import Plot
+
+RECORDING = "result.h5"
+
+
+class Scratch:
+    """A temporary folder, gone when nothing uses it any more."""
+
+    def __init__(self) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="touchdown_"))
+        weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Result:
+    """What a run left behind.
+
+    `summary` holds its figures by name, each with its unit; None where something did not happen.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> result = touchdown.run(scene, in_process=True)
+    >>> result.ended
+    <Ended.COMPLETED: 'completed'>
+    >>> result.summary["first_contact_speed_m_s"] > 0.05
+    True
+    >>> result.data["rotor.A.y"].attrs["units"]
+    'm'
+    >>> float(result.data["rotor.A.y"].min()) < -200e-6
+    True
+    >>> list(result.to_pandas(["rotor.A.x", "rotor.A.y"]))
+    ['rotor.A.x', 'rotor.A.y']
+    >>> result.plot.orbit().get_xlabel()
+    'x [µm]'
+    """
+
+    scene: Scene
+    recording: Recording  # stays open, and this run's, whatever becomes of the file
+    folder: Path  # a temporary one, for as long as the result is in use, where none was asked for
+    summary: dict[str, object]
+    ending: Ending
+    ended: Ended
+    stopped_because: str = ""
+    warnings: list[str] = field(default_factory=list)
+    pictures: list[Path] = field(default_factory=list)
+
+    @cached_property
+    def data(self) -> xarray.Dataset:
+        """All that was recorded: COMPONENT.VARIABLE over `time` (s from the scene's zero), in SI.
+
+        Every variable has the attributes units and long_name, and is read when it is looked at.
+        """
+        from touchdown.master.results.dataset import dataset
+
+        return dataset(self.recording)
+
+    def to_pandas(self, names: str | Iterable[str] | None = None) -> pandas.DataFrame:
+        """What was recorded as COMPONENT.VARIABLE, or only `names`, indexed by time (s), in SI.
+
+        Raises TouchdownError for what was not recorded.
+        """
+        import pandas
+
+        recording = self.recording
+        chosen = [name for name, _ in recording.columns()] if names is None else several(names)
+        columns = {name: recording[name] for name in chosen}
+        return pandas.DataFrame(columns, pandas.Index(recording.time, name="time"))
+
+    @property
+    def plot(self) -> Plot:
+        """Pictures: `plot.orbit()`, `plot.forces()` and more, each of which returns its axes."""
+        from touchdown.master.results.figures.plot import Plot
+
+        return Plot(self._finished)
+
+    def _finished(self) -> Finished:
+        return Finished(self.scene, self.ending, self.recording)
+
+    def __getstate__(self) -> dict[str, object]:
+        """Pickled with its fields, without data that were looked at.
+
+        Raises TouchdownError where its folder is a temporary one, gone with this result.
+        """
+        return {part.name: getattr(self, part.name) for part in fields(self)}
+
+    @property
+    def _headline(self) -> str:
+        because = f": {self.stopped_because}" if self.stopped_because else ""
+        return f"Result of {self.scene.name}, {self.ended.value}{because}"
+
+    def __repr__(self) -> str:
+        return f"{self._headline}\n{table(self.summary)}"
+
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        rows = (line.split(maxsplit=1) for line in table(self.summary).splitlines())
+        cells = "".join(
+            f"<tr><th style='text-align: left'>{html.escape(key)}</th><td>{html.escape(value)}</td></tr>"
+            for key, value in rows
+        )
+        return f"<p>{html.escape(self._headline)}</p><table>{cells}</table>"

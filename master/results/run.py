@@ -1,0 +1,141 @@
+"""Run a scene from start to finish: simulate, record, sum up, draw."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from tqdm.auto import tqdm
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import writing_to
+from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.coupling.simulation import Outcome, open_system, simulate
+from touchdown.master.results.ending import Finished, ending
+from touchdown.master.results.recording import Recording, write_csv
+from touchdown.master.results.result import RECORDING, Result, Scratch
+from touchdown.master.results.summary import summarise
+from touchdown.master.scene.scene import Scene
+
+
+def run_scene(
+    scene: Scene,
+    folder: Path | None,
+    in_process: bool = False,
+    csv: bool = False,
+    pictures: bool = True,
+    progress: bool = False,
+) -> Result:
+    """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
+
+    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for.
+
+    Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
+    it recorded, and says why in the result.
+    """
+    scratch = None
+    if folder is None:
+        scratch = Scratch()
+        folder = scratch.path
+    make_writable(folder)
+    with interrupts_noted():
+        system = open_system(scene, in_process)
+        try:
+            with _Bar(scene, progress) as show:
+                outcome = simulate(scene, system, folder / RECORDING, show)
+            told = ending(system)
+            recording = _reopened(folder / RECORDING, scratch, outcome)
+            summary = summarise(scene, told, outcome, recording)
+            drawn = _write_results(Finished(scene, told, recording), summary, folder, csv, pictures)
+        except OSError as error:
+            raise TouchdownError(
+                f"cannot write to {folder}: {error}; choose another folder with -o"
+            ) from None
+        finally:
+            system.close()
+    warnings = _warnings(scene, outcome)
+    return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
+    """What was recorded. Raises TouchdownError where it cannot be read, with what stopped the run if so."""
+    try:
+        return Recording(path, owner)
+    except TouchdownError as error:
+        raise TouchdownError(outcome.reason or str(error)) from None
+
+
+def _warnings(scene: Scene, outcome: Outcome) -> list[str]:
+    """What is to be said of a run that went to its end."""
+    if outcome.warned_at is None or outcome.ended is not Ended.COMPLETED:
+        return []
+    return [
+        f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
+        f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
+    ]
+
+
+def _write_results(
+    run: Finished, summary: dict[str, object], folder: Path, csv: bool, pictures: bool
+) -> list[Path]:
+    """scene.json, summary.json, and on request result.csv and pictures, which are returned."""
+    resolved = json.dumps(run.scene.resolved(), indent=2, default=str)
+    (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
+    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+    if csv:
+        write_csv(run.recording, folder / "result.csv")
+    if not pictures:
+        return []
+    from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
+
+    return draw_all(run, folder)
+
+
+def make_writable(folder: Path) -> None:
+    """Make `folder` and see that files can be written into it. Raises TouchdownError where not."""
+    with writing_to(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / ".touchdown"
+        probe.touch()
+        probe.unlink()
+
+
+class _Bar:
+    """Progress over simulated time, with the run's speed and the ledger's residual."""
+
+    def __init__(self, scene: Scene, shown: bool) -> None:
+        self._bar = tqdm(
+            total=scene.run.duration,
+            disable=not shown,
+            # tqdm's widget for notebooks stands in for exactly {bar}
+            bar_format="{desc} {percentage:3.0f}%|{bar}| {n:.3f} of {total:.3f} s"
+            "{postfix}, left {remaining}",
+            desc=scene.name,
+            mininterval=0.2,
+        )
+
+    def __enter__(self) -> Callable[[float, float], None]:
+        if self._bar.disable:
+            return lambda time, residual: None
+
+        self._bar.set_postfix_str("compiling what is new")
+        begun: float | None = None  # s, simulated, from which the speed counts
+
+        def show(time: float, residual: float) -> None:
+            nonlocal begun
+            if begun is None or time <= 0.0:  # what is compiled is so in the first steps
+                begun = max(time, 0.0)
+                self._bar.unpause()
+                self._bar.n = self._bar.initial = begun
+                return
+            speed = self._bar.format_dict["elapsed"] / (time - begun)
+            text = f"{speed:.2f} s per simulated s, ledger {residual:.1e}"
+            self._bar.set_postfix_str(text, refresh=False)
+            self._bar.update(min(time, self._bar.total) - self._bar.n)
+
+        return show
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()

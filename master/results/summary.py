@@ -1,0 +1,298 @@
+"""The figures of a run: flat, named with their units."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import get_window
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.simulation import Outcome, energy_scale
+from touchdown.master.results.ending import Readable, housing_port
+from touchdown.master.results.recording import NotRecordedError, Recording
+from touchdown.master.results.stresses import stress_figures
+from touchdown.master.results.whirl.verdict import Episode, Whirl, classify
+from touchdown.master.scene.scene import Scene
+
+STANDS_OUT = 5.0  # a line over the median of its band
+RPM = 60.0 / (2.0 * math.pi)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure taken from a bearing's variable; `missing` marks "has not happened"."""
+
+    key: str
+    variable: str
+    factor: float = 1.0
+    from_zero: bool = False  # a time, counted from the scene's zero
+    missing: float | None = None
+
+
+FIGURES = (
+    Figure("first_contact_time_s", "contact.first_time", from_zero=True, missing=-1.0),
+    Figure("first_contact_speed_m_s", "contact.first_speed"),
+    Figure("peak_contact_force_N", "contact.peak_force"),
+    Figure("peak_indentation_rotor_ring_um", "contact.peak_indentation", 1e6),
+    Figure("peak_indentation_rings_um", "balls.peak_indentation", 1e6),
+    Figure("peak_indentation_ball_inner_um", "inner.peak_indentation", 1e6),
+    Figure("peak_indentation_ball_outer_um", "outer.peak_indentation", 1e6),
+    Figure("peak_indentation_ball_ball_um", "neighbours.peak_indentation", 1e6),
+    Figure("peak_indentation_ball_cage_um", "pockets.peak_indentation", 1e6),
+    Figure("peak_ball_force_N", "balls.peak_force"),
+    Figure("first_impact_ball_force_N", "balls.first_impact_force"),
+    Figure("peak_neighbour_force_N", "neighbours.peak_force"),
+    Figure("peak_cage_force_N", "pockets.peak_force"),
+    Figure("ring_sync_time_s", "ring.sync_time", from_zero=True, missing=-1.0),
+    Figure("loaded_balls_end", "balls.loaded"),
+)
+LAST_PART = 0.2  # of a run, for means
+
+
+ENERGIES = (
+    ("energy.kinetic", 1.0),
+    ("energy.potential", 1.0),
+    ("energy.dissipated", 1.0),
+    ("supplied", -1.0),
+)
+
+
+def touchdown_seats(system: Readable) -> list[Attachment]:
+    """Attachments at which a journal can touch down, with the name of the bearing's report."""
+    return [
+        a
+        for a in system.attachments
+        if f"{a.bearing}.contact.first_time" in system and a.bearing_end.full("omega") in system
+    ]
+
+
+def seat_name(a: Attachment, seats: list[Attachment]) -> str:
+    """The body's port, such as A; with the body's name where two bodies have a port of that name."""
+    alone = [s.body_port for s in seats].count(a.body_port) == 1
+    return a.body_port if alone else f"{a.body}_{a.body_port}"
+
+
+def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recording) -> dict[str, object]:
+    """All figures of a run; None where something did not happen or was too short to tell."""
+    figures: dict[str, object] = {
+        "scene": scene.name,
+        "completed": outcome.ended is Ended.COMPLETED,
+    }
+    if outcome.ended is not Ended.COMPLETED:
+        figures["stopped_because"] = outcome.reason
+    seats = touchdown_seats(system)
+    for a in seats:
+        tail = f"_{a.bearing}" if len(seats) > 1 else ""
+        figures |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
+        with suppress(NotRecordedError):
+            orbit = _orbit_figures(system, a, outcome, recording)
+            figures |= {f"{key}{tail}": value for key, value in orbit.items()}
+            figures |= _whirl_figures(system, a, seat_name(a, seats), recording)
+    for name in dict.fromkeys(a.body for a in seats):
+        tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
+        seat = next(a for a in seats if a.body == name)
+        speed = seat.motion("omega")
+        figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
+    figures |= stress_figures(system, outcome)
+    figures |= outcome.coupling
+    figures |= _run_figures(scene, system, outcome, recording)
+    return figures
+
+
+def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
+    component = system.components[a.bearing]
+    figures: dict[str, object] = {}
+    touched = component.read(["contact.first_time"])[0] != -1.0
+    for figure in FIGURES:
+        if figure.variable not in component.variables:
+            continue
+        value = component.read([figure.variable])[0]
+        if not touched or (figure.missing is not None and value == figure.missing):
+            figures[figure.key] = None
+        elif isinstance(value, int):
+            figures[figure.key] = value
+        else:
+            figures[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
+    return figures
+
+
+def _orbit_figures(
+    system: Readable, a: Attachment, outcome: Outcome, recording: Recording
+) -> dict[str, object]:
+    x = recording[a.motion("x")]
+    y = recording[a.motion("y")]
+    time = recording.time
+    fall = None
+    after = time > 0.0
+    if after.any():
+        start = int(np.argmax(time >= -1e-12))
+        fall = 1e6 * float(np.max(np.hypot(x[after] - x[start], y[after] - y[start])))
+    frequency = None
+    touched = system.value(f"{a.bearing}.contact.first_time")
+    if touched != -1.0:
+        first = touched - outcome.zero
+        settled = time >= first + 0.2 * (outcome.end - outcome.zero - first)
+        frequency = dominant_frequency(time[settled], x[settled])
+    loaded = None
+    if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
+        last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
+        loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
+    figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
+    return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
+
+
+def relative_orbit(system: Readable, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+    """Journal's position relative to the housing's, the bearing's centre (m)."""
+    port = housing_port(system, a)
+    x, y = (recording[a.motion(axis)] - (recording[f"{port}.{axis}"] if port else 0.0) for axis in "xy")
+    return x, y
+
+
+def whirl_at(system: Readable, a: Attachment, recording: Recording) -> Whirl | None:
+    """The verdict on the journal's orbit; None where the bearing states no clearance."""
+    if "clearance" not in system.components[a.bearing].variables:
+        return None
+    clearance = system.value(f"{a.bearing}.clearance")
+    spin = float(np.median(recording[a.motion("omega")]))
+    orbit = relative_orbit(system, a, recording)
+    return classify(recording.time, *orbit, clearance, spin, _force_on_journal(a, orbit, recording))
+
+
+def _force_on_journal(
+    a: Attachment, orbit: tuple[np.ndarray, np.ndarray], recording: Recording
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """The bearing's force on the journal (N), x and y, or its normal part alone; None where unknown."""
+    x, y = (a.load(f"f{axis}") for axis in "xy")
+    if x in recording and y in recording:
+        return recording[x], recording[y]
+    normal = f"{a.bearing}.contact.force"
+    if normal not in recording:
+        return None
+    angle = np.arctan2(orbit[1], orbit[0])
+    return -recording[normal] * np.cos(angle), -recording[normal] * np.sin(angle)
+
+
+def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
+    """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
+    key = f"whirl_{seat}"
+    tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N", "_episodes")
+    whirl = whirl_at(system, a, recording)
+    if whirl is None:
+        return {f"{key}{tail}": None for tail in tails}
+    radius = None if whirl.radius is None else 1e6 * whirl.radius
+    force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
+    episodes = [_episode_figures(a, episode, recording) for episode in whirl.episodes]
+    values = (whirl.words, whirl.revolutions, radius, whirl.frequency, force, episodes)
+    return {f"{key}{tail}": value for tail, value in zip(tails, values, strict=True)}
+
+
+def _episode_figures(a: Attachment, episode: Episode, recording: Recording) -> dict[str, object]:
+    return {
+        "direction": episode.direction.value,
+        "from_s": episode.start,
+        "to_s": episode.end,
+        "revolutions": episode.revolutions,
+        "frequency_Hz": episode.frequency,
+        "radius_um": 1e6 * episode.radius,
+        "largest_force_N": _largest_force(a, episode, recording),
+        "goes_on": episode.goes_on,
+    }
+
+
+def _largest_force(a: Attachment, episode: Episode, recording: Recording) -> float | None:
+    """Largest contact force in a whirl (N); None where the bearing does not report it.
+
+    Between recorded values it may be larger: where the run's peak grew meanwhile, it is that.
+    """
+    now, peak = f"{a.bearing}.contact.force", f"{a.bearing}.contact.peak_force"
+    if now not in recording or peak not in recording:
+        return None
+    part = (recording.time >= episode.start) & (recording.time <= episode.end)
+    peaks = recording[peak][part]
+    return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[now][part]))
+
+
+def dominant_frequency(
+    time: np.ndarray, values: np.ndarray, low: float = 8.0, high: float = 100.0
+) -> float | None:
+    """Frequency of the largest line between `low` and `high` (Hz).
+
+    None for less than four of its periods, or where no line stands out.
+    Hann window, zero-padded, the maximum refined by a parabola through the logarithm of three lines.
+    """
+    if len(time) < 64:
+        return None
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    centred = values - np.mean(values)
+    if not np.any(centred):
+        return None
+    count = 8 * len(centred)
+    spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
+    frequency = np.fft.rfftfreq(count, step)
+    band = np.flatnonzero((frequency >= low) & (frequency <= high))
+    if len(band) < 3:
+        return None
+    peak = int(band[np.argmax(spectrum[band])])
+    alone = spectrum[peak] > STANDS_OUT * np.median(spectrum[band])
+    if peak in (band[0], band[-1]) or not alone or frequency[peak] * (time[-1] - time[0]) < 4.0:
+        return None
+    a, b, c = np.log(spectrum[peak - 1 : peak + 2] + 1e-300)
+    return float(frequency[peak] + 0.5 * (a - c) / (a - 2.0 * b + c) * frequency[1])
+
+
+def energy_total(system: Readable, recording: Recording) -> np.ndarray | None:
+    """Sum of all energies minus what was supplied (J); None where a component does not state its own."""
+    attached = {name for a in system.attachments for name in (a.bearing, a.body)}
+    stated = ("energy.kinetic", "supplied")
+    if not all(any(s in system.components[n].variables for s in stated) for n in attached):
+        return None
+    parts = []
+    for name, component in system.components.items():
+        for variable, sign in ENERGIES:
+            if variable in component.variables:
+                if f"{name}.{variable}" not in recording:
+                    return None
+                parts.append(sign * recording[f"{name}.{variable}"])
+    return np.sum(parts, axis=0) if parts else None
+
+
+def _run_figures(
+    scene: Scene, system: Readable, outcome: Outcome, recording: Recording
+) -> dict[str, object]:
+    known = all(name in system for name in scene.energy_scale)
+    scale = energy_scale(scene, system) if known else 0.0
+    total = energy_total(system, recording)
+    balance = None
+    if total is not None and scale > 0.0:
+        balance = float(np.max(np.abs(total - total[0])) / scale)
+    simulated = outcome.end
+    return {
+        "energy_residual_relative": outcome.residual if scale > 0.0 else None,
+        "energy_balance_relative": balance,
+        "energy_scale_J": scale if scale > 0.0 else None,
+        "wall_time_s": outcome.wall_time,
+        "start_up_s": outcome.start_up,
+        "simulated_time_s": simulated,
+        "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
+        "scheme": scene.run.scheme.name,
+        "macro_step_s": scene.run.macro_step,
+        "macro_steps": outcome.steps,
+    }
+
+
+def table(summary: dict[str, object]) -> str:
+    """The figures as text, one a line."""
+    width = max(len(key) for key in summary)
+
+    def shown(value: object) -> str:
+        if value is None:
+            return "-"
+        if isinstance(value, list):
+            return str(len(value))
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+    return "\n".join(f"  {key:<{width}}  {shown(value)}" for key, value in summary.items())

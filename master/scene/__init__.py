@@ -1,0 +1,1 @@
+"""Scenes: which components are connected how, with which settings, run by which scheme."""

@@ -1,0 +1,196 @@
+"""Scenes from TOML files.
+
+title = "..."
+about = "..."
+zero = "amb.shutdown_time"                     # times and the duration count from here
+energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
+attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
+sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
+connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target; where the target is
+                                               # to be scaled, then factor and offset
+
+[run]
+duration = 5.0        # s
+macro_step = 2e-5     # s
+
+[components.rotor]
+fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
+preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
+every = 2             # macro steps of the run that it takes in one (default: 1)
+[components.rotor.set]
+mass = "1.65 kg"      # a number in SI, or text with a unit
+[components.rotor.names]
+"A.x" = "shaft_x"     # a variable of the contract, and what this FMU calls it; or names = "FILE.toml"
+
+A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
+gives takes the place of what stands there, table by table; a component that names its fmu is a new one.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import to_si
+from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.scene.scene import ComponentSpec, Scene, Wire, checked_preset
+from touchdown.master.scene.tables import (
+    entries,
+    flat,
+    items,
+    pairs,
+    reference,
+    references,
+    refuse_unknown,
+    table,
+    whole,
+)
+
+SHIPPED = Path(__file__).parent / "shipped"
+
+
+def shipped() -> dict[str, Path]:
+    """Files of the scenes that come with the project, by name."""
+    return {path.stem: path for path in sorted(SHIPPED.rglob("*.toml"), key=lambda path: path.stem)}
+
+
+def load_scene(name: str) -> Scene:
+    """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    path = locate(name)
+    return parse(tables(path), path.stem, path.parent)
+
+
+def locate(name: str) -> Path:
+    """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
+    if name.endswith(".toml"):
+        return Path(name)
+    try:
+        return shipped()[name]
+    except KeyError:
+        raise TouchdownError(
+            f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
+        ) from None
+
+
+def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
+    """A scene from the tables of its TOML file."""
+    known = ("title", "about", "zero", "energy_scale", "attach", "sense", "connect", "run", "components")
+    refuse_unknown(data, known, f"scene {name}")
+    components = {
+        key: _component(part, f"scene {name}: [components.{key}]", folder)
+        for key, part in table(data.get("components"), f"scene {name}: [components]").items()
+    }
+    if not components:
+        raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
+    return Scene(
+        name=name,
+        title=str(data.get("title", name)),
+        about=str(data.get("about", "")),
+        components=components,
+        attach=pairs(data.get("attach", []), f"scene {name}: attach"),
+        sense=pairs(data.get("sense", []), f"scene {name}: sense"),
+        connect=_wires(data.get("connect", []), f"scene {name}: connect"),
+        zero=reference(data["zero"], f"scene {name}: zero") if "zero" in data else None,
+        energy_scale=references(data.get("energy_scale", []), f"scene {name}: energy_scale"),
+        run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
+        folder=folder,
+    )
+
+
+def _component(value: object, where: str, folder: Path) -> ComponentSpec:
+    """A table of [components]."""
+    given = table(value, where)
+    refuse_unknown(given, ("fmu", "preset", "every", "set", "names"), where)
+    if not isinstance(given.get("fmu"), str):
+        raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
+    settings = flat(table(given.get("set", {}), where))
+    preset = checked_preset(given.get("preset"), where)
+    every = whole(given.get("every", 1), f"{where} every")
+    return ComponentSpec(
+        given["fmu"], settings, preset, every, _names(given.get("names", {}), where, folder)
+    )
+
+
+def read_names(path: Path) -> dict[str, str]:
+    """Names of an FMU's variables from a TOML file: "journal.x" = "shaft_x". Raises TouchdownError."""
+    return _checked_names(_toml(path, "names"), f"names in {path}")
+
+
+def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
+    """The tables of a scene's file over those of the scene it extends; `before`: files that led here."""
+    data = _toml(path, "scene")
+    if "extends" not in data:
+        return data
+    base = str(data.pop("extends"))
+    if base.endswith(".toml"):
+        start = path.parent / base
+    elif base in shipped():
+        start = shipped()[base]
+    else:
+        raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
+    if start.resolve() in (*before, path.resolve()):
+        raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
+    return _over(tables(start, (*before, path.resolve())), data)
+
+
+def _toml(path: Path, what: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TouchdownError(f"cannot read {what} {path}: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TouchdownError(f"{what} {path} is not valid TOML: {error}") from None
+
+
+def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """`base` with `changes` put in, nested tables likewise, unless they name another FMU."""
+    merged = dict(base)
+    for key, value in changes.items():
+        there, given = entries(merged.get(key)), entries(value)
+        if there is None or given is None or "fmu" in given:
+            merged[key] = value
+        else:
+            merged[key] = _over(there, given)
+    return merged
+
+
+def _wires(value: object, where: str) -> tuple[Wire, ...]:
+    """Pairs, some with factor and offset."""
+    wires = [items(wire) for wire in items(value) or ()]
+    if not isinstance(value, list) or None in wires:
+        raise TouchdownError(f'{where} must be a list such as [["rotor.A.x", "probe.x"]]')
+    return tuple(_wire(wire, where) for wire in wires if wire is not None)
+
+
+def _wire(wire: Sequence[object], where: str) -> Wire:
+    """Source and target, and where it is scaled, factor and offset."""
+    ((source, target),) = pairs([list(wire[:2])], where)
+    if len(wire) == 2:
+        return Wire(source, target)
+    if len(wire) != 4:
+        raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
+    what = f"{where}: {source} to {target}"
+    return Wire(
+        source, target, (to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset"))
+    )
+
+
+def _names(value: object, where: str, folder: Path) -> dict[str, str]:
+    """Of a component's variables: a table, or the path of a TOML file."""
+    if isinstance(value, str):
+        return read_names(folder / value)
+    return _checked_names(table(value, f"{where}.names"), f"{where}: names")
+
+
+def _checked_names(table: Mapping[str, Any], where: str) -> dict[str, str]:
+    names = flat(table)
+    for name, own in names.items():
+        if not isinstance(own, str):
+            raise TouchdownError(f'{where}: {name} = {own!r}; write such as "journal.x" = "shaft_x"')
+    twice = [own for own in names.values() if list(names.values()).count(own) > 1]
+    if twice:
+        raise TouchdownError(f"{where}: {twice[0]} is given twice")
+    return {name: str(own) for name, own in names.items()}

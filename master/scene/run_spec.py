@@ -1,0 +1,66 @@
+"""How a scene is to be run: [run] of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
+from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
+
+
+@dataclass(frozen=True)
+class RunSpec:
+    """How to run."""
+
+    duration: float = 1.0  # s, from the scene's zero
+    macro_step: float = 2e-5  # s
+    scheme: Scheme = SCHEMES[DEFAULT]
+    tolerance: float = 1e-10  # m, of the interface per macro step, for schemes that repeat or divide it
+    record_every: int = 5  # macro steps
+    record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
+    record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
+    warn_residual: float = 1e-3  # ledger over energy scale: say so
+    stop_residual: float = 0.1  # ledger over energy scale: stop
+
+
+def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
+    """A copy with the keys of [run] in `changes` set; raises TouchdownError for what cannot be."""
+    refuse_unknown(changes, tuple(READERS), "[run]")
+    values: dict[str, Any] = {key: READERS[key](value, f"run.{key}") for key, value in changes.items()}
+    return replace(run, **values)
+
+
+def _scheme(value: object, name: str) -> Scheme:
+    if not isinstance(value, Scheme):
+        return scheme(str(value))
+    if SCHEMES.get(value.name) != value:
+        raise TouchdownError(f"{name} = {value.name} is not registered; give it to register_scheme first")
+    return value
+
+
+def _above_zero(unit: str) -> Callable[[object, str], float]:
+    def read(value: object, name: str) -> float:
+        return above_zero(value, unit, name)
+
+    return read
+
+
+def _steps_above_zero(value: object, name: str) -> int:
+    above_zero(value, "1", name)
+    return whole(value, name)
+
+
+READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
+    "scheme": _scheme,
+    "record": beginnings,
+    "record_arrays": switch,
+    "duration": _above_zero("s"),
+    "macro_step": _above_zero("s"),
+    "tolerance": _above_zero("m"),
+    "record_every": _steps_above_zero,
+    "warn_residual": _above_zero("1"),
+    "stop_residual": _above_zero("1"),
+}

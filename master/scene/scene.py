@@ -1,0 +1,160 @@
+"""A scene: components, how they are attached, and how to run them. Frozen: changes make copies."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import Scale, plain
+from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.scene.tables import whole
+
+
+@dataclass(frozen=True)
+class ComponentSpec:
+    """A component: where it comes from and what is set in it."""
+
+    fmu: str
+    set: Mapping[str, object] = field(default_factory=dict[str, object])
+    preset: str | None = None  # a named set of parameters, applied first
+    every: int = 1  # macro steps of the run that it takes in one
+    names: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Variables of the contract, and what this FMU calls them."""
+    inherited: Mapping[str, object] = field(default_factory=dict[str, object])
+    """Settings of the component it was swapped for; those it has are applied before `set`."""
+
+
+class Wire(NamedTuple):
+    """A single variable feeding another, COMPONENT.VARIABLE both."""
+
+    source: str
+    target: str
+    scale: Scale | None = None  # factor and offset; None: as it is, in equal units
+
+
+@dataclass(frozen=True, repr=False)
+class Scene:
+    """Everything a run needs. `set` and `swap` make copies, which share what they do not change.
+
+    Its tables, such as `components`, are to be read: what is written into them is not checked.
+
+    >>> scene = touchdown.load("disk-caged-simplified")
+    >>> scene.set({"rotor.speed": "12000 rpm", "run.duration": "10 ms"}).swap(bearing="simplified_cageless")
+    <Scene disk-caged-simplified: Rigid disk dropped on a simplified caged bearing
+      rotor: rigid_rotor
+      amb: amb
+      bearing: simplified_cageless
+      housing: housing
+      run: 0.01 s by macro steps of 2e-05 s, scheme interface>
+    """
+
+    name: str
+    title: str
+    components: Mapping[str, ComponentSpec]
+    about: str = ""
+    attach: tuple[tuple[str, str], ...] = ()
+    sense: tuple[tuple[str, str], ...] = ()
+    connect: tuple[Wire, ...] = ()
+    zero: str | None = None
+    energy_scale: tuple[str, ...] = ()
+    run: RunSpec = field(default_factory=RunSpec)
+    folder: Path = Path()  # relative paths of FMUs start here
+
+    def set(self, settings: Mapping[str, object]) -> Scene:
+        """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
+
+        Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
+        catalogue, COMPONENT.every how many macro steps a component takes in one. Raises TouchdownError
+        where there is no such component, key or preset; a component's variables are looked up when a run
+        begins.
+        """
+        scene = self
+        for name, value in settings.items():
+            scene = scene._with_setting(name, value)
+        return scene
+
+    def _with_setting(self, name: str, value: object) -> Scene:
+        head, _, tail = name.partition(".")
+        if not tail:
+            raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
+        if head == "run":
+            return replace(self, run=with_changes(self.run, {tail: value}))
+        spec = self._component(head)
+        if tail == "preset":
+            changed = replace(spec, preset=checked_preset(value, head))
+        elif tail == "every":
+            changed = replace(spec, every=whole(value, name))
+        else:
+            changed = replace(spec, set={**spec.set, tail: plain(value)})
+        return replace(self, components={**self.components, head: changed})
+
+    def swap(self, /, **fmus: str | os.PathLike[str]) -> Scene:
+        """A copy with components made of other FMUs: swap(bearing="detailed_caged").
+
+        An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor. It
+        starts from its own defaults and takes over what the scene sets, as far as it has it. Names that the
+        scene gives belong to the FMU that goes; `with_names` gives the new one's. Raises TouchdownError
+        where there is no such component.
+        """
+        scene = self
+        for name, fmu in fmus.items():
+            before = scene._component(name)
+            after = ComponentSpec(
+                _source(os.fspath(fmu)), every=before.every, inherited={**before.inherited, **before.set}
+            )
+            scene = replace(scene, components={**scene.components, name: after})
+        return scene
+
+    def with_names(self, name: str, names: Mapping[str, str]) -> Scene:
+        """A copy in which the FMU of component `name` calls the contract's variables as `names` says."""
+        spec = replace(self._component(name), names=names)
+        return replace(self, components={**self.components, name: spec})
+
+    def __repr__(self) -> str:
+        made = [
+            f"  {name}: {spec.fmu}{f' ({spec.preset})' if spec.preset else ''}"
+            for name, spec in self.components.items()
+        ]
+        run = f"{self.run.duration:g} s by macro steps of {self.run.macro_step:g} s"
+        lines = [
+            f"<Scene {self.name}: {self.title}",
+            *made,
+            f"  run: {run}, scheme {self.run.scheme.name}>",
+        ]
+        return "\n".join(lines)
+
+    def _component(self, name: str) -> ComponentSpec:
+        try:
+            return self.components[name]
+        except KeyError:
+            raise TouchdownError(
+                f"scene {self.name} has no component {name}; {one_of(name, [*self.components, 'run'])}"
+            ) from None
+
+    def resolved(self) -> dict[str, object]:
+        """All of it as plain values, for JSON."""
+        values = asdict(self)
+        values["run"]["scheme"] = self.run.scheme.name
+        return values
+
+
+def _source(fmu: str) -> str:
+    """Where an FMU comes from, told from wherever a scene lies: files of the user's by their whole path."""
+    path = Path(fmu)
+    there = path.suffix == ".fmu" or (path.suffix == ".toml" and path.is_file())
+    return str(path.absolute()) if there else fmu
+
+
+def checked_preset(name: object, where: str) -> str | None:
+    """A named set of parameters, or None. Raises TouchdownError where there is none of that name."""
+    if name is None:
+        return None
+    from touchdown.fmus.recipes import presets  # imports numba, which a list of scenes can do without
+
+    if name not in presets():
+        raise TouchdownError(f"{where}: there is no preset {name}; {one_of(str(name), presets())}")
+    return str(name)

@@ -1,0 +1,24 @@
+"""Macro steps that people can read: 1, 2 or 5 times a power of ten."""
+
+from __future__ import annotations
+
+import math
+
+from touchdown.master.scene.run_spec import RunSpec
+
+
+def shorter_step(run: RunSpec, residual: float) -> float:
+    """A macro step (s) with which the ledger should hold, after `residual` was too much.
+
+    From the order at which the scheme's residual falls with the step, to a twentieth of the threshold,
+    since it grows with every impact.
+    """
+    wanted = 0.05 * run.stop_residual / residual if math.isfinite(residual) else 0.0
+    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / run.scheme.error_order)
+    return tidy(min(step, 0.5 * run.macro_step))
+
+
+def tidy(step: float) -> float:
+    """The largest of 1, 2 or 5 times a power of ten that is not above `step`."""
+    power = 10.0 ** math.floor(math.log10(step))
+    return power * max(digit for digit in (1, 2, 5) if digit * power <= step * (1.0 + 1e-9))

@@ -1,0 +1,121 @@
+"""What a scene's file may hold, checked: tables, pairs, numbers, references.
+
+Every function raises TouchdownError with `where` the mistake stands and what to write there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, cast
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import to_si
+
+
+def entries(value: object) -> Mapping[str, Any] | None:
+    """A table of whatever is in it; None where it is no table."""
+    return cast(Mapping[str, Any], value) if isinstance(value, Mapping) else None
+
+
+def table(value: object, where: str) -> Mapping[str, Any]:
+    """A table of whatever is in it."""
+    mapping = entries(value)
+    if mapping is None:
+        raise TouchdownError(f"{where} must be a table")
+    return mapping
+
+
+def items(value: object) -> list[object] | None:
+    """A list of whatever is in it; None where it is no list."""
+    return cast(list[object], value) if isinstance(value, list) else None
+
+
+def texts(value: object) -> list[str] | None:
+    """A list of text; None where it is no list, or holds something else."""
+    listed = items(value)
+    if listed is None or not all(isinstance(item, str) for item in listed):
+        return None
+    return cast(list[str], listed)
+
+
+def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
+    """Nested tables as dotted names: [set.friction] static = 0.2 is friction.static."""
+    dotted: dict[str, object] = {}
+    for key, value in table.items():
+        inner = entries(value)
+        if inner is not None:
+            dotted |= flat(inner, f"{prefix}{key}.")
+        else:
+            dotted[f"{prefix}{key}"] = value
+    return dotted
+
+
+def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:
+    """Raise TouchdownError for a key that is none of those known."""
+    for key in table:
+        if key not in known:
+            raise TouchdownError(f"{where} has an unknown key {key}; {one_of(key, known)}")
+
+
+def pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
+    """A list of pairs of dotted names."""
+    listed = items(value)
+    parsed = [] if listed is None else [_pair(item) for item in listed]
+    if listed is None or None in parsed:
+        raise TouchdownError(f'{where} must be a list of pairs such as ["bearing.journal", "rotor.A"]')
+    return tuple(pair for pair in parsed if pair is not None)
+
+
+def _pair(value: object) -> tuple[str, str] | None:
+    names = texts(value)
+    if names is None or len(names) != 2 or not all("." in name for name in names):
+        return None
+    return names[0], names[1]
+
+
+def reference(value: object, where: str) -> str:
+    """COMPONENT.VARIABLE."""
+    if not isinstance(value, str) or not all(value.partition(".")):
+        raise TouchdownError(f'{where} = {value!r} must name a variable, such as "amb.shutdown_time"')
+    return value
+
+
+def references(value: object, where: str) -> tuple[str, ...]:
+    """A list of COMPONENT.VARIABLE."""
+    listed = items(value)
+    if listed is None:
+        raise TouchdownError(f'{where} = {value!r} must be a list of variables, such as ["rotor.mass"]')
+    return tuple(reference(item, where) for item in listed)
+
+
+def above_zero(value: object, unit: str, name: str) -> float:
+    """A number above 0 in the SI unit `unit`."""
+    number = to_si(value, unit, name)
+    if number <= 0.0:
+        raise TouchdownError(f"{name} = {value} must be above 0")
+    return number
+
+
+def whole(value: object, name: str) -> int:
+    """A number of macro steps."""
+    number = to_si(value, "1", name)
+    if number < 1.0 or number != int(number):
+        raise TouchdownError(f"{name} = {value} must be a whole number of macro steps")
+    return int(number)
+
+
+def switch(value: object, name: str) -> bool:
+    """True or false, as TOML or the command line writes it."""
+    known = {"true": True, "1": True, "false": False, "0": False}
+    try:
+        return known[str(value).lower()]
+    except KeyError:
+        raise TouchdownError(f"{name} = {value} must be true or false") from None
+
+
+def beginnings(value: object, name: str) -> tuple[str, ...]:
+    """Of recorded variables: a list of text, or text with commas."""
+    parts = value.split(",") if isinstance(value, str) else texts(value)
+    if parts is None or not all(part.strip() for part in parts):
+        raise TouchdownError(f'{name} = {value!r} must be a list such as ["rotor.A", "bearing.contact"]')
+    return tuple(part.strip() for part in parts)

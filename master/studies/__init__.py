@@ -1,0 +1,1 @@
+"""Comparisons made of many runs, a folder each: what is compared, its report, its figure."""

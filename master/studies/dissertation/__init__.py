@@ -1,0 +1,1 @@
+"""Results beside the tables and figures of the source."""

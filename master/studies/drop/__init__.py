@@ -1,0 +1,1 @@
+"""One drop in detail: its first impact, a monolithic reference, measured ones."""

@@ -1,0 +1,121 @@
+"""A drop as it is measured: what fine steps say of it, and runs looked at where they can be compared."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import SENSED
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.observer import Moment, Observer
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.coupling.system import System
+from touchdown.master.results.summary import seat_name, touchdown_seats
+from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.schemes import DEFAULT
+from touchdown.master.studies.drop.first_impact import Stop, run_watched
+
+FINE = 1e-6  # s, macro step of what peak forces are measured against
+LONGEST = 5e-3  # s after the first contact
+FINE_SETTINGS = {"interface.tolerance": 1e-9, "micro_step": 0.0}  # as far as a bearing has them
+
+
+@dataclass(frozen=True)
+class Landing:
+    """The drop with fine steps, up to the end of what is compared."""
+
+    first: float  # s from zero, the first contact
+    end: float  # s from zero
+    zero: float  # s, on the simulation's clock
+    seats: Sequence[Attachment]
+    impacts: Mapping[str, tuple[float, float]]  # s from zero: the first impact at each seat
+    peaks: Mapping[str, float]  # N: its largest contact force
+
+
+def fine(scene: Scene, step: float) -> Scene:
+    """Small macro steps, and bearings that take steps inside as tight as they can."""
+    scene = scene.set({"run.scheme": DEFAULT, "run.macro_step": step})
+    with opened(scene, True) as system:
+        bearings = {a.bearing: system.components[a.bearing].variables for a in touchdown_seats(system)}
+    settings = {
+        f"{name}.{variable}": value
+        for name, variables in bearings.items()
+        for variable, value in FINE_SETTINGS.items()
+        if variable in variables
+    }
+    return scene.set(settings)
+
+
+def land(scene: Scene, duration: float | None) -> Landing:
+    """Drop it with fine steps, `duration` (s) from the first contact.
+
+    Without one until the first impact is over at every seat, at most LONGEST. Raises TouchdownError where
+    there is no touchdown bearing, nothing touches, or the run stops.
+    """
+    scene = fine(scene, FINE)
+    with opened(scene, True) as system:
+        seats = touchdown_seats(system)
+        if not seats:
+            raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
+        stop = Stop(LONGEST if duration is None else duration, early=duration is None)
+        outcome, traces = run_watched(scene, system, seats, stop)
+    impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
+    if not impacts:
+        raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
+    peaks = {seat: traces[seat].peaks(end).contact for seat, (_, end) in impacts.items()}
+    first = min(start for start, _ in impacts.values())
+    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, peaks)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Where runs are looked at."""
+
+    landing: Landing
+    every: Mapping[float, int]  # by macro step (s): how many of them lie between instants
+    times: np.ndarray  # s from zero: the instants of all macro steps
+
+
+def plan(landing: Landing, steps: Sequence[float]) -> Plan:
+    """Instants from the scene's zero on at multiples of each macro step, as far apart as the longest."""
+    span, longest = landing.zero + landing.end, max(steps)
+    if longest > landing.end - landing.first:
+        raise TouchdownError(
+            f"--macro-steps: {1e6 * longest:g} us is longer than what is compared, "
+            f"{1e6 * (landing.end - landing.first):.4g} us from the first contact"
+        )
+    every = {step: math.ceil(longest / step - 1e-9) for step in steps}
+    grids = [step * n * np.arange(1, math.floor(span / (step * n) + 1e-9) + 1) for step, n in every.items()]
+    clock = np.unique(np.round(np.concatenate(grids), 12))
+    return Plan(landing, every, clock[clock > landing.zero] - landing.zero)
+
+
+class Sampler(Observer):
+    """Keeps the journals' motion at instants, and the peak forces at the ends of the first impacts."""
+
+    def __init__(self, system: System, landing: Landing, every: int) -> None:
+        self.times: list[float] = []  # s on the simulation's clock
+        self.motion: list[list[np.ndarray]] = []
+        self.peaks: dict[str, float] = {}
+        self._every = every
+        self._system = system
+        self._read = [system.reader([a.motion(v) for v in SENSED]) for a in landing.seats]
+        names = {seat_name(a, list(landing.seats)): a.bearing for a in landing.seats}
+        self._ends = {seat: (end, names[seat]) for seat, (_, end) in landing.impacts.items()}
+
+    def stepped(self, now: Moment) -> None:
+        if now.done % self._every == 0:
+            self.times.append(now.time)
+            self.motion.append([read().copy() for read in self._read])
+        over = [seat for seat, (end, _) in self._ends.items() if now.since_zero >= end]
+        self.finish(over)
+
+    def finish(self, seats: Sequence[str] | None = None) -> None:
+        """Read the peaks of `seats` (all that are left)."""
+        for seat in list(self._ends) if seats is None else seats:
+            _, bearing = self._ends.pop(seat)
+            self.peaks[seat] = self._system.value(f"{bearing}.contact.peak_force")

@@ -1,0 +1,197 @@
+"""The monolithic reference: the same kernels as one ordinary differential equation.
+
+No macro steps and no interface: bodies and what is inside the bearings form one state, solved by scipy
+at a tight tolerance. Two solvers of different kind should agree; where they part, nothing can be
+compared any more (impacts amplify every difference).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.simulation import open_system
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Motion at the asked times: series by COMPONENT.VARIABLE, and what it cost."""
+
+    time: np.ndarray  # s, from the scene's zero
+    series: dict[str, np.ndarray]
+    evaluations: int
+    states: dict[str, np.ndarray]  # of each component, one row per time
+
+
+class Monolith:
+    """All components of a scene as one system of equations."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        # no macro steps, so no copies to carry: a bearing without elastic modes has the shortest state
+        system = open_system(scene.set({"run.scheme": "hold"}), in_process=True)
+        self._twins: dict[str, TwinComponent] = {}
+        for name, component in system.components.items():
+            if not isinstance(component, TwinComponent):
+                raise TouchdownError(
+                    f"component {name} ({component.origin}) is an FMU; only the project's own models have "
+                    "equations to join, and there is no monolithic reference without them"
+                )
+            self._twins[name] = component
+        self.zero = system.value(scene.zero) if scene.zero else 0.0
+        self._switches = _switches(system) | {self.zero}
+        system.initialise()
+        bearings = {a.bearing for a in system.attachments}
+        self._bodies = [n for n in self._twins if n not in bearings]
+        self._bearings = [n for n in self._twins if n in bearings]
+        self._parts: dict[str, slice] = {}
+        start = 0
+        for name in (*self._bodies, *self._bearings):
+            count = int(self._twins[name].instance.record["n"])
+            self._parts[name] = slice(start, start + count)
+            start += count
+        self._size = start
+        self._motion = self._copies(system, self._bodies)
+        self._loads = self._copies(system, self._bearings)
+        for name in self._bodies:
+            self._twins[name].instance.memory["half"] = 0.0
+        self._room: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        for name in self._bearings:
+            longest = len(self._twins[name].instance.record["q"])
+            self._room[name] = np.zeros(longest), np.zeros(longest)
+        self.evaluations = 0
+
+    def _copies(self, system, sources) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+        """For each pair of components: (source words, where from, target words, where to)."""
+        pairs: dict[tuple[str, str], list[tuple[int, int]]] = {}
+        for c in system.connections:
+            if c.source in sources:
+                places = (
+                    self._twins[c.source].variable(c.output).reference,
+                    self._twins[c.target].variable(c.input).reference,
+                )
+                pairs.setdefault((c.source, c.target), []).append(places)
+        return [
+            (
+                self._twins[source].instance.words,
+                np.array([p[0] for p in places]),
+                self._twins[target].instance.words,
+                np.array([p[1] for p in places]),
+            )
+            for (source, target), places in pairs.items()
+        ]
+
+    @property
+    def moving(self) -> int:
+        """Number of states that others depend on: all but quadratures."""
+        return int(np.count_nonzero(self._weights()))
+
+    def initial(self) -> np.ndarray:
+        """State at the start."""
+        parts = [self._twins[n].instance.record["q"][: p.stop - p.start] for n, p in self._parts.items()]
+        return np.concatenate(parts)
+
+    def state_of(self, system: System) -> np.ndarray:
+        """The present state of another system of the same scene, stepped in process."""
+        parts = []
+        for name, part in self._parts.items():
+            component = system.components[name]
+            assert isinstance(component, TwinComponent)
+            parts.append(component.instance.record["q"][: part.stop - part.start])
+        return np.concatenate(parts)
+
+    def jacobian(self, t: float, state: np.ndarray) -> np.ndarray:
+        """Derivative of the right-hand side by the state, by central differences on the models' scales."""
+        weight = self._weights()
+        steps = np.where(weight > 0.0, 1e-6 / np.where(weight > 0.0, weight, 1.0), 0.0)
+        jacobian = np.zeros((self._size, self._size))
+        for i in np.flatnonzero(steps):
+            off = np.zeros(self._size)
+            off[i] = steps[i]
+            jacobian[:, i] = (self.rhs(t, state + off) - self.rhs(t, state - off)) / (2.0 * steps[i])
+        return jacobian
+
+    def _weights(self) -> np.ndarray:
+        return np.concatenate(
+            [self._twins[n].instance.record["weight"][: p.stop - p.start] for n, p in self._parts.items()]
+        )
+
+    def rhs(self, t: float, state: np.ndarray) -> np.ndarray:
+        """Derivative of the whole state."""
+        self.evaluations += 1
+        derivative = np.zeros(self._size)
+        self._publish(state)
+        for source, out, target, into in self._motion:
+            target[into] = source[out]
+        for name in self._bearings:
+            instance, part = self._twins[name].instance, self._parts[name]
+            inside, rates = self._room[name]  # as long as the model's own state, which loops may run into
+            inside[: part.stop - part.start] = state[part]
+            instance.model.instant(t, inside, rates, instance.record)  # type: ignore[misc]
+            derivative[part] = rates[: part.stop - part.start]
+        for source, out, target, into in self._loads:
+            target[into] = source[out]
+        for name in self._bodies:
+            instance, part = self._twins[name].instance, self._parts[name]
+            instance.model.rhs(0.0, state[part], derivative[part], instance.record)  # type: ignore[misc]
+        return derivative
+
+    def _publish(self, state: np.ndarray) -> None:
+        for name in self._bodies:
+            instance = self._twins[name].instance
+            instance.model.publish(state[self._parts[name]], instance.record)  # type: ignore[misc]
+
+    def solve(self, times: np.ndarray, watched: list[str], tolerance: float, method: str) -> Solution:
+        """Motion of `watched` (outputs of bodies) at `times` (s from zero), by a scipy `method`.
+
+        `tolerance` is the error over the models' own scales, as in the FMUs' micro-steps.
+        """
+        weight = self._weights()
+        atol = tolerance / np.where(weight > 0.0, weight, np.inf)
+        atol[weight == 0.0] = 1e3  # quadratures: nothing depends on them
+        state, now = self.initial(), 0.0
+        self.evaluations = 0
+        states: list[np.ndarray] = []
+        clock = np.asarray(times) + self.zero
+        last = float(clock[-1])
+        for end in (*sorted(s for s in self._switches if 0.0 < s < last), last):
+            asked = clock[(clock > now) & (clock <= end)]
+            middle = 0.5 * (now + end)  # components switch between stretches, not within
+            solution = solve_ivp(
+                lambda _, y, at=middle: self.rhs(at, y),
+                (now, end),
+                state,
+                method=method,
+                t_eval=np.append(asked[asked < end], end),
+                rtol=3e-14,
+                atol=atol,
+                first_step=1e-6,
+            )
+            if not solution.success:
+                raise TouchdownError(f"scipy's {method} gave up: {solution.message}")
+            states += list(solution.y.T[: len(asked)])
+            state, now = solution.y[:, -1], end
+        return self._series(np.asarray(times), states, watched)
+
+    def _series(self, times: np.ndarray, states: list[np.ndarray], watched: list[str]) -> Solution:
+        series: dict[str, list[float]] = {name: [] for name in watched}
+        for state in states:
+            self._publish(state)
+            for name in watched:
+                component, _, variable = name.partition(".")
+                series[name].append(self._twins[component].read([variable])[0])
+        rows = np.array(states)
+        parts = {name: rows[:, part] for name, part in self._parts.items()}
+        return Solution(times, {k: np.array(v) for k, v in series.items()}, self.evaluations, parts)
+
+
+def _switches(system: System) -> set[float]:
+    """Times (s) at which magnetic bearings shut down."""
+    names = [n for n, c in system.components.items() if "shutdown_time" in c.variables]
+    return {system.value(f"{name}.shutdown_time") for name in names}

@@ -1,0 +1,126 @@
+"""What runs are measured against: the monolithic solution, as far as two solvers agree on it.
+
+After some impacts every difference is amplified beyond any use, that of two exact solvers too. So the
+motion is compared point by point only up to the horizon, the last instant up to which both agree.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.contract import SENSED
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.drop.monolithic import Monolith
+
+POSITION, VELOCITY = slice(0, 2), slice(2, 4)  # of a journal's motion
+MOST_IMPLICIT = 120  # states that an implicit solver takes: each Jacobian is as many evaluations
+
+IMPLICIT = ("Radau", "BDF", "LSODA")  # methods of scipy's
+
+
+@dataclass(frozen=True)
+class Solver:
+    """One of scipy's, at an error over the models' own scales."""
+
+    method: str
+    tolerance: float
+
+    @property
+    def implicit(self) -> bool:
+        """Whether its steps solve for the state, with a Jacobian."""
+        return self.method in IMPLICIT
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        return f"{self.method} {self.tolerance:g}"
+
+
+FIRST = Solver("DOP853", 1e-9)
+SECOND = Solver("Radau", 1e-6)
+SECOND_OF_MANY = Solver("RK45", 1e-8)  # where there are too many states for an implicit one
+
+
+@dataclass(frozen=True)
+class Solve:
+    """One monolithic solution."""
+
+    solver: Solver
+    motion: np.ndarray  # (times, seats, 4): x, y in m, vx, vy in m/s of each journal
+    evaluations: int
+    wall: float  # s per simulated s
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The first solution up to the horizon, and the second to judge it."""
+
+    time: np.ndarray  # s from the scene's zero, up to the horizon
+    first: Solve
+    second: Solve
+    whole: bool  # whether the horizon is the end of what was asked for
+
+    @property
+    def horizon(self) -> float:
+        """s from the scene's zero."""
+        return float(self.time[-1])
+
+    def distance(self, motion: np.ndarray, at: np.ndarray, part: slice) -> float:
+        """Largest distance of `motion` (instants, seats, 4) from the reference's at its instants `at`."""
+        return largest_distance(motion, self.first.motion[at], part)
+
+    def floor(self, part: slice) -> float:
+        """What both solutions differ by at most (m, or m/s): errors below it say nothing."""
+        count = len(self.time)
+        return largest_distance(self.second.motion[:count], self.first.motion[:count], part)
+
+    def extent(self, part: slice) -> float:
+        """How far the motion goes from where it was at the first instant (m, or m/s)."""
+        motion = self.first.motion[: len(self.time)]
+        return largest_distance(motion, motion[:1], part)
+
+
+def largest_distance(a: np.ndarray, b: np.ndarray, part: slice) -> float:
+    """Over instants and seats, of POSITION (m) or VELOCITY (m/s); infinite where one is not a number."""
+    apart = np.linalg.norm((a - b)[..., part], axis=-1)
+    return float(np.max(apart)) if np.isfinite(apart).all() else np.inf
+
+
+def agreeing(apart: np.ndarray, agreed: float) -> int:
+    """How many of the first values of `apart` stay within `agreed`."""
+    beyond = np.flatnonzero(~(apart <= agreed))
+    return int(beyond[0]) if len(beyond) else len(apart)
+
+
+def solve(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, solver: Solver) -> Solve:
+    """Journals at `times` (s from zero). Raises TouchdownError where the scene has no equations to join."""
+    names = [a.motion(variable) for a in seats for variable in SENSED]
+    monolith = Monolith(scene)
+    began = clock.perf_counter()
+    solution = monolith.solve(times, names, solver.tolerance, solver.method)
+    wall = (clock.perf_counter() - began) / (monolith.zero + float(times[-1]))
+    motion = np.stack([solution.series[name] for name in names], 1).reshape(len(times), len(seats), 4)
+    return Solve(solver, motion, solution.evaluations, wall)
+
+
+def pair(scene: Scene) -> tuple[Solver, Solver]:
+    """The two solvers for a scene: of different kind where its size allows."""
+    return FIRST, SECOND if Monolith(scene).moving <= MOST_IMPLICIT else SECOND_OF_MANY
+
+
+def reference(times: np.ndarray, first: Solve, second: Solve, agreed: float) -> Reference:
+    """Solutions at `times` (s from zero), up to where their journals part by more than `agreed` (m)."""
+    apart = np.linalg.norm((second.motion - first.motion)[..., POSITION], axis=-1).max(axis=1)
+    count = agreeing(apart, agreed)
+    if count == 0:
+        raise TouchdownError(
+            f"{first.solver.title} and {second.solver.title} differ by {1e6 * apart[0]:.2g} um at "
+            f"t = {times[0]:.4g} s already; there is no reference for errors of {1e6 * agreed:.2g} um"
+        )
+    return Reference(times[:count], first, second, count == len(times))

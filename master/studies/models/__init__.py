@@ -1,0 +1,1 @@
+"""Bearing models beside each other on one scene."""

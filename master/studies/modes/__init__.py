@@ -1,0 +1,1 @@
+"""How many elastic modes of a rotor a drop needs."""

@@ -1,0 +1,206 @@
+"""Pictures of a rotor before it is dropped: Campbell diagram, mode shapes, how it lies (Fig 19)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
+from matplotlib.patches import Rectangle
+from numpy.typing import ArrayLike
+
+from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.modal.data import seats
+from touchdown.rotor.portrait import Portrait
+
+RPM = 60.0 / (2.0 * math.pi)
+MM = 1e3
+MOST = 6  # modes drawn
+COLOURS = (BLACK, GREY, BLUE, ORANGE, GREEN, PURPLE)  # of the modes
+AXIS = "position along the rotor's axis [mm]"
+CORE, SLEEVE, EDGE = "#c8d3dc", "#ece3d0", "#7f8a93"
+WIDTH = 9.0  # inch, of a picture with side views
+BESIDE = 1.5  # inch of it that labels take
+BEYOND = 1.6  # of the largest radius: a side view's half height
+FLATTEST, HIGHEST = 0.2, 0.4  # height over width of a side view
+SHAPE = 0.78  # of a side view's half height: a shape's 1
+
+
+def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
+    """campbell.png, modes.png and, where the rotor has two seats, rest.png in `folder`."""
+    pictures = {"campbell": campbell, "modes": modes}
+    if portrait.rest is not None:
+        pictures["rest"] = rest
+    made: list[Path] = []
+    for name, picture in pictures.items():
+        figure = sheet()
+        picture(figure, portrait)
+        made.append(folder / f"{name}.png")
+        figure.savefig(made[-1], dpi=110)
+    return made
+
+
+def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+    """Whirl frequencies of the free rotor [Hz] over speed [rpm], with the line where both are equal.
+
+    The first of the portrait's speeds is the one asked for, the others make the lines.
+    """
+    asked, speeds = RPM * portrait.speeds[0], RPM * portrait.speeds[1:]
+    axes = sized(figure, 9.0, 6.5).subplots()
+    drawn = range(1, min(len(portrait.kinds), MOST))
+    for k in drawn:
+        axes.plot(
+            speeds, portrait.forward[1:, k], color=COLOURS[k], lw=1.4, label=f"{portrait.kinds[k]}, forward"
+        )
+        if portrait.frequencies[k] > 0.0:
+            label = f"{portrait.kinds[k]}, backward"
+            axes.plot(speeds, portrait.backward[1:, k], "--", color=COLOURS[k], lw=1.2, label=label)
+    axes.plot(speeds, speeds / 60.0, ":", color=BLACK, lw=1.2, label="1x, once per turn")
+    axes.axvline(asked, color=GREY, lw=0.8, label=f"{asked:.5g} rpm")
+    axes.set_xlim(0.0, float(speeds[-1]))
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("rotor speed [rpm]")
+    axes.set_ylabel("whirl frequency of the free rotor [Hz]")
+    figure.legend(loc="outside right upper", fontsize="small")
+    figure.suptitle(f"{portrait.shaft.title}: Campbell diagram")
+    return [axes]
+
+
+def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+    """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
+    shaft, count = portrait.shaft, min(len(portrait.kinds), MOST)
+    panels = _stack(figure, shaft, count)
+    height = SHAPE * _window(shaft).reach
+
+    def to_shape(values: ArrayLike) -> np.ndarray:
+        return np.divide(values, height)
+
+    def from_shape(values: ArrayLike) -> np.ndarray:
+        return np.multiply(values, height)
+
+    for k, axes in enumerate(panels):
+        _side_view(axes, shaft, named=k == 0)
+        shape = portrait.shapes[:, k]
+        axes.plot(MM * shaft.positions(), height * shape, ".-", color=ORANGE, lw=1.5, ms=4)
+        right = axes.secondary_yaxis("right", functions=(to_shape, from_shape))
+        right.set_ylabel("shape [1]", color=ORANGE)
+        right.set_yticks([-1.0, 0.0, 1.0])
+        what = "rigid" if portrait.frequencies[k] == 0.0 else f"{portrait.frequencies[k]:.1f} Hz"
+        _to_scale(axes, shaft)
+        axes.set_title(f"{portrait.kinds[k]}, {what}", fontsize="medium", pad=14 if k == 0 else 4)
+    panels[-1].set_xlabel(AXIS)
+    figure.suptitle(f"{shaft.title}: modes of the free rotor at rest")
+    return panels
+
+
+def rest(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+    """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats.
+
+    Only for a portrait with `rest`.
+    """
+    shaft, lying = portrait.shaft, portrait.rest
+    assert lying is not None
+    position = MM * shaft.positions()
+    view_height = _window(shaft).height
+    sized(figure, WIDTH, 7.0 + view_height)
+    ratios = (view_height, 2.8, 2.8)
+    view, deflection, bending = figure.subplots(3, 1, sharex=True, height_ratios=ratios)
+    _side_view(view, shaft, named=True)
+    _supports(view, shaft)
+    _to_scale(view, shaft)
+    deflection.plot(position, 1e6 * lying.deflection, ".-", color=BLUE, lw=1.4, ms=4)
+    deflection.set_ylabel("deflection, upwards [µm]")
+    bending.plot(MM * lying.position, 1e-6 * lying.bending, ".-", color=ORANGE, lw=1.4, ms=4)
+    bending.set_ylabel("bending stress [MPa]")
+    bending.set_xlabel(AXIS)
+    for axes in (deflection, bending):
+        axes.axhline(0.0, color=GREY, lw=0.5)
+        for node in sorted(set(seats(shaft))):
+            axes.axvline(position[node - 1], color=GREY, lw=0.6, ls="--")
+    figure.suptitle(
+        f"{shaft.title} at rest on its touchdown seats, rigidly held; sagging is positive stress"
+    )
+    return [view, deflection, bending]
+
+
+@dataclass(frozen=True)
+class _Window:
+    """What a side view shows (mm)."""
+
+    left: float
+    right: float
+    reach: float  # to either side of the axis
+
+    @property
+    def height(self) -> float:
+        """Of a panel to scale (inch)."""
+        return (WIDTH - BESIDE) * 2.0 * self.reach / (self.right - self.left)
+
+
+def _window(shaft: Shaft) -> _Window:
+    length = MM * float(shaft.positions()[-1])
+    radius = 0.5 * MM * max(max(e.outer_diameter, e.sleeve_diameter) for e in shaft.elements)
+    half = max(0.52 * length, BEYOND * radius / HIGHEST)
+    reach = max(BEYOND * radius, FLATTEST * half)
+    return _Window(0.5 * length - half, 0.5 * length + half, reach)
+
+
+def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
+    """Side views under each other."""
+    sized(figure, WIDTH, 1.2 + count * (0.4 + _window(shaft).height))
+    return list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+
+
+def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
+    """Outlines of the elements in mm, to scale; masses at nodes as diamonds, places by name."""
+    position = MM * shaft.positions()
+    for at, e in zip(position, shaft.elements, strict=False):
+        if e.sleeve_diameter:
+            _box(axes, at, e.length, e.sleeve_diameter, SLEEVE)
+        _box(axes, at, e.length, e.outer_diameter, CORE)
+        if e.inner_diameter:
+            _box(axes, at, e.length, e.inner_diameter, "white")
+    for point in shaft.points:
+        axes.plot(position[point.node - 1], 0.0, "D", color=EDGE, ms=5)
+    axes.axhline(0.0, color=EDGE, lw=0.5, ls="-.")
+    axes.set_ylabel("radius [mm]")
+    if named:
+        _names(axes, shaft)
+
+
+def _to_scale(axes: Axes, shaft: Shaft) -> None:
+    """Once all is drawn: mm as long either way. Panels stay in line; the radii shown give way."""
+    window = _window(shaft)
+    axes.set_xlim(window.left, window.right)
+    axes.set_ylim(-window.reach, window.reach, auto=True)
+    axes.set_aspect("equal", adjustable="datalim")
+
+
+def _names(axes: Axes, shaft: Shaft) -> None:
+    """Names of the stations over the view; of those at one node together."""
+    at: dict[int, list[str]] = {}
+    for s in shaft.stations:
+        at.setdefault(s.node, []).append(s.name)
+    for node, names in at.items():
+        x = MM * shaft.positions()[node - 1]
+        axes.axvline(x, color=EDGE, lw=0.6, ls=":")
+        place = ("data", "axes fraction")
+        axes.annotate(", ".join(names), (x, 1.02), xycoords=place, ha="center", fontsize="small")
+
+
+def _box(axes: Axes, at: float, length: float, diameter: float, colour: str) -> None:
+    corner = (at, -0.5 * MM * diameter)
+    axes.add_patch(Rectangle(corner, MM * length, MM * diameter, facecolor=colour, edgecolor=EDGE, lw=0.6))
+
+
+def _supports(axes: Axes, shaft: Shaft) -> None:
+    """A triangle under every seat, at the shaft's surface there."""
+    position = MM * shaft.positions()
+    for node in sorted(set(seats(shaft))):
+        touching = shaft.elements[max(node - 2, 0) : node]
+        radius = 0.5 * MM * max(max(e.outer_diameter, e.sleeve_diameter) for e in touching)
+        axes.plot(position[node - 1], -radius, marker=6, color=GREEN, ms=11)

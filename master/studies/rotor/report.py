@@ -1,0 +1,158 @@
+"""What a rotor is like before it is dropped, as a table and pictures."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.results.run import make_writable
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import find, shipped
+from touchdown.rotor.modal.data import seats
+from touchdown.rotor.portrait import Portrait, portrait
+from touchdown.rotor.statics import Rest
+
+RPM = 60.0 / (2.0 * math.pi)
+SPEED = 9000.0 / RPM  # rad/s, the default
+MODES = 5
+SPEEDS = 81  # in the Campbell diagram
+BEYOND = 2.0  # times the speed asked for: its end
+TO_REST = (
+    "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
+)
+
+
+@dataclass(frozen=True)
+class Report:
+    """The table, and the pictures that were drawn."""
+
+    text: str
+    pictures: list[Path] = field(default_factory=list)
+
+
+def report(name: str, folder: Path, speed: float = SPEED, modes: int = MODES) -> Report:
+    """Describe the rotor `name` (shipped, or the path of a .toml); pictures go into `folder`.
+
+    speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0: all).
+    Raises TouchdownError where there is no such rotor, or its file has a mistake.
+    """
+    portrait = described(find_rotor(name), speed, modes)
+    make_writable(folder)
+    from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
+
+    return Report(report_text(portrait), draw_pictures(portrait, folder))
+
+
+def described(shaft: Shaft, speed: float, modes: int) -> Portrait:
+    """The portrait of `shaft` at `speed` (rad/s), then over speeds for its Campbell diagram."""
+    end = BEYOND * abs(speed) or BEYOND * SPEED
+    try:
+        return portrait(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
+    except ModelError as error:
+        raise TouchdownError(str(error)) from None
+
+
+def find_rotor(name: str) -> Shaft:
+    """The rotor of that name, or in the .toml at that path. Raises TouchdownError."""
+    try:
+        return find(name)
+    except ModelError as error:
+        raise TouchdownError(str(error)) from None
+    except LookupError:
+        known = shipped()
+        raise TouchdownError(
+            f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"
+        ) from None
+
+
+def report_text(portrait: Portrait) -> str:
+    """All figures as text; the frequencies are split at the first of the portrait's speeds."""
+    shaft = portrait.shaft
+    lines = [
+        shaft.title,
+        *_two_columns(_body(shaft)),
+        "",
+        *_places(shaft),
+        "",
+        *_frequencies(portrait),
+        "",
+        *_rest(shaft, portrait.rest),
+    ]
+    return "\n".join(lines)
+
+
+def _body(shaft: Shaft) -> list[tuple[str, str]]:
+    return [
+        ("mass", f"{shaft.mass:.5g} kg"),
+        ("length", f"{1e3 * shaft.positions()[-1]:.5g} mm"),
+        ("centre of mass", f"{1e3 * shaft.centre_of_mass:.5g} mm from node 1"),
+        ("polar inertia", f"{shaft.polar_inertia:.5g} kg.m2"),
+        ("diametral inertia", f"{shaft.diametral_inertia:.5g} kg.m2, about the centre of mass"),
+        ("elements", f"{len(shaft.elements)}"),
+        ("nodes", f"{shaft.nodes}"),
+        ("discs and point masses", f"{len(shaft.points)}"),
+        ("damping ratio", f"{shaft.damping_ratio:g}"),
+    ]
+
+
+def _two_columns(rows: list[tuple[str, str]]) -> list[str]:
+    width = max(len(key) for key, _ in rows)
+    return [f"  {key:<{width}}  {value}" for key, value in rows]
+
+
+def _places(shaft: Shaft) -> list[str]:
+    """Stations and sensors."""
+    position = shaft.positions()
+    rows = [
+        (s.name, "magnetic bearing" if s.name in shaft.levitated_at else "seat", s.node)
+        for s in shaft.stations
+    ]
+    rows += [(s.name, "sensor", s.node) for s in shaft.sensors]
+    if not rows:
+        return ["  no stations, no sensors"]
+    width = max(8, *(len(name) for name, *_ in rows))
+    head = f"  {'place':<{width}}  {'kind':<16}  node  position [mm]"
+    return [head, *(f"  {n:<{width}}  {k:<16}  {i:4d}  {1e3 * position[i - 1]:13.1f}" for n, k, i in rows)]
+
+
+def _frequencies(portrait: Portrait) -> list[str]:
+    speed = f"{RPM * portrait.speeds[0]:.6g} rpm"
+    head = f"  {'free rotor':<12}  {'at rest [Hz]':>12}  {'backward [Hz]':>14}  {'forward [Hz]':>14}"
+    lines = [f"  backward and forward whirl at {speed}", head]
+    for kind, still, back, ahead in zip(
+        portrait.kinds, portrait.frequencies, portrait.backward[0], portrait.forward[0], strict=True
+    ):
+        lines.append(f"  {kind:<12}  {still:12.2f}  {back:14.2f}  {ahead:14.2f}")
+    return lines
+
+
+def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
+    """How the rotor lies on its seats."""
+    if rest is None:
+        return [f"  no rest.png: it {TO_REST}"]
+    names = [" = ".join(s.name for s in shaft.stations if s.node == node and _is_seat(shaft, s.name))
+             for node in sorted(set(seats(shaft)))]  # fmt: skip
+    forces = ", ".join(f"{n} {f:.4g} N" for n, f in zip(names, rest.reactions, strict=True))
+    lowest, highest = int(np.argmin(rest.deflection)), int(np.argmax(rest.deflection))
+    worst = int(np.argmax(np.abs(rest.bending)))
+    return [
+        "  lying on its seats, rigidly held",
+        *_two_columns(
+            [
+                ("reactions", forces),
+                ("deflection up", f"{1e6 * rest.deflection[lowest]:.3g} µm at node {lowest + 1} to "
+                               f"{1e6 * rest.deflection[highest]:.3g} µm at node {highest + 1}"),
+                ("bending stress", f"{1e-6 * rest.bending[worst]:.3g} MPa at node {rest.node[worst]}"),
+                ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
+            ]
+        ),
+    ]  # fmt: skip
+
+
+def _is_seat(shaft: Shaft, name: str) -> bool:
+    return name not in shaft.levitated_at

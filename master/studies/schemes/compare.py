@@ -1,0 +1,292 @@
+"""Speed against error: every coupling scheme over macro steps, and monolithic solvers, on one drop.
+
+Errors are found in process, which is the same to the bit as through FMUs; wall time is through FMUs
+unless asked otherwise. Motion is measured against the monolithic reference. The peak force of the first
+impact, which bearings report from inside their steps, is measured against fine steps of the co-simulation,
+whose motion stands beside it.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.schemes import SCHEMES
+from touchdown.master.studies.drop.measured import (
+    FINE,
+    Landing,
+    Plan,
+    Sampler,
+    fine,
+    land,
+    plan,
+)
+from touchdown.master.studies.drop.reference import (
+    FIRST,
+    POSITION,
+    VELOCITY,
+    Reference,
+    Solve,
+    Solver,
+    largest_distance,
+    pair,
+    reference,
+    solve,
+)
+from touchdown.master.studies.schemes.order import Order, fitted_order
+
+STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
+WANTED = 1e-7  # m
+LOOSE = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
+LOOSE_OF_MANY = LOOSE[:1]  # each takes about as long as the reference
+AGREED = 0.1  # of the wanted error: what the reference's solvers may differ by
+SATURATED = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
+ABOUT = 1.2  # times the least wall time: as good as the same
+NEVER = 1e9  # a residual of the ledger at which nothing stops
+QUANTITIES = ("position", "velocity", "force", "energy")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """How errors of a quantity are shown."""
+
+    title: str
+    unit: str
+    factor: float  # from SI
+    axis: str  # title of the axis of its errors
+
+
+SHOWN = {
+    "position": Quantity("journal", "um", 1e6, "error of journal [um]"),
+    "velocity": Quantity("velocity", "mm/s", 1e3, "error of velocity [mm/s]"),
+    "force": Quantity("peak force", "%", 100.0, "error of peak force [%]"),
+    "energy": Quantity("ledger", "1", 1.0, "residual of the ledger [1]"),
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be compared."""
+
+    schemes: Sequence[str] = tuple(SCHEMES)
+    steps: Sequence[float] = STEPS  # s
+    duration: float | None = None  # s from the first contact; None: until the first impact is over
+    wanted: float = WANTED  # m
+    repeat: int = 3  # runs that are timed
+    timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
+    in_process: bool = False
+
+
+class Alarm(StrEnum):
+    """What the ledger would do by the scene's thresholds."""
+
+    NONE = ""
+    WARNS = "warns"
+    STOPS = "stops"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scheme at one macro step, or one monolithic solver; errors by quantity, where known.
+
+    position: m, velocity: m/s, both the largest of any seat and instant; force: of the first impact,
+    relative, of the worst seat; energy: residual of the ledger over the energy scale.
+    """
+
+    name: str
+    step: float | None  # s; None: monolithic
+    errors: Mapping[str, float] = field(default_factory=dict)
+    wall: float | None = None  # s per simulated s
+    ledger: Alarm = Alarm.NONE
+    failed: str = ""  # why there are no errors
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows, and what they are measured against."""
+
+    scene: Scene
+    asked: Asked
+    landing: Landing
+    exact: Reference
+    fine: Mapping[str, float]  # errors of the fine co-simulation: its motion, its force at twice the step
+    rows: Sequence[Row]  # schemes
+    monolithic: Sequence[Row]
+
+    @property
+    def floors(self) -> Mapping[str, float]:
+        """By quantity: errors below it say nothing."""
+        position, velocity = self.exact.floor(POSITION), self.exact.floor(VELOCITY)
+        return {"position": position, "velocity": velocity, "force": self.fine["force"], "energy": 0.0}
+
+    @property
+    def wanted(self) -> Mapping[str, float]:
+        """By quantity: errors that are good enough, of those that the advice goes by."""
+        return {"position": self.asked.wanted}
+
+    def orders(self, scheme: str) -> Mapping[str, Order | None]:
+        """By quantity; None where too few macro steps tell."""
+        rows = [row for row in self.rows if row.name == scheme and row.errors and row.step is not None]
+        steps = [row.step for row in rows if row.step is not None]
+        extents = {"position": self.exact.extent(POSITION), "velocity": self.exact.extent(VELOCITY)}
+        return {
+            q: fitted_order(
+                steps, [row.errors[q] for row in rows], self.floors[q], SATURATED * extents.get(q, 1.0)
+            )
+            for q in QUANTITIES
+        }
+
+    def recommended(self) -> Row | None:
+        """The cheapest row of a scheme whose journals err by no more than wanted, ledgers that hold first.
+
+        Of rows that take about the same time the most accurate one.
+        """
+        quiet = self._cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
+        return quiet or self._cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
+
+    def recommended_solver(self) -> Row | None:
+        """The cheapest monolithic solver that errs by no more than wanted."""
+        return self._cheapest(self.monolithic)
+
+    def _cheapest(self, rows: Iterable[Row]) -> Row | None:
+        good = [r for r in rows if r.wall and r.errors.get("position", math.inf) <= self.asked.wanted]
+        least = min((row.wall for row in good if row.wall), default=0.0)
+        near = [row for row in good if row.wall and row.wall <= ABOUT * least]
+        return min(near, key=lambda row: row.errors["position"], default=None)
+
+
+def compare_schemes(
+    scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda what: None
+) -> Comparison:
+    """Run everything; begin(what) before each of `pieces(scene, asked)` pieces of work.
+
+    Raises TouchdownError where nothing touches, or where there is no reference. A scheme that stops or
+    fails says so in its row.
+    """
+    limits = scene.run.warn_residual, scene.run.stop_residual
+    scene = scene.set({"run.stop_residual": NEVER})
+    begin("fine steps")
+    landing = land(scene, asked.duration)
+    looks = plan(landing, (*asked.steps, 2.0 * FINE))
+    scene = scene.set({"run.duration": landing.end})
+    solves = _solves(scene, looks, begin)
+    exact = reference(looks.times, solves[0], solves[1], AGREED * asked.wanted)
+    judge = _Judge(looks, exact, *limits)
+    begin("fine steps")
+    finely = judge.row(fine(scene, 2.0 * FINE), "fine steps", 2.0 * FINE)
+    if finely.failed:
+        raise TouchdownError(f"with macro steps of {2e6 * FINE:g} us: {finely.failed}")
+    _warm_up(scene, asked)
+    rows = []
+    for name in asked.schemes:
+        for step in asked.steps:
+            begin(f"{name} at {1e6 * step:g} us")
+            run = scene.set({"run.scheme": name, "run.macro_step": step})
+            rows.append(_timed(judge.row(run, name, step), run, asked))
+    monolithic = [_monolithic(s, exact) for s in solves]
+    return Comparison(scene, asked, landing, exact, finely.errors, rows, monolithic)
+
+
+def pieces(scene: Scene, asked: Asked) -> int:
+    """How many pieces of work a comparison is."""
+    return 4 + len(_loose(pair(scene)[1])) + len(asked.schemes) * len(asked.steps)
+
+
+def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[Solve]:
+    """Both solutions of the reference, then looser ones."""
+    seats, solvers = looks.landing.seats, pair(scene)
+    solve(scene, seats, np.array([FINE]), Solver(FIRST.method, 1e-3))  # compiles
+    solves = []
+    for solver in (*solvers, *_loose(solvers[1])):
+        begin(solver.title)
+        solves.append(solve(scene, seats, looks.times, solver))
+    return solves
+
+
+def _loose(second: Solver) -> Sequence[Solver]:
+    return LOOSE if second.implicit else LOOSE_OF_MANY
+
+
+def _monolithic(solution: Solve, exact: Reference) -> Row:
+    """A solution against the reference, the reference against the other one."""
+    other = exact.second if solution is exact.first else exact.first
+    count = len(exact.time)
+    errors = {
+        name: largest_distance(solution.motion[:count], other.motion[:count], part)
+        for name, part in (("position", POSITION), ("velocity", VELOCITY))
+    }
+    return Row(solution.solver.title, None, errors, solution.wall)
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """Measures runs against the reference."""
+
+    looks: Plan
+    exact: Reference
+    warn: float
+    stop: float
+
+    def row(self, scene: Scene, name: str, step: float) -> Row:
+        """Run `scene` in process and measure it."""
+        try:
+            with opened(scene, True) as system:
+                sampler = Sampler(system, self.looks.landing, self.looks.every[step])
+                outcome = simulate(scene, system, observers=[sampler])
+                outcome.raise_if_stopped()
+                sampler.finish()
+        except TouchdownError as error:
+            return Row(name, step, failed=str(error))
+        residual = outcome.residual
+        return Row(name, step, self._errors(sampler, residual), ledger=self._alarm(residual))
+
+    def _alarm(self, residual: float) -> Alarm:
+        if residual > self.stop:
+            return Alarm.STOPS
+        return Alarm.WARNS if residual > self.warn else Alarm.NONE
+
+    def _errors(self, sampler: Sampler, residual: float) -> Mapping[str, float]:
+        times = np.array(sampler.times) - self.looks.landing.zero
+        motion = np.array(sampler.motion)
+        at = np.searchsorted(self.exact.time, times - 1e-10)
+        at = np.minimum(at, len(self.exact.time) - 1)
+        known = np.abs(self.exact.time[at] - times) < 1e-10  # up to the horizon
+        peaks = self.looks.landing.peaks
+        return {
+            "position": self.exact.distance(motion[known], at[known], POSITION),
+            "velocity": self.exact.distance(motion[known], at[known], VELOCITY),
+            "force": max(abs(sampler.peaks[seat] / peak - 1.0) for seat, peak in peaks.items()),
+            "energy": residual,
+        }
+
+
+def _warm_up(scene: Scene, asked: Asked) -> None:
+    """Compile what is to be timed."""
+    with opened(scene.set({"run.duration": 2.0 * scene.run.macro_step}), asked.in_process) as system:
+        simulate(scene, system).raise_if_interrupted()
+
+
+def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
+    """The row with its wall time: the median of some runs."""
+    if row.failed:
+        return row
+    if asked.timed is not None:
+        scene = scene.set({"run.duration": asked.timed})
+    spent = []
+    try:
+        for _ in range(asked.repeat):
+            with opened(scene, asked.in_process) as system:
+                outcome = simulate(scene, system)
+            outcome.raise_if_stopped()
+            spent.append(outcome.wall_time / outcome.end)
+    except TouchdownError as error:
+        return replace(row, failed=f"while it was timed: {error}")
+    return replace(row, wall=statistics.median(spent))

@@ -1,0 +1,147 @@
+"""What a comparison of coupling schemes found, as lines and as files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from touchdown.master.common.files import write_records, writing_to
+from touchdown.master.studies.drop.reference import POSITION
+from touchdown.master.studies.schemes.compare import QUANTITIES, SHOWN, Comparison, Row
+
+MONOLITHIC = "monolithic"
+
+
+def report_lines(comparison: Comparison) -> list[str]:
+    """What it is measured against, a table of errors, fitted orders, and what to take."""
+    return [*_about(comparison), "", *_table(comparison), "", *_orders(comparison), "", *advice(comparison)]
+
+
+def _about(comparison: Comparison) -> list[str]:
+    landing, exact, asked = comparison.landing, comparison.exact, comparison.asked
+    about = [comparison.scene.title]
+    for seat, (start, end) in landing.impacts.items():
+        about.append(
+            f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, "
+            f"contact force {landing.peaks[seat]:.5g} N"
+        )
+    first, second = exact.first, exact.second
+    until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
+    about += [
+        f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
+        "the first contact",
+        f"reference: {first.solver.title} ({first.evaluations} evaluations) and {second.solver.title} "
+        f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}",
+        f"co-simulation in fine steps is off by {1e6 * comparison.fine['position']:.1g} um; "
+        f"peak forces are measured against it, known to {100.0 * comparison.fine['force']:.1g} %",
+        f"wall time {'in process' if asked.in_process else 'through FMUs'}, median of {asked.repeat}; "
+        "of monolithic solvers, one run in process",
+    ]
+    return about
+
+
+def _table(comparison: Comparison) -> list[str]:
+    rows = [*comparison.rows, *comparison.monolithic]
+    width = max(len(row.name) for row in rows) + 2
+    heads = [f"{q.title}" for q in SHOWN.values()]
+    units = [f"[{q.unit}]" for q in SHOWN.values()]
+    top = f"{'scheme':<{width}}{'macro step':>12}" + "".join(f"{h:>12}" for h in (*heads, "wall/"))
+    below = f"{'':<{width}}{'':>12}" + "".join(f"{u:>12}" for u in (*units, "simulated"))
+    return [top, below, *(f"{row.name:<{width}}{_cells(row)}".rstrip() for row in rows)]
+
+
+def _cells(row: Row) -> str:
+    step = MONOLITHIC if row.step is None else f"{1e6 * row.step:g} us"
+    if row.failed:
+        return f"{step:>12}  {row.failed}"
+    errors = "".join(f"{_shown(row, name):>12}" for name in SHOWN)
+    wall = "-" if row.wall is None else f"{row.wall:.3g}"
+    return f"{step:>12}{errors}{wall:>12}" + (f"  ledger {row.ledger}" if row.ledger else "")
+
+
+def _shown(row: Row, name: str) -> str:
+    error = row.errors.get(name)
+    return "-" if error is None else f"{SHOWN[name].factor * error:.2g}"
+
+
+def _orders(comparison: Comparison) -> list[str]:
+    """By scheme; the steps used stand beside the order."""
+    width = max(len(name) for name in comparison.asked.schemes) + 2
+    head = f"{'order':<{width}}" + "".join(f"{q.title:>22}" for q in SHOWN.values())
+    body = [
+        f"{name:<{width}}" + "".join(f"{_order(comparison, name, quantity):>22}" for quantity in SHOWN)
+        for name in comparison.asked.schemes
+    ]
+    return [head, *body]
+
+
+def _order(comparison: Comparison, scheme: str, quantity: str) -> str:
+    order = comparison.orders(scheme)[quantity]
+    if order is None:
+        return "-"
+    return f"{order.value:.2f} ({1e6 * order.steps[0]:g}-{1e6 * order.steps[-1]:g} us)"
+
+
+def advice(comparison: Comparison) -> list[str]:
+    """Scheme and macro step for the wanted error."""
+    wanted = f"for {1e6 * comparison.asked.wanted:g} um: "
+    best = comparison.recommended()
+    if best is None or best.step is None or best.wall is None:
+        errors = [row for row in comparison.rows if row.errors]
+        if not errors:
+            return [f"{wanted}no scheme got there; try smaller --macro-steps"]
+        least = min(errors, key=lambda row: row.errors["position"])
+        near = f"{least.name} at {1e6 * (least.step or 0.0):g} us comes nearest"
+        return [f"{wanted}none of these, {near}; try smaller --macro-steps or a larger --wanted"]
+    text = (
+        f'{wanted}--scheme {best.name} --macro-step "{1e6 * best.step:g} us" is '
+        f"{1e6 * best.errors['position']:.2g} um off and takes {best.wall:.3g} s per simulated s"
+    )
+    solver = comparison.recommended_solver()
+    if solver is None or solver.wall is None:
+        return [text]
+    return [text, f"  the fastest monolithic solver there, {solver.name}, takes {solver.wall:.3g} s"]
+
+
+def write_report(comparison: Comparison, folder: Path) -> None:
+    """work_precision.csv, orders.csv and work_precision.png into `folder`."""
+    from touchdown.master.studies.schemes.figure import work_precision  # matplotlib is slow to import
+
+    with writing_to(folder):
+        write_table(comparison, folder / "work_precision.csv")
+        write_orders(comparison, folder / "orders.csv")
+        work_precision(comparison).savefig(folder / "work_precision.png", dpi=110)
+
+
+def write_table(comparison: Comparison, path: Path) -> None:
+    """All rows, errors in SI and in full precision."""
+    units = {"position": "m", "velocity": "m_s", "force": "relative", "energy": "relative"}
+    records: list[Mapping[str, object]] = [
+        {
+            "scheme": row.name,
+            "macro_step_s": row.step,
+            **{f"{name}_error_{unit}": row.errors.get(name) for name, unit in units.items()},
+            "wall_time_per_simulated_s": row.wall,
+            "ledger": row.ledger,
+            "failed": row.failed,
+        }
+        for row in (*comparison.rows, *comparison.monolithic)
+    ]
+    write_records(records, path)
+
+
+def write_orders(comparison: Comparison, path: Path) -> None:
+    """Fitted orders, and the steps they were fitted to."""
+    records: list[Mapping[str, object]] = []
+    for scheme in comparison.asked.schemes:
+        for quantity in QUANTITIES:
+            order = comparison.orders(scheme)[quantity]
+            records.append(
+                {
+                    "scheme": scheme,
+                    "quantity": quantity,
+                    "order": None if order is None else order.value,
+                    "macro_steps_s": "" if order is None else " ".join(f"{s:g}" for s in order.steps),
+                }
+            )
+    write_records(records, path)

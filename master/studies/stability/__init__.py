@@ -1,0 +1,1 @@
+"""For which macro steps the coupling of a contact to a body stays stable."""

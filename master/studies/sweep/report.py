@@ -1,0 +1,127 @@
+"""What a sweep found: as a table, as counts of verdicts, as a file."""
+
+from __future__ import annotations
+
+import csv
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.studies.sweep.variation import number_and_unit
+
+PICKS = (  # shown beside the verdicts where none are asked for
+    "whirl_*_revolutions",
+    "peak_contact_force_N*",
+    "peak_ball_force_N*",
+    "pendulum_frequency_Hz*",
+    "rotor_speed_end_rpm*",
+)
+
+
+@dataclass(frozen=True)
+class Member:
+    """One run of a sweep."""
+
+    number: int  # from 1
+    settings: Mapping[str, object]
+    summary: Mapping[str, object]
+    failed: str = ""  # why, or ""
+    ended: Ended = Ended.COMPLETED
+
+
+def keys(members: Sequence[Member]) -> list[str]:
+    """All figures that any member has, in their order."""
+    return list(dict.fromkeys(key for member in members for key in member.summary))
+
+
+def verdict_keys(members: Sequence[Member]) -> list[str]:
+    """Figures that are verdicts in words, such as whirl_A."""
+    return [
+        key
+        for key in keys(members)
+        if key.startswith("whirl_") and any(isinstance(m.summary.get(key), str) for m in members)
+    ]
+
+
+def verdict_lines(members: Sequence[Member]) -> list[str]:
+    """How many members have each verdict, the most frequent first."""
+    lines = []
+    for key in verdict_keys(members):
+        counts = Counter(str(m.summary[key]) for m in members if m.summary.get(key) is not None)
+        lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
+    return lines
+
+
+def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
+    """Figures that match `picks` (names, * for anything), or a few that tell most, and complaints."""
+    known = keys(members)
+    wanted = list(picks)
+    chosen = [] if wanted else verdict_keys(members)
+    complaints: list[str] = []
+    for pick in wanted or PICKS:
+        matches = [key for key in known if fnmatchcase(key, pick)]
+        chosen += matches
+        if wanted and known and not matches:
+            complaints.append(f"no member has a figure {pick}; {one_of(pick, known)}")
+    return list(dict.fromkeys(chosen)), complaints
+
+
+def table(members: Sequence[Member], figures: Sequence[str]) -> str:
+    """A line for each member: number, what was set, `figures`, and why it failed."""
+    names = list(members[0].settings)
+    rows = [["", *names, *figures, ""]]
+    for m in members:
+        row = [str(m.number), *(str(m.settings[name]) for name in names)]
+        row += [_shown(m.summary.get(key)) for key in figures]
+        rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    aligned = [
+        "  ".join([f"{cell:>{width}}" for cell, width in zip(row[:-1], widths, strict=False)] + row[-1:])
+        for row in rows
+    ]
+    return "\n".join(line.rstrip() for line in aligned)
+
+
+def write_table(members: Sequence[Member], path: Path) -> None:
+    """All figures of all members; a varied number stands in the unit its column names, or SI."""
+    names, figures = list(members[0].settings), keys(members)
+    columns = {name: _column(name, [m.settings[name] for m in members]) for name in names}
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
+            for i, m in enumerate(members):
+                cells = [_counted(m.summary.get(key)) for key in figures]
+                writer.writerow(
+                    [m.number, *(values[i] for _, values in columns.values()), *cells, m.failed]
+                )
+    except OSError as error:
+        raise TouchdownError(
+            f"cannot write {path}: {error.strerror}; choose another folder with -o"
+        ) from None
+
+
+def _column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:
+    """Title and cells: bare numbers where all have the same unit, else what was given."""
+    parts = [number_and_unit(value) for value in values]
+    units = {part[1] for part in parts if part is not None}
+    if None in parts or len(units) != 1:
+        return name, list(values)
+    unit = units.pop()
+    return f"{name} [{unit}]" if unit else name, [part[0] for part in parts if part is not None]
+
+
+def _counted(value: object) -> object:
+    """Of a list, such as a whirl's episodes, the number."""
+    return len(value) if isinstance(value, list) else value
+
+
+def _shown(value: object) -> str:
+    value = _counted(value)
+    if value is None:
+        return "-"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,47 @@
+"""Drops of the flexible rotors against the source."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from touchdown.master.common.progress import bar_over
+from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, count, results_folder
+from touchdown.master.verbs.verb import Verb
+
+EXAMPLES = (
+    "touchdown compare-rotors --ensemble 2 -o runs/rotors",
+    "touchdown compare-rotors --long",
+)
+
+
+def declare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument("--ensemble", default="4", metavar="N", help="unbalance phases (default: 4)")
+    verb.add_argument("--long", action="store_true", help="also the run-down over 16 s")
+    add_jobs(verb)
+    add_output(verb, Path("runs/rotors"))
+    add_quiet(verb)
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from touchdown.master.studies.dissertation.rotors import compare_rotors, runs
+
+    members = count(options.ensemble, "--ensemble")
+    jobs = count(options.jobs, "--jobs")
+    folder = results_folder(options)
+    with bar_over(runs(members), "drops", options.quiet) as bar:
+        text = compare_rotors(members, folder, options.long, jobs, bar.update)
+    print(text, end="")
+    print(f"results in {folder}")
+    return 0
+
+
+VERB = Verb(
+    "compare-rotors",
+    "drops of the flexible rotors against the source's Figs 14, 15 and Table 4",
+    EXAMPLES,
+    declare,
+    execute,
+)

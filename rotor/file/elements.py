@@ -1,0 +1,131 @@
+"""The shaft of a rotor file: materials, and the elements with their sleeves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from touchdown.rotor.beams.shaft import MOST_NODES, Element
+from touchdown.rotor.file.table import RotorFileError, Table
+
+CLOSE = 1e-7  # m; positions and sums of lengths this close agree
+
+
+@dataclass(frozen=True)
+class Material:
+    """Modulus in Pa, density in kg/m3; without Poisson's ratio it can be a sleeve only."""
+
+    modulus: float
+    density: float
+    poisson: float | None
+
+
+def materials_of(top: Table) -> dict[str, Material]:
+    """The materials of a file by name. Raises RotorFileError, as all that follow."""
+    materials: dict[str, Material] = {}
+    group = top.table("material")
+    for name in group.values:
+        t = group.table(name)
+        t.only("modulus", "density", "poisson")
+        materials[name] = Material(
+            modulus=t.quantity("modulus", "Pa", zero=True),
+            density=t.quantity("density", "kg/m3"),
+            poisson=t.number("poisson", 0.0, 0.5) if "poisson" in t.values else None,
+        )
+    return materials
+
+
+def material_of(table: Table, materials: dict[str, Material]) -> Material:
+    """The material a table names; by default the only one that can be a core."""
+    cores = [name for name, m in materials.items() if m.poisson is not None]
+    if "material" not in table.values and len(cores) == 1:
+        return materials[cores[0]]
+    listed = ", ".join(materials) or "none"
+    name = table.get("material", str, f"the name of a material; there are: {listed}")
+    if name not in materials:
+        raise table.error("material", f"is not a material of this file; there are: {listed}")
+    return materials[name]
+
+
+def diameters_of(table: Table, inner_default: float | None = None) -> tuple[float, float]:
+    """Outer and inner diameter (m) of an element or a disc; the inner one is less."""
+    outer = table.quantity("outer_diameter", "m")
+    inner = table.quantity("inner_diameter", "m", default=inner_default, zero=True)
+    if inner >= outer:
+        raise table.error(
+            "inner_diameter", f"must be below outer_diameter = {table.values['outer_diameter']!r}"
+        )
+    return outer, inner
+
+
+def elements_of(top: Table, materials: dict[str, Material]) -> tuple[Element, ...]:
+    """The elements of a file, in order from node 1."""
+    elements: list[Element] = []
+    end = 0.0
+    for t in top.tables("element", "length", "outer_diameter", "inner_diameter", "material", "count",
+                        "sleeve", "position", "shear_factor"):  # fmt: skip
+        _check_position(t, end)
+        count = t.integer("count", 1, 10**9, default=1)
+        nodes = len(elements) + count + 1
+        if nodes > MOST_NODES:
+            raise RotorFileError(
+                f"{top.file}: {t.where} brings the rotor to {nodes} nodes; "
+                f"at most {MOST_NODES} are possible, take fewer and longer elements"
+            )
+        element = _element(t, materials)
+        elements += [element] * count
+        end += count * element.length
+    if not elements:
+        raise RotorFileError(
+            f"{top.file}: element is missing; describe the shaft by one table [[element]] or more"
+        )
+    return tuple(elements)
+
+
+def _check_position(table: Table, end: float) -> None:
+    """Where an element says it starts, it must start at the end of the one before (m)."""
+    if "position" not in table.values:
+        return
+    start = table.quantity("position", "m", zero=True)
+    if abs(start - end) > CLOSE:
+        what = "leaves a gap after" if start > end else "overlaps"
+        raise table.error(
+            "position",
+            f"{what} the elements before it, which end at {1e3 * end:.6g} mm; mend it or their lengths",
+        )
+
+
+def _element(t: Table, materials: dict[str, Material]) -> Element:
+    length = t.quantity("length", "m")
+    outer, inner = diameters_of(t, inner_default=0.0)
+    core = material_of(t, materials)
+    if core.poisson is None:
+        raise t.error("material", "has no poisson, which the core of an element needs; add it there")
+    if core.modulus == 0.0:
+        raise t.error("material", "has a modulus of 0, which only a sleeve may have; name another")
+    sleeve = _sleeve(t, materials, outer) if "sleeve" in t.values else {}
+    return Element(
+        length=length,
+        outer_diameter=outer,
+        inner_diameter=inner,
+        modulus=core.modulus,
+        density=core.density,
+        poisson=core.poisson,
+        shear_factor=t.number("shear_factor", 0.1, 1.2) if "shear_factor" in t.values else None,
+        **sleeve,
+    )
+
+
+def _sleeve(element: Table, materials: dict[str, Material], outer: float) -> dict[str, float]:
+    """What a sleeve adds to an `Element` whose core has the diameter `outer` (m)."""
+    t = element.table("sleeve")
+    t.only("outer_diameter", "material")
+    diameter = t.quantity("outer_diameter", "m")
+    if diameter <= outer:
+        core = element.values["outer_diameter"]
+        raise t.error("outer_diameter", f"must be above that of the core it sits on, {core!r}")
+    material = material_of(t, materials)
+    return {
+        "sleeve_diameter": diameter,
+        "sleeve_density": material.density,
+        "sleeve_modulus": material.modulus,
+    }

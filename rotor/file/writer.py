@@ -1,0 +1,139 @@
+"""A shaft written as a rotor file, from which an equal one is read.
+
+Each quantity takes the shortest text that is read as the same number to the bit. What a shaft does not
+remember is written as what it became: a disc as a point mass, a material by a number.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+
+from touchdown.modelkit.units import SCALES, to_si
+from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.file.parser import parse
+from touchdown.rotor.file.table import RotorFileError
+
+PREFERRED = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg")  # units beside those of SI
+DIGITS = 15  # decimal digits that a float holds
+
+
+def written(shaft: Shaft, file: str = "the rotor") -> str:
+    """The text of a rotor file for `shaft`; `parse` reads an equal shaft from it.
+
+    `file` is what to call it in messages. Raises RotorFileError where a rotor file cannot say what the
+    shaft is, such as an element out of all proportion.
+    """
+    text = "\n".join(_lines(shaft)) + "\n"
+    if parse(text, file) != shaft:
+        raise RotorFileError(
+            f"{file}: the rotor {shaft.title} cannot be written as a rotor file: it would be read as "
+            "another one; look for a sleeve's density or modulus without its diameter"
+        )
+    return text
+
+
+def _lines(shaft: Shaft) -> Iterator[str]:
+    yield f"title = {_text(shaft.title)}"
+    if shaft.about:
+        yield f"about = {_prose(shaft.about)}"
+    yield f"damping_ratio = {float(shaft.damping_ratio)!r}"
+    if shaft.levitated_at:
+        yield f"levitated_at = [{', '.join(map(_text, shaft.levitated_at))}]"
+    cores = _numbered("core", ((e.modulus, e.density, e.poisson) for e in shaft.elements))
+    sleeves = _numbered(
+        "sleeve", ((e.sleeve_modulus, e.sleeve_density) for e in shaft.elements if e.sleeve_diameter)
+    )
+    yield from _materials(cores | sleeves)
+    yield from _elements(shaft.elements, cores, sleeves)
+    for point in shaft.points:
+        yield from _point(point)
+    for unbalance in shaft.unbalances:
+        yield from _unbalance(unbalance)
+    yield from _stations("stations", shaft.stations)
+    yield from _stations("sensors", shaft.sensors)
+
+
+Names = dict[tuple[float, ...], str]
+
+
+def _numbered(kind: str, materials: Iterable[tuple[float, ...]]) -> Names:
+    """Names by material: (modulus in Pa, density in kg/m3, and Poisson's ratio of a core)."""
+    return {one: f"{kind}_{i}" for i, one in enumerate(dict.fromkeys(materials), 1)}
+
+
+def _materials(names: Names) -> Iterator[str]:
+    for (modulus, density, *poisson), name in names.items():
+        yield f"\n[material.{name}]"
+        yield f"modulus = {_quantity(modulus, 'Pa')}"
+        yield f"density = {_quantity(density, 'kg/m3')}"
+        yield from (f"poisson = {float(value)!r}" for value in poisson)
+
+
+def _elements(elements: tuple[Element, ...], cores: Names, sleeves: Names) -> Iterator[str]:
+    """One table for each run of equal elements."""
+    node = 1
+    for e, run in groupby(elements):
+        count = len(list(run))
+        yield f"\n[[element]]  # nodes {node} to {node + count}"
+        node += count
+        if count > 1:
+            yield f"count = {count}"
+        yield f"length = {_quantity(e.length, 'm')}"
+        yield f"outer_diameter = {_quantity(e.outer_diameter, 'm')}"
+        if e.inner_diameter:
+            yield f"inner_diameter = {_quantity(e.inner_diameter, 'm')}"
+        yield f'material = "{cores[e.modulus, e.density, e.poisson]}"'
+        if e.shear_factor is not None:
+            yield f"shear_factor = {float(e.shear_factor)!r}"
+        if e.sleeve_diameter:
+            outer, name = _quantity(e.sleeve_diameter, "m"), sleeves[e.sleeve_modulus, e.sleeve_density]
+            yield f'sleeve = {{ outer_diameter = {outer}, material = "{name}" }}'
+
+
+def _point(point: PointMass) -> Iterator[str]:
+    yield f"\n[[point_mass]]\nnode = {point.node}"
+    yield f"mass = {_quantity(point.mass, 'kg')}"
+    yield f"polar_inertia = {_quantity(point.polar_inertia, 'kg.m2')}"
+    yield f"diametral_inertia = {_quantity(point.diametral_inertia, 'kg.m2')}"
+
+
+def _unbalance(unbalance: Unbalance) -> Iterator[str]:
+    yield f"\n[[unbalance]]\nnode = {unbalance.node}"
+    yield f"moment = {_quantity(unbalance.moment, 'kg.m')}"
+    yield f"angle = {_quantity(unbalance.angle, 'rad')}"
+
+
+def _stations(kind: str, stations: tuple[Station, ...]) -> Iterator[str]:
+    if stations:
+        yield f"\n[{kind}]"
+    for station in stations:
+        yield f"{_key(station.name)} = {station.node}"
+
+
+def _quantity(value: float, unit: str) -> str:
+    """`value` (SI) as text with a unit: the shortest of those that are read as the same number."""
+    exact = f"{float(value)!r} {unit}"
+    scales = [(SCALES[name][0], name) for name in PREFERRED if SCALES[name][1] == unit]
+    ways = [f"{value / factor:.{DIGITS}g} {name}" for factor, name in (*scales, (1.0, unit))]
+    same = [way for way in ways if math.isfinite(value) and to_si(way, unit, unit) == value]
+    return _text(min((*same, exact), key=len))
+
+
+def _text(text: str) -> str:
+    """A TOML string; its escapes are those of JSON but for one character."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _prose(text: str) -> str:
+    """A TOML string of one or more lines."""
+    if "\n" not in text:
+        return _text(text)
+    return '"""\n' + "\n".join(_text(line)[1:-1] for line in text.split("\n")) + '"""'
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)

@@ -1,0 +1,222 @@
+"""What the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
+
+Prepared once from the shaft and the parameters, outside the kernels. Modal coordinates are
+mass-normalised and the same in both planes; the polar matrix couples the planes (`rotor.motion`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from touchdown.modelkit.ports import MODES
+from touchdown.modelkit.variables import array, group, integer, real
+from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
+from touchdown.rotor.modal.modes import RIGID, Basis, basis
+from touchdown.rotor.modal.stresses import recovery
+
+MOST_MODES = 2 * MOST_NODES  # per plane, residual vectors included
+MOST_ENDS = 2 * (MOST_NODES - 1)  # of elements
+NEGLIGIBLE = 1e-9  # of a station's inv_m: a mode that has a node there
+
+
+@dataclass(frozen=True)
+class Gyroscopic:
+    """The modal polar matrix G = Q diag(principal) Q^T, polar inertia per length (1)."""
+
+    polar: np.ndarray = array(MOST_MODES, MOST_MODES)  # G (n, n)
+    turn: np.ndarray = array(MOST_MODES, MOST_MODES)  # Q^T (n, n)
+    principal: np.ndarray = array(MOST_MODES)  # (n,)
+
+
+@dataclass(frozen=True)
+class ModalUnbalance:
+    """Unbalance of each mode in the rotor's frame (n,), kg^0.5 m."""
+
+    present: int = integer(0, "whether there is any unbalance")
+    x: np.ndarray = array(MOST_MODES)
+    y: np.ndarray = array(MOST_MODES)
+
+
+@dataclass(frozen=True)
+class StressRows:
+    """Stresses at the ends of the elements, R of them in use."""
+
+    ends: int = integer(0, "of the elements, two each")
+    node: np.ndarray = array(MOST_ENDS)  # (R,), counted from 1
+    bending: np.ndarray = array(MOST_ENDS, MOST_MODES)  # (R, n), Pa per modal coordinate
+    shear: np.ndarray = array(MOST_ENDS, MOST_MODES)  # (R, n)
+    bending_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # (R, S), Pa/N, of the modes left out
+    shear_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # (R, S)
+
+
+@dataclass(frozen=True)
+class Derived:
+    """Constants of the kernels: n modes, S stations, N nodes; rows and columns in use come first."""
+
+    modes: int = integer(0, "per plane, the rigid ones and residual vectors included")
+    stations: int = integer(0, "places that take a load")
+    sensors: int = integer(0, "places that only tell their motion")
+    nodes: int = integer(0, "of the finite elements")
+    mass: float = real(0.0, "kg", "of the rotor")
+    inertia: float = real(0.0, "kg.m2", "polar")
+    damping_ratio: float = real(0.0, "1", "of the elastic modes")
+    position: np.ndarray = array(MOST_NODES)  # of the nodes (N,), m
+    stiffness: np.ndarray = array(MOST_MODES)  # omega^2 (n,), 1/s2
+    damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega (n,), 1/s
+    weight: np.ndarray = array(MOST_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
+    sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5
+    shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the stations (S, n), 1/kg^0.5
+    sensor_shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the sensors
+    inv_m: np.ndarray = array(MOST_STATIONS)  # (S,), 1/kg
+    static_fy: np.ndarray = array(MOST_STATIONS)  # (S,), N, holds the rotor at rest at the start
+    slots: np.ndarray = array(MOST_STATIONS)  # modes told of at a station (S,)
+    slot: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # of a mode there (S, n), from 0; -1: none
+    lumped: np.ndarray = array(MOST_STATIONS)  # whether the last slot holds more than one mode (S,)
+    gyroscopic: Gyroscopic = group(Gyroscopic)
+    unbalance: ModalUnbalance = group(ModalUnbalance)
+    stress: StressRows = group(StressRows)
+
+
+def seats(shaft: Shaft) -> list[int]:
+    """Nodes (from 1) of the stations that do not levitate the rotor: those where it can touch down."""
+    return [s.node for s in shaft.stations if s.name not in shaft.levitated_at]
+
+
+@lru_cache(maxsize=16)
+def chosen_basis(shaft: Shaft, modes: int, residual: int) -> Basis:
+    """The lowest `modes` free-free modes (0: all), with residual vectors at the seats where asked for."""
+    return basis(shaft, modes, tuple(dict.fromkeys(seats(shaft))) if residual else ())
+
+
+@lru_cache(maxsize=16)
+def prepare(
+    shaft: Shaft, modes: int, residual: int, damping_ratio: float, gravity: float, acceleration: int
+) -> Derived:
+    """All constants of a rotor with the lowest `modes` modes (0: all), residual vectors where asked for.
+
+    damping_ratio is that of the elastic modes, gravity in m/s2; `acceleration`: stresses by mode
+    acceleration. Raises ModelError where there are not so many modes.
+    """
+    kept = chosen_basis(shaft, modes, residual)
+    return Derived(
+        modes=len(kept.omega),
+        stations=len(shaft.stations),
+        sensors=len(shaft.sensors),
+        nodes=shaft.nodes,
+        mass=shaft.mass,
+        inertia=shaft.polar_inertia,
+        damping_ratio=damping_ratio,
+        position=_room(shaft.positions(), MOST_NODES),
+        gyroscopic=_gyroscopic(kept),
+        unbalance=_unbalance(shaft, kept),
+        stress=_stress_rows(shaft, kept, 1.0 if acceleration else 0.0),
+        **_of_modes(shaft, kept, damping_ratio),
+        **_of_stations(shaft, kept, gravity),
+    )
+
+
+def _of_modes(shaft: Shaft, kept: Basis, damping_ratio: float) -> dict[str, np.ndarray]:
+    """What `Derived` holds of each mode by itself."""
+    weight = np.zeros(len(kept.omega))
+    weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
+    return {
+        "stiffness": _room(kept.omega**2, MOST_MODES),
+        "damping": _room(2.0 * damping_ratio * kept.omega, MOST_MODES),
+        "weight": _room(weight, MOST_MODES),
+    }
+
+
+def _of_stations(shaft: Shaft, kept: Basis, gravity: float) -> dict[str, np.ndarray]:
+    """What `Derived` holds of the stations and sensors, and the sag between the stations that hold."""
+    shape = kept.deflections([s.node for s in shaft.stations])
+    static = static_forces(shaft, gravity)
+    slots, slot = _slots(shape)
+    return {
+        "sag": _room(_sag(shape, kept.omega**2, static), MOST_MODES),
+        "shape": _room(shape, MOST_STATIONS, MOST_MODES),
+        "sensor_shape": _room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
+        "inv_m": _room(np.sum(shape**2, axis=1), MOST_STATIONS),
+        "static_fy": _room(static, MOST_STATIONS),
+        "slots": _room(slots, MOST_STATIONS),
+        "slot": _room(slot, MOST_STATIONS, MOST_MODES),
+        "lumped": _room(np.sum(slot >= 0, axis=1) > slots, MOST_STATIONS),
+    }
+
+
+def _sag(shape: np.ndarray, stiffness: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    """Modal coordinates (n,) at rest under vertical forces (S,); the rigid ones are zero."""
+    sag = np.zeros(len(stiffness))
+    sag[RIGID:] = (shape[:, RIGID:].T @ forces) / stiffness[RIGID:]
+    return sag
+
+
+def _gyroscopic(kept: Basis) -> Gyroscopic:
+    principal, axes = np.linalg.eigh(kept.gyroscopic)
+    return Gyroscopic(
+        polar=_room(kept.gyroscopic, MOST_MODES, MOST_MODES),
+        turn=_room(axes.T, MOST_MODES, MOST_MODES),
+        principal=_room(principal, MOST_MODES),
+    )
+
+
+def _unbalance(shaft: Shaft, kept: Basis) -> ModalUnbalance:
+    unbalance = np.zeros(len(kept.omega), complex)
+    for u in shaft.unbalances:
+        unbalance += u.moment * np.exp(1j * u.angle) * kept.shapes[2 * (u.node - 1)]
+    return ModalUnbalance(
+        present=int(np.any(unbalance != 0.0)),
+        x=_room(np.real(unbalance), MOST_MODES),
+        y=_room(np.imag(unbalance), MOST_MODES),
+    )
+
+
+def _stress_rows(shaft: Shaft, kept: Basis, per_load: float) -> StressRows:
+    """`per_load`: 1 where loads add what the modes left out would, else 0."""
+    stresses = recovery(shaft, kept, [s.node for s in shaft.stations])
+    return StressRows(
+        ends=len(stresses.node),
+        node=_room(stresses.node, MOST_ENDS),
+        bending=_room(stresses.bending, MOST_ENDS, MOST_MODES),
+        shear=_room(stresses.shear, MOST_ENDS, MOST_MODES),
+        bending_load=_room(per_load * stresses.bending_load, MOST_ENDS, MOST_STATIONS),
+        shear_load=_room(per_load * stresses.shear_load, MOST_ENDS, MOST_STATIONS),
+    )
+
+
+def static_forces(shaft: Shaft, gravity: float) -> np.ndarray:
+    """Vertical force (N) at each station that holds the rotor at rest, by those that levitate it.
+
+    Two of them share the weight as levers do; more, by the smallest forces that balance it; none: zero.
+    """
+    force = np.zeros(len(shaft.stations))
+    holding = [i for i, s in enumerate(shaft.stations) if s.name in shaft.levitated_at]
+    if holding:
+        arms = np.array([shaft.positions()[shaft.stations[i].node - 1] for i in holding])
+        balance = np.vstack([np.ones(len(holding)), arms - shaft.centre_of_mass])
+        force[holding] = np.linalg.lstsq(balance, [shaft.mass * gravity, 0.0], rcond=None)[0]
+    return force
+
+
+def _slots(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How many elastic modes each station tells of (S,), and which slot each mode takes there (S, n).
+
+    shape: (S, n). Slots count from 0; what is more than `MODES` is lumped in the last one, and modes
+    without a share there have none (-1).
+    """
+    gain = shape**2
+    slot = np.full(shape.shape, -1.0)
+    for row, mine in enumerate(gain):
+        told = [k for k in range(RIGID, len(mine)) if mine[k] > NEGLIGIBLE * np.sum(mine)]
+        for number, k in enumerate(told):
+            slot[row, k] = min(number, MODES - 1)
+    return slot.max(axis=1, initial=-1.0) + 1.0, slot
+
+
+def _room(values: np.ndarray, *size: int) -> np.ndarray:
+    """`values` at the beginning of a zero array of the given size."""
+    room = np.zeros(size)
+    room[tuple(slice(n) for n in values.shape)] = values
+    return room

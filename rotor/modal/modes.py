@@ -1,0 +1,158 @@
+"""Free-free modes of a rotor, with residual vectors (section 3.3 of the source).
+
+Few modes leave out the local flexibility at a seat, which matters in a contact. A residual vector is
+what the modes left out deflect under a static force there; with it, the reduced rotor has the exact
+static flexibility for forces at these nodes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.assembly import (
+    TOO_UNLIKE,
+    Matrices,
+    assemble,
+    solve,
+    tilt,
+    translation,
+    unit_forces,
+)
+from touchdown.rotor.beams.shaft import Shaft
+
+RIGID = 2  # rigid modes per plane
+NOTHING = 1e-7  # a residual vector this small against its node's deflection is rounding error
+DROWNED = 1e-11  # squared frequency over the highest; below, rounding errors show in the third digit
+PARALLEL = 1e-10  # squared sine below which residual vectors count as one
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Generalised coordinates p of one plane: q = shapes p, unit modal masses.
+
+    p'' - i Omega gyroscopic p' - i alpha gyroscopic p + omega^2 p = shapes^T F. Translation and tilt
+    come first (omega = 0), then bending modes by frequency, then residual vectors by theirs.
+    """
+
+    shapes: np.ndarray  # (2N, n)
+    omega: np.ndarray  # (n,), rad/s
+    gyroscopic: np.ndarray  # (n, n)
+    kept: int  # true modes; the other n - kept are residual vectors
+
+    def deflections(self, nodes: Sequence[int]) -> np.ndarray:
+        """Deflection of `nodes` (1-based) per coordinate (len(nodes), n)."""
+        return self.shapes[[2 * (node - 1) for node in nodes]]
+
+
+def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
+    """The lowest `modes` modes of one plane, the two rigid ones included (0: all), and residual vectors.
+
+    `residual_at` are nodes (1-based) for whose forces the static flexibility shall be exact; what the
+    modes leave nothing of, or what another node has brought already, is not added. Raises ModelError where
+    there are not so many modes, or the elements are too unlike each other.
+    """
+    most = 2 * shaft.nodes
+    if modes != 0 and not RIGID <= modes <= most:
+        raise ModelError(
+            f"modes = {modes}: the rotor {shaft.title} has {most} modes per plane; "
+            f"keep {RIGID} (rigid) to {most}, or 0 for all"
+        )
+    matrices = assemble(shaft)
+    shapes, omega = _free_modes(shaft, matrices, modes or most)
+    kept = len(omega)
+    if len(residual_at) > 0:
+        extra, extra_omega = _residual_vectors(shaft, matrices, shapes, omega, residual_at)
+        shapes = np.hstack((shapes, extra))
+        omega = np.concatenate((omega, extra_omega))
+    gyroscopic = shapes.T @ matrices.polar @ shapes
+    gyroscopic[0, :] = gyroscopic[:, 0] = 0.0  # translation turns no section
+    return Basis(shapes, omega, 0.5 * (gyroscopic + gyroscopic.T), kept)
+
+
+def rigid_modes(shaft: Shaft) -> np.ndarray:
+    """Translation and tilt about the centre of mass, orthonormal in the mass matrix (2N, 2)."""
+    return np.stack(
+        (translation(shaft) / np.sqrt(shaft.mass), tilt(shaft) / np.sqrt(shaft.diametral_inertia)), axis=1
+    )
+
+
+def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
+    """Elastic deflection of the free rotor under a unit force at each of `nodes` (2N, len(nodes)), m/N.
+
+    By inertia relief: the force is balanced by the inertia of the rigid motion it causes, and the
+    deflection holds no rigid motion.
+    """
+    return _relieved(shaft, assemble(shaft), unit_forces(shaft, nodes))
+
+
+def residual_flexibility(shaft: Shaft, kept: Basis, nodes: Sequence[int]) -> np.ndarray:
+    """What `flexibility` holds beyond the coordinates of `kept` (2N, len(nodes)), m/N."""
+    deflection = flexibility(shaft, nodes)
+    elastic, omega = kept.shapes[:, RIGID:], kept.omega[RIGID:]
+    return deflection - elastic @ (elastic.T @ unit_forces(shaft, nodes) / omega[:, None] ** 2)
+
+
+def _relieved(shaft: Shaft, matrices: Matrices, forces: np.ndarray) -> np.ndarray:
+    """Elastic deflection of the free rotor under `forces` (2N, k)."""
+    rigid = rigid_modes(shaft)
+    inertia = matrices.mass @ rigid
+    balanced = forces - inertia @ (rigid.T @ forces)
+    held = slice(2, None)  # balanced loads leave no reaction where node 1 is held
+    deflection = np.zeros_like(balanced)
+    deflection[held] = solve(matrices.stiffness[held, held], balanced[held])
+    return deflection - rigid @ (inertia.T @ deflection)
+
+
+def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Shapes (2N, count) and frequencies (count,), the rigid ones built, not solved for."""
+    rigid = rigid_modes(shaft)
+    if count == RIGID:
+        return rigid, np.zeros(RIGID)
+    square, bending = linalg.eigh(matrices.stiffness, matrices.mass)
+    if square[RIGID] < DROWNED * square[-1]:
+        raise ModelError(TOO_UNLIKE)
+    bending = bending[:, RIGID:count]
+    bending = bending - rigid @ (rigid.T @ (matrices.mass @ bending))
+    elastic, omega = _ritz(matrices, bending)
+    return np.hstack((rigid, elastic)), np.concatenate((np.zeros(RIGID), omega))
+
+
+def _residual_vectors(
+    shaft: Shaft, matrices: Matrices, shapes: np.ndarray, omega: np.ndarray, nodes: Sequence[int]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Vectors (2N, k), k <= len(nodes), orthonormal to `shapes` and each other, and frequencies (k,)."""
+    deflection = flexibility(shaft, nodes)
+    modal = Basis(shapes, omega, np.zeros((0, 0)), len(omega))
+    vectors = residual_flexibility(shaft, modal, nodes)
+    vectors = vectors - shapes @ (shapes.T @ (matrices.mass @ vectors))
+    size = np.sqrt(np.sum(vectors * (matrices.mass @ vectors), axis=0))
+    full = np.sqrt(np.sum(deflection * (matrices.mass @ deflection), axis=0))
+    there = size > NOTHING * full
+    if not there.any():
+        return np.zeros((len(shapes), 0)), np.zeros(0)
+    vectors = vectors[:, there] / size[there]
+    gram, turns = np.linalg.eigh(vectors.T @ matrices.mass @ vectors)
+    return _ritz(matrices, vectors @ turns[:, gram > PARALLEL])
+
+
+def _ritz(matrices: Matrices, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rayleigh-Ritz within the span of `vectors` (2N, k): mass-normalised shapes and frequencies (k,)."""
+    mass = vectors.T @ matrices.mass @ vectors
+    stiffness = vectors.T @ matrices.stiffness @ vectors
+    square, turns = linalg.eigh(0.5 * (stiffness + stiffness.T), 0.5 * (mass + mass.T))
+    return _signed(vectors @ turns), np.sqrt(square)
+
+
+def _signed(shapes: np.ndarray) -> np.ndarray:
+    """Each column turned so that the first node that moves appreciably moves to the positive side."""
+    for column in shapes.T:
+        deflection = column[0::2]
+        first = np.argmax(np.abs(deflection) > 0.1 * np.abs(deflection).max())
+        if deflection[first] < 0.0:
+            column *= -1.0
+    return shapes

@@ -1,0 +1,85 @@
+"""Stresses of a flexible rotor from its generalised coordinates (section 3.2 of the source).
+
+Bending (3.19): r E N'' q at the outer radius r of the core, by the modulus E of the core. It is
+positive where the deflection curves upwards (y'' > 0), and then it is tension on the side of -y and
+compression on the side of +y. The source prints (3.20) with the sign of -N'', that of the stress on the
+side of +y; here (3.19) holds.
+
+Shear (3.22): factor V / A of the core, with V = EI N''' q as in (3.10), V = M'. The factor is 4/3 for a
+solid section only; 4/3 (ro^2 + ro ri + ri^2) / (ro^2 + ri^2) for a hollow one. Where a sleeve carries a
+part of the moment, the core has the share of V that it has of EI.
+
+Stresses of the two planes are the same matrices times the real (x) and imaginary (y) coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from touchdown.rotor.beams import beam
+from touchdown.rotor.beams.shaft import Element, Shaft
+from touchdown.rotor.modal.modes import Basis, residual_flexibility
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """Stresses at both ends of every element, R = 2 elements rows: start, end, start, ...
+
+    Mode displacement: bending p, shear p (Pa). Mode acceleration adds what forces F (S,) at the loaded
+    nodes deflect beyond the coordinates: bending p + bending_load F.
+    """
+
+    node: np.ndarray  # (R,), 1-based
+    position: np.ndarray  # (R,), m from node 1
+    bending: np.ndarray  # (R, n), Pa per unit of a coordinate
+    shear: np.ndarray  # (R, n)
+    bending_load: np.ndarray  # (R, S), Pa/N
+    shear_load: np.ndarray  # (R, S)
+
+
+def recovery(shaft: Shaft, basis: Basis, loaded_nodes: Sequence[int] = ()) -> Recovery:
+    """Stress matrices of `basis` for forces at `loaded_nodes` (1-based)."""
+    bending, shear = stress_rows(shaft)
+    added = residual_flexibility(shaft, basis, loaded_nodes)
+    node = end_nodes(shaft)
+    return Recovery(
+        node=node,
+        position=shaft.positions()[node - 1],
+        bending=bending @ basis.shapes,
+        shear=shear @ basis.shapes,
+        bending_load=bending @ added,
+        shear_load=shear @ added,
+    )
+
+
+def end_nodes(shaft: Shaft) -> np.ndarray:
+    """Node (1-based) of every row of stresses (R,): 1, 2, 2, 3, 3, ..."""
+    first = np.arange(1, shaft.nodes)
+    return np.stack((first, first + 1), axis=1).ravel()
+
+
+def stress_rows(shaft: Shaft) -> tuple[np.ndarray, np.ndarray]:
+    """Bending and shear stress per nodal displacement, each (R, 2N), by (3.20) and (3.22)."""
+    rows = 2 * len(shaft.elements)
+    bending, shear = np.zeros((rows, 2 * shaft.nodes)), np.zeros((rows, 2 * shaft.nodes))
+    for i, element in enumerate(shaft.elements):
+        N = beam.shapes(element, np.array([0.0, element.length]))
+        here, dofs = slice(2 * i, 2 * i + 2), slice(2 * i, 2 * i + 4)
+        bending[here, dofs] = bending_per_moment(element) * element.EI * N.curvature
+        shear[here, dofs] = shear_per_force(element) * element.EI * N.third
+    return bending, shear
+
+
+def bending_per_moment(element: Element) -> float:
+    """Stress at the core's outer radius per bending moment of the whole section (1/m3)."""
+    return 0.5 * element.outer_diameter * element.modulus / element.EI
+
+
+def shear_per_force(element: Element) -> float:
+    """Largest shear stress in the core per shear force of the whole section (1/m2)."""
+    ro, ri = 0.5 * element.outer_diameter, 0.5 * element.inner_diameter
+    factor = 4.0 / 3.0 * (ro**2 + ro * ri + ri**2) / (ro**2 + ri**2)
+    return factor / element.area * element.core_EI / element.EI

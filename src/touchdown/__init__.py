@@ -1,0 +1,98 @@
+"""Rotor drops onto touchdown bearings, co-simulated with FMUs.
+
+>>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+>>> touchdown.run(scene, in_process=True).summary["completed"]
+True
+"""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from touchdown.master.api.fmus import build, check
+    from touchdown.master.api.rotor import Rotor
+    from touchdown.master.api.run import run
+    from touchdown.master.api.scenes import load, scenes
+    from touchdown.master.api.schemes import register_scheme
+    from touchdown.master.api.studies import compare, sweep
+    from touchdown.master.common.ended import Ended
+    from touchdown.master.common.errors import TouchdownError
+    from touchdown.master.coupling.steppers.stepper import Stepper
+    from touchdown.master.results.result import Result
+    from touchdown.master.scene.scene import Scene
+    from touchdown.master.scene.schemes import Scheme
+    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Unbalance
+
+    __version__: str
+
+__all__ = [
+    "Element",
+    "Ended",
+    "PointMass",
+    "Result",
+    "Rotor",
+    "Scene",
+    "Scheme",
+    "Station",
+    "Stepper",
+    "TouchdownError",
+    "Unbalance",
+    "__version__",
+    "build",
+    "check",
+    "compare",
+    "load",
+    "register_scheme",
+    "run",
+    "scenes",
+    "sweep",
+]
+
+_HOMES = {
+    "build": "master.api.fmus",
+    "check": "master.api.fmus",
+    "Rotor": "master.api.rotor",
+    "run": "master.api.run",
+    "load": "master.api.scenes",
+    "scenes": "master.api.scenes",
+    "register_scheme": "master.api.schemes",
+    "compare": "master.api.studies",
+    "sweep": "master.api.studies",
+    "Ended": "master.common.ended",
+    "TouchdownError": "master.common.errors",
+    "Stepper": "master.coupling.steppers.stepper",
+    "Result": "master.results.result",
+    "Scene": "master.scene.scene",
+    "Scheme": "master.scene.schemes",
+    "Element": "rotor.beams.shaft",
+    "PointMass": "rotor.beams.shaft",
+    "Station": "rotor.beams.shaft",
+    "Unbalance": "rotor.beams.shaft",
+}
+
+# In a wheel the packages lie in this folder. In a checkout they lie at its top: this file is
+# TOP/src/touchdown/__init__.py there, and they are looked for in TOP first.
+_top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+if os.path.isfile(os.path.join(_top, "pyproject.toml")) and os.path.isdir(os.path.join(_top, "modelkit")):
+    __path__.insert(0, _top)
+
+
+def __getattr__(name: str) -> object:
+    """A public name, imported when it is first asked for: numpy and numba take their time."""
+    if name == "__version__":
+        from touchdown.fmus.version import VERSION
+
+        value: object = VERSION
+    elif name in _HOMES:
+        value = getattr(import_module(f"touchdown.{_HOMES[name]}"), name)
+    else:
+        raise AttributeError(f"module 'touchdown' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

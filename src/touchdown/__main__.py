@@ -1,0 +1,7 @@
+"""`python -m touchdown`: the command."""
+
+import sys
+
+from touchdown.master.cli import main
+
+sys.exit(main())

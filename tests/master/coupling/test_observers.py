@@ -1,0 +1,137 @@
+"""What watches a run is told of every macro step, and can end the run without spoiling its recording."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import cast
+
+import h5py
+import numpy as np
+import pytest
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components import contract
+from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
+from touchdown.master.coupling.simulation import Outcome, opened, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.file import load_scene
+
+STEP = 2e-5  # s
+STEPS = 350  # 5 ms to the shutdown and 2 ms of falling
+ENOUGH = 333  # a macro step that record_every = 5 leaves out
+
+
+class Diary(Observer):
+    """Keeps all it is told."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+        self.left: list[str] = []
+
+    def stepped(self, now: Moment) -> None:
+        self.times.append(now.time)
+
+    def retired(self, names: Sequence[str]) -> None:
+        self.left += names
+
+
+def fallen(record_to: Path | None = None, *observers: Observer) -> Outcome:
+    """2 ms of the smallest scene, the magnetic bearing already off."""
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 2e-3, "run.macro_step": STEP})
+    with opened(scene, in_process=True) as system:
+        return simulate(scene, system, record_to, observers=observers)
+
+
+def at(step: int, act: Callable[[Moment], object]) -> Observer:
+    """Does something once macro step `step` is taken."""
+    return EveryStep(lambda now: act(now) if now.done == step else None)
+
+
+def recorded(path: Path) -> np.ndarray:
+    """Numbers of the macro steps after which something was recorded."""
+    with h5py.File(path) as file:
+        assert all(len(column) == len(file["time"]) for column in file["rotor"].values())
+        return np.round((file["time"][:] + 5e-3) / STEP).astype(int)
+
+
+def fail(error: Exception) -> None:
+    """As an observer may."""
+    raise error
+
+
+def test_each_macro_step_is_told_once() -> None:
+    diary, beats = Diary(), list[int]()
+    outcome = fallen(None, diary, EveryBeat(lambda now: beats.append(now.done)))
+    assert outcome.ended is Ended.COMPLETED
+    assert outcome.reason == ""
+    assert outcome.steps == STEPS
+    assert diary.times == [STEP * (k + 1) for k in range(STEPS)]
+    assert beats == [*range(BEAT, STEPS, BEAT), STEPS]
+    assert diary.left == ["amb"]
+
+
+def test_an_observer_ends_a_run_that_has_shown_enough(tmp_path: Path) -> None:
+    later = Diary()
+    path = tmp_path / "result.h5"
+    outcome = fallen(path, at(ENOUGH, lambda now: now.stop("seen enough")), later)
+    assert (outcome.ended, outcome.reason, outcome.steps) == (Ended.AS_WANTED, "seen enough", ENOUGH)
+    assert outcome.end == ENOUGH * STEP
+    assert len(later.times) == ENOUGH  # the others are still told of that step
+    assert list(recorded(path)) == [*range(0, ENOUGH, 5), ENOUGH]
+    outcome.raise_if_stopped()
+
+
+def test_an_error_of_an_observer_leaves_the_recording_whole(tmp_path: Path) -> None:
+    path = tmp_path / "result.h5"
+    with pytest.raises(ZeroDivisionError):
+        fallen(path, at(ENOUGH, lambda _: fail(ZeroDivisionError())))
+    assert list(recorded(path)) == [*range(0, ENOUGH, 5)]
+
+
+def test_what_a_user_can_cause_stops_the_run_and_says_why(tmp_path: Path) -> None:
+    path = tmp_path / "result.h5"
+    outcome = fallen(path, at(ENOUGH, lambda _: fail(TouchdownError("the disk is full"))))
+    assert (outcome.ended, outcome.reason) == (Ended.STOPPED, "the disk is full")
+    assert list(recorded(path)) == [*range(0, ENOUGH, 5)]
+    with pytest.raises(TouchdownError, match="the disk is full"):
+        outcome.raise_if_stopped()
+
+
+def test_a_moment_that_is_kept_is_recorded(tmp_path: Path) -> None:
+    path = tmp_path / "result.h5"
+    assert fallen(path, at(ENOUGH, Moment.keep)).ended is Ended.COMPLETED
+    assert list(recorded(path)) == sorted([*range(0, STEPS + 1, 5), ENOUGH])
+
+
+def test_what_is_asked_first_counts_unless_something_breaks() -> None:
+    now = Moment(cast(System, None), zero=0.0, steps=1)
+    now.stop("first")
+    now.stop("second", Ended.STOPPED)
+    assert (now.ended, now.reason) == (Ended.AS_WANTED, "first")
+    now.fail("broken")
+    now.fail("broken again")
+    assert (now.ended, now.reason) == (Ended.STOPPED, "broken")
+
+
+def test_ctrl_c_is_no_error_of_the_run() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        Outcome(ended=Ended.INTERRUPTED, reason="interrupted").raise_if_stopped()
+
+
+def test_the_contract_names_what_docs_have() -> None:
+    """Derived from the ports' declarations, in their order."""
+    assert (
+        *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "omega", "alpha_free", "inv_I"),
+        *("k_over_m", "c_over_m", "static_fx", "static_fy"),
+    ) == contract.MOTION
+    assert contract.SENSED == ("x", "y", "vx", "vy")
+    assert (contract.LOAD, contract.SLOPE) == (("fx", "fy", "mz"), ("dfx", "dfy", "dmz"))
+    assert contract.SPIN == ("omega", "alpha_free", "inv_I", "mz", "dmz")
+    assert contract.MOUNT == ("k_over_m", "c_over_m")
+    assert (*contract.MOTION[:7], *contract.MOUNT) == contract.MODE_MOTION
+    assert contract.MODE_LOAD == ("qx", "qy", "px", "py")
+    assert (contract.WORK, contract.JUMP) == ("work", "jump")
+    assert {contract.UNITS[name] for name in contract.LOAD} == {"N", "N.m"}
+    assert set(contract.UNITS) == {*contract.MOTION, *contract.LOAD, *contract.SLOPE}

@@ -1,0 +1,88 @@
+"""The contract over every FMU: complete ports, and bearings that answer simple questions alike."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from systems import history, rotor_on
+
+from touchdown.fmus.recipes import names, recipe
+from touchdown.master.components.component import Variable
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.interop.check import check_fmu
+from touchdown.master.interop.contract import ports
+
+PORTS = {name: ports(TwinComponent(name, recipe(name).model)) for name in names()}
+BEARINGS = [name for name in names() if "journal" in PORTS[name]]
+
+
+def test_the_bearings_are_known() -> None:
+    assert BEARINGS == [
+        "amb",
+        "bushing",
+        "detailed_caged",
+        "detailed_cageless",
+        "simplified_caged",
+        "simplified_cageless",
+    ]
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_fmu_passes_its_check(name: str) -> None:
+    report = check_fmu(name)
+    assert report.problems == []
+    loaded = [port for port, side in PORTS[name].items() if side != "sensor"]
+    assert sum("port" in line and "; without" not in line for line in report.lines) == len(PORTS[name])
+    assert loaded
+
+
+def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What the check says of a bearing in millimetres without a vertical force."""
+    from touchdown.master.interop import check
+
+    original = check.FmuComponent
+
+    def spoiled(*arguments: object) -> object:
+        component = original(*arguments)  # type: ignore[arg-type]
+        variables = dict(component.variables)
+        x = variables["journal.x"]
+        variables["journal.x"] = Variable(**{**vars(x), "unit": "mm"})
+        del variables["journal.fy"]
+        component.variables = variables
+        return component
+
+    monkeypatch.setattr(check, "FmuComponent", spoiled)
+    problems = check_fmu("bushing").problems
+    assert "journal.x is in mm, not in m" in problems
+    assert any("journal.fy is missing" in problem for problem in problems)
+
+
+@pytest.mark.parametrize("name", [n for n in BEARINGS if n != "amb"])
+def test_a_prescribed_journal_needs_no_interface_model(name: str) -> None:
+    """With inv_m unconnected the motion is taken as given: a journal moved into the bore meets a force."""
+    component = TwinComponent("bearing", recipe(name).model)
+    outputs = np.zeros(2)
+    inputs = ["journal.x", "journal.y", "journal.vx", "journal.vy"]
+    component.bind(inputs, outputs, ["journal.fx", "journal.fy"])
+    component.enter(0.0)
+    component.exit()
+    for k in range(400):
+        depth = 0.29e-3 + k * 1e-7
+        component.inputs[:] = 0.0, -depth, 0.0, -1e-7 / 2e-5
+        component.push()
+        component.step(k * 2e-5, 2e-5)
+        component.pull()
+    assert outputs[1] > 10.0
+    assert abs(outputs[0]) < outputs[1]
+
+
+@pytest.mark.parametrize("name", [n for n in BEARINGS if n != "amb"])
+def test_the_first_contact_is_reported_alike(name: str) -> None:
+    rotor = {"y": -0.2e-3, "vy": -0.05, "gravity": 0.0, "speed": 0.0}
+    times, found, _ = history(
+        rotor_on(name, rotor, duration=4e-3, macro_step=1e-4), ["bearing.contact.first_time", "rotor.A.y"]
+    )
+    first = found["bearing.contact.first_time"][-1]
+    gap = 0.1e-3 + (5e-6 if name.endswith("_caged") else 0.0)
+    assert first == pytest.approx(gap / 0.05, rel=0.01)
+    assert times[-1] > first

@@ -1,0 +1,112 @@
+"""A bearing of a user's own, built by pythonfmu without this project, in the place of the project's."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import ROOT
+from pythonfmu import FmuBuilder
+from systems import history
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import open_system
+from touchdown.master.interop.check import check_fmu
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.scene.file import read_names
+
+EXAMPLES = ROOT / "examples"
+NAMES = EXAMPLES / "dry_bushing.toml"
+CLEARANCE = 0.2e-3  # m
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example's scene beside the FMU it names."""
+    folder = tmp_path_factory.mktemp("own")
+    for path in EXAMPLES.glob("*.toml"):
+        shutil.copy(path, folder)
+    FmuBuilder.build_FMU(EXAMPLES / "dry_bushing.py", dest=folder)
+    return folder
+
+
+def test_the_example_is_short_and_stands_alone() -> None:
+    text = (EXAMPLES / "dry_bushing.py").read_text(encoding="utf-8")
+    assert len(text.splitlines()) < 40
+    imported = [line.split()[1] for line in text.splitlines() if line.startswith(("import", "from"))]
+    assert imported == ["math", "pythonfmu"]
+
+
+def test_it_can_stand_in_for_a_bearing(folder: Path) -> None:
+    report = check_fmu(str(folder / "DryBushing.fmu"), "bearing", read_names(NAMES))
+    assert report.problems == []
+    assert report.lines[-1] == "it can stand in for a bearing"
+    assert "journal.inv_m in 1/kg" in report.text  # pythonfmu writes no units
+
+
+def test_without_its_names_every_missing_variable_is_named(folder: Path) -> None:
+    report = check_fmu(str(folder / "DryBushing.fmu"), "bearing")
+    expected = ["journal.x", "journal.y", "journal.fx", "journal.fy"]
+    assert [problem.split()[0] for problem in report.problems] == expected
+    assert "(input in m)" in report.problems[0]
+    with pytest.raises(TouchdownError, match=r"has no variable journal\.x"):
+        open_system(find_scene("rotor1-9000").swap(bearing_A=str(folder / "DryBushing.fmu")))
+
+
+def test_rotor_1_drops_on_it(folder: Path) -> None:
+    """Both ends touch their bushings, rebound, and are braked by friction."""
+    scene = find_scene(str(folder / "rotor1-dry-bushings.toml")).set(
+        {"amb_A.shutdown_time": 0.0, "amb_B.shutdown_time": 0.0, "run.duration": 0.01}
+    )
+    names = [f"{part}.{name}" for part in ("rotor.A", "rotor.B") for name in ("y", "fy", "omega")]
+    _, values, _ = history(scene, names, in_process=False)
+    for seat in ("rotor.A", "rotor.B"):
+        height, force = values[f"{seat}.y"], values[f"{seat}.fy"]
+        assert np.max(force) > 50.0
+        assert np.all(force[np.abs(height) < 0.8 * CLEARANCE] == 0.0)
+        assert -1.2 * CLEARANCE < np.min(height) < -CLEARANCE
+        assert height[-1] > np.min(height) + 5e-6
+    assert values["rotor.A.omega"][-1] < values["rotor.A.omega"][0] - 0.05
+
+
+def test_names_are_given_to_a_swap_and_survive_a_package(folder: Path, tmp_path: Path) -> None:
+    scene = find_scene("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
+    scene = scene.with_names("bearing", read_names(NAMES)).set(
+        {"amb.shutdown_time": 0.0, "run.duration": 0.01, "run.macro_step": 5e-5, "bearing.stiffness": 1e7}
+    )
+    scene = scene.set({"run.record_every": 1})
+    again = find_scene(str(write_package(scene, tmp_path / "own.ssp").path))
+    assert again.components["bearing"].names == scene.components["bearing"].names
+    watched = ["rotor.A.y", "bearing.journal.fy"]
+    values, values_again = (history(s, watched, in_process=False)[1] for s in (scene, again))
+    assert np.max(values["bearing.journal.fy"]) > 100.0
+    for name in watched:
+        assert np.array_equal(values[name], values_again[name])
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        ({"journal.x": "shaft_q"}, "has no variable shaft_q"),
+        ({"clearance": "radius"}, "has a variable clearance of its own; radius cannot go by that name"),
+    ],
+)
+def test_names_that_cannot_be(folder: Path, names: dict[str, str], expected: str) -> None:
+    with pytest.raises(TouchdownError, match=expected):
+        check_fmu(str(folder / "DryBushing.fmu"), "bearing", names)
+
+
+def test_a_role_names_what_is_missing() -> None:
+    assert "shutdown_time is missing" in check_fmu("bushing", "amb").problems[0]
+    assert "no port of a body that spins" in check_fmu("housing", "rotor").problems[0]
+    assert "seat.fx is missing (input in N)" in check_fmu("bushing", "housing").problems[0]
+    for name, role in (
+        ("amb", "amb"),
+        ("bushing", "bearing"),
+        ("rigid_rotor", "rotor"),
+        ("housing", "housing"),
+    ):
+        assert check_fmu(name, role).problems == []

@@ -1,0 +1,102 @@
+"""What a run leaves behind."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from touchdown.master.coupling.recorder import BLOCK
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.result import Result
+from touchdown.master.results.run import run_scene
+from touchdown.master.results.summary import dominant_frequency
+from touchdown.master.scene.file import load_scene
+
+REQUIRED = {
+    "first_contact_time_s", "first_contact_speed_m_s", "peak_contact_force_N",
+    "peak_indentation_rotor_ring_um", "peak_indentation_rings_um", "ring_sync_time_s",
+    "pendulum_frequency_Hz", "loaded_balls_end", "rotor_speed_end_rpm", "energy_residual_relative",
+    "wall_time_s", "simulated_time_s", "scheme", "macro_step_s", "whirl_A", "whirl_A_revolutions",
+    "whirl_A_radius_um", "whirl_A_frequency_Hz", "whirl_A_largest_force_N",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
+    """A short drop with everything written."""
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.2, "run.record_every": 2})
+    return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True)
+
+
+def test_the_summary_has_its_figures(result: Result) -> None:
+    summary = json.loads((result.folder / "summary.json").read_text(encoding="utf-8"))
+    assert summary.keys() >= REQUIRED
+    assert summary == result.summary
+    assert summary["completed"] is True
+    assert summary["simulated_time_s"] == pytest.approx(0.205)
+    assert summary["energy_balance_relative"] < 1e-3
+
+
+def test_the_recording_has_every_column_with_its_unit(result: Result) -> None:
+    with h5py.File(result.folder / "result.h5") as file:
+        time = np.asarray(file["time"])
+        assert len(time) == 1 + 10250 // 2 > BLOCK
+        assert time[0] == pytest.approx(-0.005)
+        assert time[-1] == pytest.approx(0.2)
+        np.testing.assert_allclose(np.diff(time), 4e-5, rtol=1e-9)
+        force = file["bearing/contact.force"]
+        assert force.attrs["units"] == "N"
+        assert len(force) == len(time)
+        assert np.max(force) == pytest.approx(result.summary["peak_contact_force_N"], rel=1e-2)
+        assert "rotor/A.x" in file
+        assert "housing/seat.y" in file
+
+
+def test_the_csv_says_the_same(result: Result) -> None:
+    path = result.folder / "result.csv"
+    header = path.open(encoding="utf-8").readline().strip().split(",")
+    assert header[0] == "time [s]"
+    column = header.index("bearing.contact.force [N]")
+    data = np.loadtxt(path, delimiter=",", skiprows=1, usecols=(0, column))
+    recording = Recording(result.folder / "result.h5")
+    assert np.array_equal(data[:, 1], recording["bearing.contact.force"])
+    recording.close()
+
+
+def test_pictures_are_drawn(result: Result) -> None:
+    assert {p.name for p in result.pictures} == {"orbit.png", "force.png", "speeds.png", "energy.png"}
+    for picture in result.pictures:
+        assert picture.read_bytes().startswith(b"\x89PNG")
+        assert picture.stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("frequency", [14.3, 28.78, 61.2])
+def test_the_dominant_frequency_is_found(frequency: float) -> None:
+    time = np.arange(0.0, 1.0, 1e-4)
+    noise = np.random.default_rng(1).normal(0.0, 0.1, len(time))
+    values = (
+        5.0 + np.cos(2 * np.pi * frequency * time) + 0.3 * np.cos(2 * np.pi * 2 * frequency * time) + noise
+    )
+    assert dominant_frequency(time, values) == pytest.approx(frequency, abs=0.05)
+
+
+def test_too_short_a_run_has_no_frequency() -> None:
+    time = np.arange(0.0, 0.01, 1e-4)
+    assert dominant_frequency(time, np.sin(time)) is None
+
+
+def test_a_silent_run_has_no_frequency() -> None:
+    time = np.arange(0.0, 1.0, 1e-3)
+    assert dominant_frequency(time, np.zeros_like(time)) is None
+
+
+def test_a_rerun_replaces_what_was_there(tmp_path: Path) -> None:
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
+    for _ in range(2):
+        result = run_scene(scene, tmp_path, in_process=True, pictures=False)
+    assert result.summary["first_contact_time_s"] is None
+    assert result.summary["macro_steps"] == 350

@@ -1,0 +1,166 @@
+"""Runs that cannot be written, or that ledger or user stop: one line, and what was recorded stays."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import pytest
+from commands import SCENE, SHORT, Command, Ended
+from places import COMMAND
+
+from touchdown.master.common.errors import FAILED, STOPPED
+
+PATIENCE = 120.0  # s; a test that waits longer has failed
+
+
+# -- folders -----------------------------------------------------------------------------------------
+
+
+def test_a_folder_that_cannot_be_written(command: Command, tmp_path: Path):
+    (tmp_path / "file").write_text("in the way")
+    out = tmp_path / "file" / "out"
+    for arguments in (("run", SCENE, "--quiet", "--in-process"), ("build", "housing")):
+        assert f"cannot write to {out}" in command(*arguments, "-o", out).line
+
+
+@pytest.mark.parametrize("name", ["result.h5", "summary.json", "result.csv"])
+def test_a_result_that_cannot_be_written(name: str, run: Command, tmp_path: Path):
+    (tmp_path / "out" / name).mkdir(parents=True)
+    assert name in run(SCENE, *SHORT, "--csv").line
+
+
+LIMITED = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]),) * 2)
+from touchdown.master.cli import main
+sys.exit(main(sys.argv[2:]))
+"""
+
+
+@pytest.mark.parametrize("room", [20_000, 800_000])  # too little for the first block, for the end
+def test_a_disk_that_runs_full(room: int, tmp_path: Path):
+    """HDF5 holds what it could not write, and must not crash over it at the end."""
+    settings = ("--set", "run.duration=0.1", "--set", "run.record_every=1")
+    arguments = ("run", SCENE, *settings, "--in-process", "--no-pictures", "--quiet", "-o", str(tmp_path))
+    made = subprocess.run(
+        [sys.executable, "-c", LIMITED, str(room), *arguments], capture_output=True, text=True, check=False
+    )
+    assert made.returncode in (FAILED, STOPPED), made.stderr
+    assert made.stderr == (
+        f"touchdown: cannot write {tmp_path / 'result.h5'}: File too large; make room for it\n"
+    )
+
+
+# -- runs that stop ----------------------------------------------------------------------------------
+
+
+def left_behind(folder: Path) -> tuple[dict[str, object], int]:
+    """Summary and number of rows of a run that ended early."""
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    with h5py.File(folder / "result.h5") as file:
+        time, journal = file["time"], file["rotor/A.y"]
+        assert isinstance(time, h5py.Dataset)
+        assert isinstance(journal, h5py.Dataset)
+        assert len(time) == len(journal)
+        return summary, len(time)
+
+
+@pytest.mark.parametrize(("step", "seconds"), [("200 us", 2e-4), ("2 ms", 2e-3)])
+def test_a_macro_step_too_long_for_the_scene(step: str, seconds: float, run: Command, tmp_path: Path):
+    """The ledger stops the run, says where energy comes from and what to try; what was recorded stays."""
+    ended = run(SCENE, "--scheme", "hold", "--macro-step", step, "--set", "run.record_every=1")
+    assert ended.status == STOPPED
+    assert re.search(r"energy ledger of \w+\.\w+ on \w+\.\w+", ended.line)
+    advice = re.search(r"try --macro-step ([-.\de]+)", ended.line)
+    assert advice is not None
+    assert 0.0 < float(advice[1]) < seconds
+    summary, rows = left_behind(tmp_path / "out")
+    assert summary["completed"] is False
+    assert rows > 1
+
+
+def process(folder: Path, *head: str) -> subprocess.Popen[str]:
+    """The whole scene, run through its FMUs by a process of its own, results in `folder`."""
+    return subprocess.Popen(
+        [*(head or COMMAND), "run", SCENE, "--no-pictures", "--quiet", "-o", str(folder)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def interrupt(running: subprocess.Popen[str], ready: Callable[[], bool]) -> Ended:
+    """Press Ctrl-C as soon as `ready`."""
+    deadline = time.monotonic() + PATIENCE
+    while not ready():
+        assert running.poll() is None, "it ended before it could be interrupted"
+        assert time.monotonic() < deadline
+        time.sleep(0.002)
+    running.send_signal(signal.SIGINT)
+    return finished(running)
+
+
+def finished(running: subprocess.Popen[str]) -> Ended:
+    """Wait for its end."""
+    try:
+        _, stderr = running.communicate(timeout=PATIENCE)
+    finally:
+        running.kill()
+    return Ended(running.returncode, stderr)
+
+
+def check_interrupted(ended: Ended, folder: Path) -> None:
+    """Interrupted: said in one line, and what was recorded is there."""
+    assert ended.status == 130, ended.stderr
+    assert "interrupted" in ended.line
+    summary, rows = left_behind(folder)
+    assert summary["completed"] is False
+    assert rows > 0
+
+
+def test_ctrl_c_in_mid_run(tmp_path: Path):
+    """A file of this size holds its first rows, so the loop is running."""
+    result = tmp_path / "result.h5"
+    ended = interrupt(process(tmp_path), lambda: result.exists() and result.stat().st_size > 100_000)
+    check_interrupted(ended, tmp_path)
+
+
+def test_ctrl_c_as_soon_as_there_is_a_result(tmp_path: Path):
+    check_interrupted(interrupt(process(tmp_path), (tmp_path / "result.h5").exists), tmp_path)
+
+
+PRESSED_AT = """
+import signal, sys
+from touchdown.master.{room} import {module}
+original = {module}.{function}
+def pressed(*arguments, **options):
+    found = original(*arguments, **options)
+    signal.raise_signal(signal.SIGINT)
+    return found
+{module}.{function} = pressed
+from touchdown.master.cli import main
+sys.exit(main())
+"""
+
+
+def test_ctrl_c_before_the_first_step(tmp_path: Path):
+    """Just after the recording was opened: as in mid-run."""
+    script = PRESSED_AT.format(room="coupling", module="recorder", function="Recorder.__init__")
+    check_interrupted(finished(process(tmp_path, sys.executable, "-c", script)), tmp_path)
+
+
+def test_ctrl_c_while_loading(tmp_path: Path):
+    """Nothing is there yet, and nothing breaks."""
+    script = PRESSED_AT.format(room="components", module="fmu", function="FmuComponent.__init__")
+    ended = finished(process(tmp_path, sys.executable, "-c", script))
+    assert ended.status == 130, ended.stderr
+    assert "interrupted" in ended.line

@@ -1,0 +1,163 @@
+"""Stresses of a flexible rotor in a run's figures and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Finished
+from touchdown.master.results.figures.drawing import draw_all
+from touchdown.master.results.figures.orbits import orbits
+from touchdown.master.results.figures.stress import stress
+from touchdown.master.results.figures.style import sheet
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.run import run_scene
+from touchdown.master.results.stresses import along
+from touchdown.master.results.summary import summarise, touchdown_seats
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+
+NODES = 25
+KEPT = [f"kept_{kind}_{axis}" for kind in ("bending", "shear") for axis in "xy"]
+KEYS = {
+    "peak_bending_stress_MPa", "peak_bending_stress_node", "peak_bending_stress_time_s",
+    "peak_shear_stress_MPa", "peak_shear_stress_node", "peak_shear_stress_time_s", "kept_stress_time_s",
+} | {f"{key}_{tail}" for key in KEPT for tail in ("MPa", "node")}  # fmt: skip
+SHUTDOWN = 1e-3  # s
+
+
+def short(name: str, duration: float) -> Scene:
+    """The drop of a rotor whose magnetic bearings shut down at once."""
+    scene = load_scene(name).set({"run.duration": duration, "run.record_every": 1})
+    for bearing in ("amb_A", "amb_B"):
+        scene = scene.set({f"{bearing}.shutdown_time": SHUTDOWN})
+    return scene
+
+
+class Drop(NamedTuple):
+    """A run whose components are still there."""
+
+    scene: Scene
+    system: System
+    recording: Recording
+    summary: dict[str, object]
+
+    @property
+    def finished(self) -> Finished:
+        """For pictures."""
+        return Finished(self.scene, self.system, self.recording)
+
+
+@pytest.fixture(scope="module")
+def drop(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drop]:
+    """Rotor II from its shutdown through its first impacts, at 7 ms."""
+    scene = short("rotor2-case1", 0.01)
+    path = tmp_path_factory.mktemp("run") / "result.h5"
+    system = open_system(scene, in_process=True)
+    outcome = simulate(scene, system, path)
+    recording = Recording(path)
+    yield Drop(scene, system, recording, summarise(scene, system, outcome, recording))
+    recording.close()
+    system.close()
+
+
+def node(recording: Recording, variable: str) -> np.ndarray:
+    """Of every node."""
+    return np.array([recording.at_end(f"rotor.node[{k}].{variable}") for k in range(1, NODES + 1)])
+
+
+def test_the_summary_tells_the_largest_stresses(drop: Drop) -> None:
+    summary, recording = drop.summary, drop.recording
+    assert summary.keys() >= KEYS
+    for kind in ("bending", "shear"):
+        peaks = node(recording, f"peak_{kind}")
+        history = recording[f"rotor.stress.{kind}"]
+        assert summary[f"peak_{kind}_stress_MPa"] == pytest.approx(1e-6 * peaks.max(), rel=1e-12)
+        assert summary[f"peak_{kind}_stress_MPa"] == pytest.approx(1e-6 * history.max(), rel=1e-12)
+        assert summary[f"peak_{kind}_stress_node"] == 1 + np.argmax(peaks)
+        when = recording.time[np.argmax(history)]
+        assert summary[f"peak_{kind}_stress_time_s"] == pytest.approx(when, abs=1e-9)
+        assert when > summary["first_contact_time_s_bearing_B"]
+
+
+def test_the_summary_tells_the_stresses_at_the_kept_instant(drop: Drop) -> None:
+    recording = drop.recording
+    kept = recording.at_end("rotor.stress.kept_time") - SHUTDOWN
+    assert drop.summary["kept_stress_time_s"] == pytest.approx(kept)
+    for key in KEPT:
+        values = np.abs(node(recording, key.removeprefix("kept_")))
+        assert drop.summary[f"{key}_MPa"] == pytest.approx(1e-6 * values.max(), rel=1e-12)
+        assert drop.summary[f"{key}_node"] == 1 + np.argmax(values)
+        assert values.max() > 0.0
+    largest = np.hypot(node(recording, "bending_x"), node(recording, "bending_y"))
+    assert (largest <= node(recording, "peak_bending") * (1.0 + 1e-9)).all()
+
+
+def test_no_stress_was_computed(tmp_path: Path) -> None:
+    scene = short("rotor2-case1", 1e-3).set({"rotor.stress.active": 0})
+    result = run_scene(scene, tmp_path, in_process=True)
+    assert {result.summary[key] for key in KEYS} == {None}
+    assert "stress.png" not in {p.name for p in result.pictures}
+
+
+def test_a_rigid_rotor_has_no_stresses(tmp_path: Path) -> None:
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 1e-3})
+    assert not run_scene(scene, tmp_path, in_process=True, pictures=False).summary.keys() & KEYS
+
+
+def test_the_pictures_of_stress_are_labelled(drop: Drop) -> None:
+    figure = sheet()
+    stress(figure, drop.finished, "rotor")
+    assert len(figure.axes) == 4
+    assert [axes.get_ylabel() for axes in figure.axes] == 2 * ["bending stress [MPa]", "shear stress [MPa]"]
+    assert [axes.get_xlabel() for axes in figure.axes] == (
+        2 * ["position along the rotor's axis [mm]"] + 2 * ["time from the shutdown [s]"]
+    )
+    nodes, position = along(drop.system.components["rotor"], "position")
+    assert nodes == list(range(1, NODES + 1))
+    for axes, kind in zip(figure.axes[:2], ("bending", "shear"), strict=True):
+        for curve, axis in zip(axes.lines, "xy", strict=False):
+            np.testing.assert_allclose(curve.get_xdata(), 1e3 * np.array(position))
+            expected = 1e-6 * node(drop.recording, f"{kind}_{axis}")
+            np.testing.assert_allclose(curve.get_ydata(), expected)
+
+
+def test_the_orbits_stand_side_by_side(drop: Drop) -> None:
+    seats = touchdown_seats(drop.system)
+    figure = sheet()
+    orbits(figure, drop.finished, seats)
+    assert len(figure.axes) == 2
+    first, second = figure.axes
+    assert first.get_xlim() == second.get_xlim() == first.get_ylim() == second.get_ylim()
+    for axes, seat in zip(figure.axes, "AB", strict=True):
+        assert axes.get_title() == f"{seat} (bearing_{seat}): {drop.summary[f'whirl_{seat}']}"
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [µm]", "y [µm]")
+        assert axes.get_aspect() == 1.0
+
+
+def test_a_misalignment_moves_the_circle(tmp_path: Path) -> None:
+    scene = short("rotor2-case3a", 5e-4)
+    system = open_system(scene, in_process=True)
+    simulate(scene, system, tmp_path / "result.h5")
+    recording = Recording(tmp_path / "result.h5")
+    figure = sheet()
+    orbits(figure, Finished(scene, system, recording), touchdown_seats(system))
+    for axes, middle in zip(figure.axes, (-100.0, 100.0), strict=True):
+        circle = axes.lines[0].get_xdata()
+        assert np.mean([np.min(circle), np.max(circle)]) == pytest.approx(middle, abs=0.1)
+        journal = axes.lines[2].get_xdata()
+        assert np.max(np.abs(journal)) < 10.0
+    recording.close()
+    system.close()
+
+
+def test_a_run_with_two_seats_has_all_its_pictures(drop: Drop, tmp_path: Path) -> None:
+    made = {p.name for p in draw_all(drop.finished, tmp_path)}
+    own = {f"{name}-bearing_{seat}.png" for name in ("orbit", "force", "speeds") for seat in "AB"}
+    assert made == own | {"orbits.png", "stress.png", "energy.png"}

@@ -1,0 +1,291 @@
+"""The whirl classifier on made orbits, at the rates of the project's recordings."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from touchdown.master.coupling.simulation import Outcome, open_system
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.run import run_scene
+from touchdown.master.results.summary import summarise, table
+from touchdown.master.results.whirl.contacts import NEAR
+from touchdown.master.results.whirl.verdict import Verdict, Whirl, classify
+from touchdown.master.scene.file import load_scene
+
+CLEARANCE = 3e-4  # m
+BOTTOM = -0.5 * math.pi
+RATES = [20e3, 10e3]  # Hz
+SPIN = 900.0  # rad/s
+
+
+def times(end: float, rate: float = 20e3) -> np.ndarray:
+    return np.arange(round(end * rate) + 1) / rate
+
+
+def judged(
+    time: np.ndarray, angle: np.ndarray, radius: np.ndarray | float = 1.02, spin: float = SPIN
+) -> Whirl:
+    """Verdict on an orbit given by its angle (rad) and its radius over the clearance."""
+    r = CLEARANCE * np.asarray(radius)
+    return classify(time, r * np.cos(angle), r * np.sin(angle), CLEARANCE, spin)
+
+
+def turning(time: np.ndarray, frequency: float, begin: float = 0.0, end: float = math.inf) -> np.ndarray:
+    """Angle that stands at the bottom but for turning (Hz, counter-clockwise) from `begin` to `end` (s)."""
+    return BOTTOM + 2.0 * math.pi * frequency * (np.clip(time, begin, end) - begin)
+
+
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize(
+    ("frequency", "spin", "verdict"),
+    [
+        (60.0, SPIN, "forward whirl"),
+        (-60.0, SPIN, "backward whirl"),
+        (60.0, -SPIN, "backward whirl"),
+        (-60.0, -SPIN, "forward whirl"),
+        (-2000.0, SPIN, "backward whirl"),
+    ],
+)
+def test_a_whirl_to_the_end(rate: float, frequency: float, spin: float, verdict: str) -> None:
+    time = times(1.0, rate)
+    found = judged(time, turning(time, frequency, begin=0.2), spin=spin)
+    assert found.verdict == verdict
+    assert found.words == f"sustained {verdict}"
+    assert found.sustained
+    assert found.revolutions == pytest.approx(0.8 * abs(frequency))
+    assert found.frequency == pytest.approx(abs(frequency), rel=1e-6)
+    assert found.radius == pytest.approx(1.02 * CLEARANCE)
+    assert found.start == pytest.approx(0.2, abs=1e-3)
+    assert found.end == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("amplitude", [8.0, 60.0, 170.0])
+def test_a_pendulum(amplitude: float) -> None:
+    time = times(1.0)
+    swing = np.radians(amplitude) * np.sin(2.0 * math.pi * 25.0 * time)
+    assert judged(time, BOTTOM + swing) == Whirl(Verdict.PENDULUM)
+
+
+def test_a_pendulum_that_dies_away_was_one() -> None:
+    time = times(3.0)
+    swing = np.radians(40.0) * np.exp(-5.0 * time) * np.sin(2.0 * math.pi * 25.0 * time)
+    assert judged(time, BOTTOM + swing).words == "pendulum"
+
+
+@pytest.mark.parametrize("amplitude", [0.0, 4.0])
+def test_rest_is_none(amplitude: float) -> None:
+    """Also with what is left of the pendulum."""
+    time = times(1.0)
+    swing = np.radians(amplitude) * np.sin(2.0 * math.pi * 25.0 * time)
+    assert judged(time, BOTTOM + swing).words == "no whirl"
+
+
+def test_a_drop_that_bounces_is_none() -> None:
+    """Straight up and down, through the centre."""
+    time = times(1.0)
+    y = -1.02 + 1.5 * np.exp(-3.0 * time) * np.abs(np.cos(40.0 * time))
+    assert judged(time, np.where(y < 0.0, BOTTOM, -BOTTOM), np.abs(y)) == Whirl(Verdict.NONE)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.4, 0.9])
+def test_an_orbit_that_does_not_touch_is_none(radius: float) -> None:
+    """As on a magnetic bearing, however near the bore."""
+    time = times(1.0)
+    assert judged(time, turning(time, 150.0), radius) == Whirl(Verdict.NONE)
+
+
+@pytest.mark.parametrize("rate", RATES)
+def test_a_turn_and_a_half_that_dies(rate: float) -> None:
+    """It stops and then swings out, at first beyond where it stopped."""
+    time = times(1.0, rate)
+    late = np.maximum(time - 0.3, 0.0)
+    angle = turning(time, -50.0, 0.27, 0.3) + np.radians(30.0) * np.exp(-20.0 * late) * -np.sin(
+        150.0 * late
+    )
+    found = judged(time, angle)
+    assert found.words == "transient backward whirl"
+    assert found.revolutions == pytest.approx(1.5, abs=0.1)
+    assert found.frequency == pytest.approx(50.0, rel=0.1)
+    assert found.end == pytest.approx(0.3, abs=4e-3)
+
+
+def test_rest_with_noise_after_a_whirl_is_not_timed() -> None:
+    """The largest angle of the rest comes anywhere in it, also at its end."""
+    time = times(1.0)
+    noise = np.radians(1.0) * np.sin(400.0 * time) * time
+    found = judged(time, turning(time, 40.0, 0.2, 0.3) + noise)
+    assert found.words == "transient forward whirl"
+    assert found.frequency == pytest.approx(40.0, rel=0.05)
+    assert (found.start, found.end) == (pytest.approx(0.2, abs=2e-3), pytest.approx(0.3, abs=2e-3))
+
+
+def test_less_than_a_turn_is_no_whirl() -> None:
+    time = times(1.0)
+    assert judged(time, turning(time, 50.0, 0.2, 0.219)).verdict == "none"
+    assert judged(time, turning(time, 50.0, 0.2, 0.221)).verdict == "forward whirl"
+
+
+def test_hops_do_not_end_a_whirl() -> None:
+    """Straight flights of a quarter of a turn and more from bore to bore."""
+    time = times(1.0)
+    chord = np.radians(110.0)
+    phase = np.mod(2.0 * math.pi * 30.0 * time, chord) - 0.5 * chord
+    radius = 1.01 * math.cos(0.5 * chord) / np.cos(phase)
+    assert np.min(radius) < NEAR
+    found = judged(time, turning(time, 30.0), radius)
+    assert found.words == "sustained forward whirl"
+    assert found.revolutions == pytest.approx(30.0, abs=0.2)
+
+
+@pytest.mark.parametrize(("low", "width"), [(0.3, 0.002), (0.6, 0.012)])
+def test_a_flight_ends_a_whirl(low: float, width: float) -> None:
+    """Past the centre, or further round than a hop; it goes on in the same direction afterwards."""
+    time = times(1.0)
+    radius = np.where(np.abs(time - 0.4) < width, low, 1.02)
+    found = judged(time, turning(time, -50.0), radius)
+    assert found.words == "sustained backward whirl"
+    assert found.revolutions == pytest.approx(50.0 * (0.6 - width), abs=0.2)
+    assert found.start == pytest.approx(0.4 + width, abs=1e-3)
+
+
+def test_a_reversal_ends_a_whirl() -> None:
+    """The one that goes on counts, though the other was longer."""
+    time = times(1.0)
+    found = judged(time, turning(time, 50.0, end=0.7) + turning(time, -50.0, begin=0.7) - BOTTOM)
+    assert found.words == "sustained backward whirl"
+    assert found.revolutions == pytest.approx(15.0, abs=0.1)
+    assert found.start == pytest.approx(0.7, abs=1e-3)
+    assert [(e.direction, e.goes_on) for e in found.episodes] == [("forward", False), ("backward", True)]
+    assert found.episodes[0].revolutions == pytest.approx(35.0, abs=0.1)
+    assert found.episodes[0].end == pytest.approx(0.7, abs=1e-3)
+
+
+def test_it_may_turn_back_a_little() -> None:
+    time = times(1.0)
+    angle = turning(time, 20.0) + np.radians(35.0) * np.sin(2.0 * math.pi * 90.0 * time)
+    assert np.min(np.diff(angle)) < 0.0
+    found = judged(time, angle)
+    assert found.words == "sustained forward whirl"
+    assert found.revolutions == pytest.approx(20.0, abs=0.5)
+
+
+def test_a_swing_that_grows_into_a_whirl() -> None:
+    time = times(1.0)
+    swing = np.radians(150.0) * np.minimum(time / 0.5, 1.0) * np.sin(2.0 * math.pi * 20.0 * time)
+    found = judged(time, np.where(time < 0.5, BOTTOM + swing, turning(time, -60.0, begin=0.5)))
+    assert found.words == "sustained backward whirl"
+    assert found.start == pytest.approx(0.5, abs=0.02)
+
+
+def test_the_radius_may_grow_beyond_the_clearance() -> None:
+    time = times(1.0)
+    found = judged(time, turning(time, -100.0), 1.0 + 2.0 * time)
+    assert found.words == "sustained backward whirl"
+    assert found.radius == pytest.approx(2.0 * CLEARANCE, rel=1e-2)
+    assert found.revolutions == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize(("frequency", "verdict"), [(-80.0, "backward whirl"), (0.0, "none")])
+def test_noise(rate: float, frequency: float, verdict: str) -> None:
+    """Two hundredths of the clearance, in both directions."""
+    random = np.random.default_rng(3)
+    time = times(2.0, rate)
+    angle = turning(time, frequency)
+    x, y = (
+        CLEARANCE * (1.02 * part + random.normal(0.0, 0.02, len(time)))
+        for part in (np.cos(angle), np.sin(angle))
+    )
+    found = classify(time, x, y, CLEARANCE, SPIN)
+    assert found.verdict == verdict
+    if frequency:
+        assert found.sustained
+        assert found.frequency == pytest.approx(80.0, rel=0.01)
+
+
+def test_a_recording_too_coarse_to_follow_tells_nothing() -> None:
+    time = times(1.0, 1e3)
+    assert judged(time, turning(time, 400.0)).verdict == "none"
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_next_to_nothing_recorded(count: int) -> None:
+    assert judged(times(1.0)[:count], turning(times(1.0)[:count], 50.0)) == Whirl(Verdict.NONE)
+
+
+def test_values_that_are_no_numbers_are_passed_over() -> None:
+    time = times(1.0)
+    angle = turning(time, 50.0)
+    angle[-1000:] = np.nan
+    assert judged(time, angle).words == "transient forward whirl"
+
+
+# -- in the summary ----------------------------------------------------------------------------------
+
+
+def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
+    """A recorded drop whose motion is replaced by a made one: the housing moves as far as the journal."""
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.1})
+    run_scene(scene, tmp_path, in_process=True, pictures=False)
+    with h5py.File(tmp_path / "result.h5", "a") as file:
+        time = np.asarray(file["time"])
+        angle = turning(time, -100.0, 0.02, 0.08)
+        for axis, part in (("x", np.cos(angle)), ("y", np.sin(angle))):
+            away = 4e-4 * np.sin(700.0 * time)
+            file[f"housing/seat.{axis}"][...] = away
+            file[f"rotor/A.{axis}"][...] = away + 1.02 * CLEARANCE * part
+        for axis, part in (("x", np.cos(angle)), ("y", np.sin(angle))):
+            file[f"bearing/journal.f{axis}"][...] = -1e3 * part
+        file["bearing/contact.force"][...] = 1e3 * time
+        file["bearing/contact.peak_force"][...] = 500.0
+    system = open_system(scene, in_process=True)
+    recording = Recording(tmp_path / "result.h5")
+    summary = summarise(scene, system, Outcome(steps=1, zero=5e-3, end=0.105), recording)
+    recording.close()
+    system.close()
+    assert summary["whirl_A"] == "transient backward whirl"
+    assert summary["whirl_A_revolutions"] == pytest.approx(6.0)
+    assert summary["whirl_A_radius_um"] == pytest.approx(1.02e6 * CLEARANCE)
+    assert summary["whirl_A_frequency_Hz"] == pytest.approx(100.0)
+    assert summary["whirl_A_largest_force_N"] == pytest.approx(80.0, abs=0.2)
+    assert summary["whirl_A_episodes"] == [
+        {
+            "direction": "backward",
+            "from_s": pytest.approx(0.02, abs=1e-4),
+            "to_s": pytest.approx(0.08, abs=1e-4),
+            "revolutions": summary["whirl_A_revolutions"],
+            "frequency_Hz": summary["whirl_A_frequency_Hz"],
+            "radius_um": summary["whirl_A_radius_um"],
+            "largest_force_N": summary["whirl_A_largest_force_N"],
+            "goes_on": False,
+        }
+    ]
+    assert next(line for line in table(summary).splitlines() if "_episodes" in line).split()[1:] == ["1"]
+
+
+def test_a_drop_of_the_disk_swings(tmp_path: Path) -> None:
+    """Long enough for it to have bounced and begun its pendulum motion."""
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.3})
+    summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
+    assert summary["whirl_A"] == "pendulum"
+    assert summary["whirl_A_revolutions"] == 0.0
+    assert summary["whirl_A_largest_force_N"] is None
+    assert summary["whirl_A_episodes"] == []
+
+
+def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
+    """Rotor I at 18000 rpm, 450 um out of line: a turn takes 4 ms from the first contact on."""
+    scene = load_scene("rotor1-18000-225um").set({"run.duration": 0.04, "run.macro_step": 4e-5})
+    summary = run_scene(scene, tmp_path, in_process=True, pictures=False).summary
+    assert summary["whirl_A"] == "sustained backward whirl"
+    (episode,) = summary["whirl_A_episodes"]
+    assert episode["direction"] == "backward"
+    assert episode["goes_on"]
+    assert episode["revolutions"] == summary["whirl_A_revolutions"] > 3.0
+    assert episode["largest_force_N"] == pytest.approx(summary["peak_contact_force_N_bearing_A"])
+    assert episode["radius_um"] == pytest.approx(300.0, rel=0.05)

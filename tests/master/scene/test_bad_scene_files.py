@@ -1,0 +1,103 @@
+"""Scene files that cannot be: one line that names what is wrong in them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from commands import SCENE, SHORT, Command
+
+from touchdown.master.common.errors import FAILED
+from touchdown.master.scene.file import shipped
+
+
+def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
+    """A copy of the shipped scene with text replaced."""
+    text = shipped()[SCENE].read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        ("[run]", "[run", "not valid TOML"),
+        ("[run]", "[extra]\nkey = 1\n[run]", "unknown key extra"),
+        ("duration = 5.0", "duraton = 5.0", "unknown key duraton; did you mean duration"),
+        ("duration = 5.0", 'duration = "long"', "run.duration = 'long' is not a number"),
+        ("duration = 5.0", "scheme = 3", "unknown scheme 3"),
+        ('fmu = "amb"', 'fmu = "amb"\ncolour = "red"', "[components.amb] has an unknown key colour"),
+        ('fmu = "amb"', "", "[components.amb] needs fmu"),
+        ('fmu = "amb"', "fmu = 3", "[components.amb] needs fmu"),
+        ('fmu = "amb"', 'fmu = "amc"', "no FMU called amc"),
+        ('fmu = "amb"', 'fmu = "fmus/amb.fmu"', "fmus/amb.fmu"),
+        ('mass = "1.65 kg"', "mass = [1.65]", "rotor.mass = [1.65] is not a number"),
+        ('mass = "1.65 kg"', "mass = true", "rotor.mass = True is not a number"),
+        ('mass = "1.65 kg"', "mass = nan", "rotor.mass = nan is not a finite number"),
+        ('mass = "1.65 kg"', "weight = 1.65", "no variable weight"),
+        ('zero = "amb.shutdown_time"', 'zero = "amb.shutdown"', "no variable shutdown"),
+        ('zero = "amb.shutdown_time"', 'zero = "amb"', "amb"),
+        ('zero = "amb.shutdown_time"', "zero = 0.005", "zero"),
+        ('"rotor.gravity"', '"rotor.gravitation"', "no variable gravitation"),
+        ('"rotor.gravity"', "9.81", "energy_scale"),
+        ('["rotor.mass", "rotor.gravity", "bearing.clearance"]', "0.005", "energy_scale"),
+        ('["rotor.mass", "rotor.gravity", "bearing.clearance"]', '"rotor.mass"', "energy_scale"),
+    ],
+)
+def test_a_bad_scene_file(old: str, new: str, named: str, run: Command, tmp_path: Path):
+    ended = run(scene_file(tmp_path, (old, new)), *SHORT)
+    assert named in ended.line
+    assert ended.status == FAILED
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [(b"", "[components]"), (b"\xff\xfe\x00", "not valid TOML"), (b"components = 3", "[components]")],
+)
+def test_a_file_that_is_no_scene(content: bytes, named: str, run: Command, tmp_path: Path):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(content)
+    assert named in run(path).line
+
+
+def test_a_missing_scene_file(run: Command, tmp_path: Path):
+    assert f"cannot read scene {tmp_path / 'none.toml'}" in run(tmp_path / "none.toml").line
+
+
+# -- connections -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("connect", "named"),
+    [
+        ('["rotor.A.z", "housing.seat.fx"]', "component rotor (rigid_rotor, in process) has no variable A"),
+        ('["rotor.A.x", "bearing.journal.z"]', "has no variable journal.z"),
+        ('["rotr.A.x", "bearing.journal.x"]', "no component rotr; did you mean rotor"),
+        ('["bearing.housing.fy", "housing.seat.fx"]', "housing.seat.fx has two sources"),
+        ('["rotor.A.x", "bearing.journal.vx"]', "the units m and m/s differ"),
+        ('["rotor.A.x", "rotor.A.y"]', "rotor.A.y has the causality"),
+        ('["rotor.A.fx", "housing.seat.fx"]', "rotor.A.fx has the causality"),
+        ('["rotor.A.fx"]', "connect must be a list of pairs"),
+    ],
+)
+def test_a_connection_that_cannot_be(connect: str, named: str, run: Command, tmp_path: Path):
+    ended = run(scene_file(tmp_path, ("attach = [", f"connect = [{connect}]\nattach = [")))
+    assert named in ended.line
+    assert ended.status == FAILED
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        ('"amb.journal"', '"amc.journal"', "no component amc"),
+        ('"amb.journal"', '"amb.jornal"', "has no variable jornal.x"),
+        ('"bearing.journal"', '"amb.journal"', "amb.journal.x has two sources"),
+        ('["amb.journal", "rotor.amb"]', '["amb.journal"]', "attach must be a list of pairs"),
+    ],
+)
+def test_an_attachment_that_cannot_be(old: str, new: str, named: str, run: Command, tmp_path: Path):
+    assert named in run(scene_file(tmp_path, (old, new))).line

@@ -1,0 +1,50 @@
+"""Values as people write them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from touchdown.modelkit.units import UnitError, to_si
+
+
+@pytest.mark.parametrize(
+    ("written", "unit", "value"),
+    [
+        ("0.25 mm", "m", 0.25e-3),
+        ("0.25mm", "m", 0.25e-3),
+        ("250 \u00b5m", "m", 250e-6),  # the micro sign
+        ("250 \u03bcm", "m", 250e-6),  # the Greek letter
+        ("20us", "s", 20e-6),
+        ("-1e-3 m", "m", -1e-3),
+        (".5 mm", "m", 0.5e-3),
+        ("9000 rpm", "rad/s", 300.0 * math.pi),
+        ("2.4e9 N/m", "N/m", 2.4e9),
+        (7, "1", 7.0),
+    ],
+)
+def test_numbers_with_units(written: object, unit: str, value: float) -> None:
+    assert to_si(written, unit, "x") == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("written", "says"),
+    [
+        ("mm", "is not a number"),
+        ("", "is not a number"),
+        ("1.2.3 mm", "is not a number"),
+        ("3 4 mm", "has the unit 4 mm"),
+        ("3 N", "has the unit N; it is measured in m"),
+        ("nan", "is not a finite number"),
+        ("nan m", "is not a finite number"),
+        ("-inf m", "is not a finite number"),
+        ("infinite", "is not a number"),
+        ("1e999 m", "is not a finite number"),
+        (True, "is not a number"),
+        ([1.0], "is not a number"),
+    ],
+)
+def test_what_is_none_is_refused_by_name(written: object, says: str) -> None:
+    with pytest.raises(UnitError, match=r"^x = .*" + says):
+        to_si(written, "m", "x")

@@ -1,0 +1,97 @@
+"""The leapfrog method on its own: order, energy, and friction far steeper than its step."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from touchdown.modelkit.integrators import verlet
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.status import STEP_UNDERFLOW
+
+STIFFNESS, FRICTION, GRIP, FASTEST = range(4)
+
+
+@kernel
+def rhs(t, q, dq, m):
+    """Mass 1 kg on a spring, braked by no more than stops it in a step; q[2] is a quadrature."""
+    braking = m[FRICTION] if m[GRIP] * m[FRICTION] <= 1.0 else 1.0 / m[GRIP]
+    dq[0] = q[1]
+    dq[1] = -m[STIFFNESS] * q[0] - braking * q[1]
+    dq[2] = -m[STIFFNESS] * q[0] * q[1]
+
+
+@kernel
+def drift(trial, q, v, h, m):
+    trial[0] = q[0] + h * v[1]
+
+
+@kernel
+def forecast(trial, dq, h, m):
+    m[GRIP] = h
+
+
+@kernel
+def fastest(m):
+    return m[FASTEST]
+
+
+@kernel
+def observe(t, q, m):
+    pass
+
+
+@kernel
+def run(q, m, work, span, longest):
+    return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, longest)
+
+
+def advanced(span: float, step: float, stiffness: float, friction: float = 0.0, fastest: float = 0.0):
+    """(State after `span`, evaluations) from x = 1 m at rest."""
+    q = np.array([1.0, 0.0, 0.0])
+    m = np.array([stiffness, friction, 0.0, fastest])
+    status, evaluations = run(q, m, np.zeros((8, 3)), span, step)
+    assert status == 0
+    return q, evaluations
+
+
+def test_second_order_without_friction() -> None:
+    steps = 1e-2 / 2.0 ** np.arange(4)
+    errors = [abs(advanced(1.0, h, 9.0)[0][0] - math.cos(3.0)) for h in steps]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(2.0, abs=0.02)
+
+
+def test_energy_comes_back_every_period() -> None:
+    """A thousand periods of ten steps each: no drift, where a Runge-Kutta method would lose all of it.
+
+    The energy of ten steps a period swings by (w h)^2 / 4, a tenth, at most; rounding adds 1e-12.
+    """
+    q, _ = advanced(1000.0 * 2.0 * math.pi, 2.0 * math.pi / 10.0, 1.0)
+    assert 0.5 * q[1] ** 2 + 0.5 * q[0] ** 2 == pytest.approx(0.5, rel=0.15)
+
+
+def test_steep_friction_takes_speed_out_without_reversing_it() -> None:
+    """1e6 times steeper than the step: the mass creeps, it does not chatter."""
+    q, _ = advanced(1.0, 1e-2, 1.0, friction=1e8)
+    assert -1e-2 < q[1] <= 0.0
+    assert 0.9 < q[0] <= 1.0
+
+
+def test_friction_is_the_law_itself_for_short_steps() -> None:
+    exact = math.exp(-0.5) * (math.cos(math.sqrt(8.75)) + 0.5 / math.sqrt(8.75) * math.sin(math.sqrt(8.75)))
+    errors = [abs(advanced(1.0, h, 9.0, friction=1.0)[0][0] - exact) for h in (1e-3, 5e-4)]
+    assert errors[0] < 1e-3
+    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
+
+
+def test_the_fastest_contact_bounds_the_step() -> None:
+    _, evaluations = advanced(1.0, 1.0, 1.0, fastest=100.0)
+    assert evaluations == pytest.approx(100.0 / verlet.RESOLUTION + 1.0, abs=1.0)
+
+
+def test_a_step_too_short_is_said() -> None:
+    q, m = np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, math.inf])
+    assert run(q, m, np.zeros((8, 3)), 1.0, 1e-3)[0] == STEP_UNDERFLOW

@@ -1,0 +1,273 @@
+"""Rotor files: what they say, and what their mistakes are answered with."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.file import RotorFileError, load
+
+GOOD = """
+title = "A rotor"
+about = "for tests"
+damping_ratio = 0.01
+
+[material.steel]
+modulus = "207 GPa"
+density = "7.83 g/cm3"
+poisson = 0.3
+
+[material.laminations]
+modulus = "0 GPa"
+density = "7650 kg/m3"
+
+[[element]]
+length = "50 mm"
+outer_diameter = "20 mm"
+inner_diameter = "5 mm"
+
+[[element]]
+position = "50 mm"
+count = 3
+length = "20 mm"
+outer_diameter = "30 mm"
+material = "steel"
+
+[element.sleeve]
+outer_diameter = "55 mm"
+material = "laminations"
+
+[[element]]
+position = "0.11 m"
+length = "40 mm"
+outer_diameter = "20 mm"
+
+[[disc]]
+node = 3
+outer_diameter = "80 mm"
+inner_diameter = "30 mm"
+width = "10 mm"
+
+[[point_mass]]
+node = 6
+mass = "100 g"
+polar_inertia = "200 kg.mm2"
+
+[[unbalance]]
+node = 3
+moment = "3 g.mm"
+angle = "90 deg"
+
+[stations]
+A = 2
+B = 5
+"""
+
+
+def read(folder: Path, text: str) -> Shaft:
+    path = folder / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return load(path)
+
+
+def complaint(folder: Path, text: str) -> str:
+    """The message about a file, without the file's name, which it must begin with."""
+    with pytest.raises(RotorFileError) as caught:
+        read(folder, text)
+    assert issubclass(caught.type, ModelError)
+    name, _, rest = str(caught.value).partition("mine.toml: ")
+    assert name == f"{folder}/"
+    assert "\n" not in rest
+    return rest
+
+
+def test_a_good_file(tmp_path: Path):
+    shaft = read(tmp_path, GOOD)
+    assert (shaft.title, shaft.about, shaft.damping_ratio) == ("A rotor", "for tests", 0.01)
+    assert shaft.positions() == pytest.approx([0.0, 0.05, 0.07, 0.09, 0.11, 0.15])
+    first, second = shaft.elements[:2]
+    assert (first.outer_diameter, first.inner_diameter) == (0.02, 0.005)
+    assert (first.modulus, first.density, first.poisson) == (207e9, 7830.0, 0.3)
+    assert (first.sleeve_diameter, first.shear_factor) == (0.0, None)
+    assert shaft.elements[1] == shaft.elements[3]
+    assert (second.sleeve_diameter, second.sleeve_density, second.sleeve_modulus) == (0.055, 7650.0, 0.0)
+    disc, point = shaft.points
+    assert disc.mass == pytest.approx(7830.0 * math.pi / 4 * (0.08**2 - 0.03**2) * 0.01)
+    assert point == PointMass(6, 0.1, pytest.approx(2e-4), 0.0)
+    assert shaft.unbalances == (Unbalance(3, pytest.approx(3e-6), pytest.approx(math.pi / 2)),)
+    assert shaft.stations == (Station("A", 2), Station("B", 5))
+    assert shaft.node("B") == 5
+    with pytest.raises(ModelError, match="no station C; it has: A, B"):
+        shaft.node("C")
+
+
+MISTAKES = {
+    # name: (text, replaced by, pieces of the message)
+    "missing title": ('title = "A rotor"', "", ("title is missing", "must be text")),
+    "missing length": (
+        'length = "50 mm"\n',
+        "",
+        ("element[1].length is missing", "unit of m (m, km, cm, mm"),
+    ),
+    "missing diameter": ('outer_diameter = "80 mm"', "", ("disc[1].outer_diameter is missing",)),
+    "missing modulus": ('modulus = "207 GPa"', "", ("material.steel.modulus is missing", "'207 GPa'")),
+    "missing poisson": ("poisson = 0.3", "", ("element[1].material is missing", "steel, laminations")),
+    "missing node": ("node = 6\n", "", ("point_mass[1].node is missing", "1 to 6")),
+    "unknown field": (
+        "count = 3",
+        "cuont = 3",
+        ("element[2].cuont is not a known field", "did you mean count"),
+    ),
+    "unknown table": ("[[disc]]", "[[disk]]", ("disk is not a known field", "did you mean disc")),
+    "unknown in material": (
+        "poisson = 0.3",
+        "nu = 0.3",
+        ("material.steel.nu", "there are: modulus, density"),
+    ),
+    "unknown in sleeve": (
+        'outer_diameter = "55 mm"',
+        'outer_diameter = "55 mm"\nlength = "1 mm"',
+        ("element[2].sleeve.length is not a known field",),
+    ),
+    "bare number": (
+        'outer_diameter = "30 mm"',
+        "outer_diameter = 30",
+        ("element[2].outer_diameter = 30 has no unit", "unit of m", "'12.5 mm'"),
+    ),
+    "text without unit": ('width = "10 mm"', 'width = "10"', ("disc[1].width = '10' has no unit",)),
+    "unit without space": ('width = "10 mm"', 'width = "10mm"', ("disc[1].width = '10mm' has no unit",)),
+    "wrong unit": (
+        'width = "10 mm"',
+        'width = "10 kg"',
+        ("disc[1].width = '10 kg' has the unit kg", "in m"),
+    ),
+    "unknown unit": ('mass = "100 g"', 'mass = "1 lb"', ("point_mass[1].mass", "has the unit lb", "kg, g")),
+    "not a number": (
+        'mass = "100 g"',
+        'mass = "one kg"',
+        ("point_mass[1].mass = 'one kg' is not a number",),
+    ),
+    "not finite": ('mass = "100 g"', 'mass = "nan kg"', ("point_mass[1].mass", "not a finite number")),
+    "out of proportion": (
+        'mass = "100 g"',
+        'mass = "1e200 kg"',
+        ("point_mass[1].mass", "1e-09 to 1e+06 kg"),
+    ),
+    "metres for mm": (
+        'length = "50 mm"',
+        'length = "500 m"',
+        ("element[1].length = '500 m'", "0.0001 to 100 m"),
+    ),
+    "negative length": (
+        'length = "50 mm"',
+        'length = "-50 mm"',
+        ("element[1].length = '-50 mm' must be above 0",),
+    ),
+    "zero length": ('length = "50 mm"', 'length = "0 mm"', ("element[1].length", "must be above 0")),
+    "zero diameter": (
+        'outer_diameter = "30 mm"',
+        'outer_diameter = "0 mm"',
+        ("element[2].outer_diameter = '0 mm' must be above 0",),
+    ),
+    "negative bore": (
+        'inner_diameter = "5 mm"',
+        'inner_diameter = "-5 mm"',
+        ("element[1].inner_diameter = '-5 mm' must not be negative",),
+    ),
+    "negative modulus": ('"207 GPa"', '"-207 GPa"', ("material.steel.modulus", "must not be negative")),
+    "core of modulus 0": ('"207 GPa"', '"0 GPa"', ("element[1].material", "modulus of 0", "only a sleeve")),
+    "core of laminations": (
+        'material = "steel"',
+        'material = "laminations"',
+        ("element[2].material = 'laminations' has no poisson",),
+    ),
+    "zero density": ('"7.83 g/cm3"', '"0 kg/m3"', ("material.steel.density = '0 kg/m3' must be above 0",)),
+    "poisson": (
+        "poisson = 0.3",
+        "poisson = 0.6",
+        ("material.steel.poisson = 0.6", "at least 0 and below 0.5"),
+    ),
+    "poisson with a unit": ("poisson = 0.3", 'poisson = "0.3 m"', ("poisson = '0.3 m'", "without unit")),
+    "damping": ("damping_ratio = 0.01", "damping_ratio = -1", ("damping_ratio = -1", "at least 0")),
+    "bore too wide": (
+        'inner_diameter = "5 mm"',
+        'inner_diameter = "20 mm"',
+        ("element[1].inner_diameter = '20 mm' must be below outer_diameter = '20 mm'",),
+    ),
+    "disc's bore too wide": (
+        'inner_diameter = "30 mm"',
+        'inner_diameter = "90 mm"',
+        ("disc[1].inner_diameter = '90 mm' must be below",),
+    ),
+    "sleeve too small": (
+        'outer_diameter = "55 mm"',
+        'outer_diameter = "25 mm"',
+        ("element[2].sleeve.outer_diameter = '25 mm'", "above that of the core", "'30 mm'"),
+    ),
+    "unknown material": (
+        'material = "steel"',
+        'material = "steal"',
+        ("element[2].material = 'steal'", "there are: steel, laminations"),
+    ),
+    "gap": ('"0.11 m"', '"0.12 m"', ("element[3].position = '0.12 m' leaves a gap", "end at 110 mm")),
+    "overlap": ('"0.11 m"', '"0.1 m"', ("element[3].position = '0.1 m' overlaps", "end at 110 mm")),
+    "station off the shaft": ("B = 5", "B = 7", ("stations.B = 7 is not a node", "1 to 6")),
+    "station 0": ("B = 5", "B = 0", ("stations.B = 0 is not a node",)),
+    "station as text": ("B = 5", 'B = "5"', ("stations.B = '5' must be the number of a node",)),
+    "mass off the shaft": ("node = 6", "node = 60", ("point_mass[1].node = 60 is not a node",)),
+    "unbalance off the shaft": (
+        'node = 3\nmoment = "3 g.mm"',
+        'node = -3\nmoment = "3 g.mm"',
+        ("unbalance[1].node = -3 is not a node",),
+    ),
+    "station twice": ("B = 5", "A = 5", ("not valid TOML", "line 54")),
+    "station's name": ("B = 5", '"B 1" = 5', ("stations.'B 1' = 5", "letters, digits and _")),
+    "station's keyword": ("B = 5", "in = 5", ("stations.in = 5 has a name that cannot be used",)),
+    "TOML syntax": ("count = 3", "count = ", ("not valid TOML", "line 22")),
+    "one bracket": ("[[disc]]", "[disc]", ("disc = {", "each written [[disc]]")),
+    "count of nothing": ("count = 3", "count = 0", ("element[2].count = 0 must be an integer from 1",)),
+    "count of a half": ("count = 3", "count = 1.5", ("element[2].count = 1.5 must be an integer",)),
+    "too many nodes": ("count = 3", "count = 100000", ("element[2]", f"at most {MOST_NODES}")),
+    "angle without unit": ('angle = "90 deg"', "angle = 90", ("unbalance[1].angle = 90", "rad, deg")),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_mistakes(tmp_path: Path, mistake: str):
+    old, new, pieces = MISTAKES[mistake]
+    assert old in GOOD
+    message = complaint(tmp_path, GOOD.replace(old, new, 1))
+    for piece in pieces:
+        assert piece in message
+
+
+def test_no_elements(tmp_path: Path):
+    head = GOOD[: GOOD.index("[[element]]")]
+    assert "element is missing; describe the shaft" in complaint(tmp_path, head)
+    assert "element is missing" in complaint(tmp_path, f"element = []\n{head}")
+
+
+def test_no_material(tmp_path: Path):
+    assert "material is missing" in complaint(tmp_path, 'title = "x"')
+
+
+def test_most_nodes(tmp_path: Path):
+    text = GOOD.replace("count = 3", f"count = {MOST_NODES - 3}").replace('position = "0.11 m"', "")
+    assert read(tmp_path, text).nodes == MOST_NODES
+    text = text.replace(f"count = {MOST_NODES - 3}", f"count = {MOST_NODES - 2}")
+    assert f"element[3] brings the rotor to {MOST_NODES + 1} nodes" in complaint(tmp_path, text)
+
+
+def test_files_that_cannot_be_read(tmp_path: Path):
+    with pytest.raises(RotorFileError, match=r"gone\.toml: cannot be read: No such file"):
+        load(tmp_path / "gone.toml")
+    with pytest.raises(RotorFileError, match="cannot be read"):
+        load(tmp_path)
+    path = tmp_path / "latin.toml"
+    path.write_bytes('title = "Läufer"'.encode("latin-1"))
+    with pytest.raises(RotorFileError, match="UTF-8"):
+        load(path)

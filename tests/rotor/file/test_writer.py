@@ -1,0 +1,97 @@
+"""Shafts written as rotor files: what is read from them is the same to the bit."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, Station, Unbalance, disc
+from touchdown.rotor.file import RotorFileError, load, parse, save, shipped, written
+
+STEEL = Element(length=0.02, outer_diameter=0.03, modulus=207e9, density=7830.0, poisson=0.3)
+HAND_MADE = Shaft(
+    title='A "stub"\tshaft \x7f',
+    about='Two lines, a \\ and """,\nmade by hand: 10 µm',
+    elements=(
+        STEEL,
+        STEEL,
+        dataclasses.replace(STEEL, length=1.0 / 30.0, inner_diameter=0.0051, shear_factor=0.85),
+        dataclasses.replace(STEEL, sleeve_diameter=0.055, sleeve_density=7650.0, sleeve_modulus=42.2e9),
+        dataclasses.replace(STEEL, sleeve_diameter=0.056, sleeve_density=7650.0),
+        dataclasses.replace(STEEL, modulus=110e9, density=4430.0, poisson=0.34, length=np.float64(0.1)),
+    ),
+    points=(disc(3, 0.08, 0.03, 0.01, 7830.0), PointMass(1, 0.1), PointMass(7, 0.0, 1e-4, 0.7e-4)),
+    unbalances=(Unbalance(3, 3e-6, -math.pi / 2.0), Unbalance(3, 1e-6 / 7.0, 1.0)),
+    stations=(Station("B", 6), Station("A", 2), Station("amb", 4)),
+    sensors=(Station("beside", 4),),
+    levitated_at=("amb",),
+    damping_ratio=0.0042,
+)
+BARE = Shaft("Bare", (STEEL,))
+SHAFTS = {**{name: load(path) for name, path in shipped().items()}, "hand-made": HAND_MADE, "bare": BARE}
+assert {"rotor_I", "rotor_II"} < set(SHAFTS)
+
+
+@pytest.mark.parametrize("name", SHAFTS)
+def test_what_is_saved_is_loaded_again(name: str, tmp_path: Path) -> None:
+    """Equal, and written alike once more: to the bit, since each number is a part of both."""
+    path = tmp_path / "rotor.toml"
+    save(SHAFTS[name], path)
+    again = load(path)
+    assert again == SHAFTS[name]
+    assert written(again) == path.read_text(encoding="utf-8")
+
+
+def test_numbers_of_any_bits_are_read_again() -> None:
+    for x in np.random.default_rng(1).uniform(0.5, 1.5, 200):
+        element = dataclasses.replace(
+            STEEL, length=0.02 * x, outer_diameter=0.03 * x, modulus=207e9 * x, density=7830.0 * x
+        )
+        shaft = Shaft(
+            "Any", (element,), (PointMass(1, x, 1e-3 * x, 1e-3 / x),), (Unbalance(2, 1e-6 * x, x),)
+        )
+        assert parse(written(shaft), "any") == shaft
+
+
+def test_quantities_read_as_people_write_them() -> None:
+    text = written(HAND_MADE)
+    for line in ('length = "20 mm"', 'modulus = "42.2 GPa"', 'density = "7830 kg/m3"', 'moment = "3 g.mm"',
+                 'angle = "-90 deg"', "[[element]]  # nodes 1 to 3\ncount = 2"):  # fmt: skip
+        assert line in text
+
+
+@pytest.mark.parametrize(
+    ("shaft", "says"),
+    [
+        (
+            Shaft("S", (dataclasses.replace(STEEL, length=-0.02),)),
+            r"element\[1\].length = '-20 mm' must be",
+        ),
+        (
+            Shaft("S", (dataclasses.replace(STEEL, length=math.nan),)),
+            r"element\[1\].length = 'nan m' is not",
+        ),
+        (Shaft("S", (STEEL,), stations=(Station("a b", 1),)), "'a b' = 1 has a name that cannot be used"),
+        (Shaft("S", (STEEL,), stations=(Station("A", 3),)), "stations.A = 3 is not a node"),
+        (Shaft("S", ()), "material is missing"),
+        (
+            Shaft("S", (dataclasses.replace(STEEL, sleeve_density=1e3),)),
+            "would be read as another one; look for a sleeve's density",
+        ),
+    ],
+)
+def test_what_no_rotor_file_can_say_is_named(shaft: Shaft, says: str, tmp_path: Path) -> None:
+    path = tmp_path / "rotor.toml"
+    with pytest.raises(RotorFileError, match=says):
+        save(shaft, path)
+    assert not path.exists()
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "nowhere" / "rotor.toml"
+    with pytest.raises(RotorFileError, match=r"rotor\.toml: cannot be written: No such file"):
+        save(BARE, path)

@@ -1,0 +1,111 @@
+"""The recipes of docs/architecture.md: each is followed to the letter in a copy of the repository.
+
+Machine code of models in process is kept by the path of their source, so a copy would compile anew; that
+of FMUs is kept by content, so the commands here run FMUs.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from places import ROOT
+
+PARTS = ("src/touchdown", "modelkit", "rotor", "bearings", "fmus", "master")
+PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+INSERTED = re.compile(r"# in (\S+), after: (.*)\n")
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    """A copy of what is needed to run."""
+    top = tmp_path / "repository"
+    dropped = shutil.ignore_patterns("__pycache__", *(Path(part).name for part in PARTS[1:]))
+    for part in PARTS:
+        ignore = dropped if part == PARTS[0] else shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / part, top / part, ignore=ignore)
+    shutil.copy(ROOT / "pyproject.toml", top)
+    return top
+
+
+def follow(recipe: str, top: Path) -> list[str]:
+    """Do in `top` what the page says under the heading `recipe`; returns the command that ends it."""
+    text = PAGE.partition(f"\n### {recipe}\n")[2].partition("\n### ")[0]
+    command: list[str] = []
+    for kind, block in BLOCK.findall(text):
+        first, rest = block.split("\n", 1)
+        if kind == "sh":
+            command = shlex.split(first)
+        elif inserted := INSERTED.match(block):
+            insert(top / inserted[1], inserted[2], rest)
+        else:
+            new = top / first.removeprefix("# ")
+            assert not new.exists()
+            new.write_text(rest, encoding="utf-8")
+    return command
+
+
+def insert(path: Path, line: str, text: str) -> None:
+    """Put `text` behind the one line of a file that reads `line`."""
+    before, found, after = path.read_text(encoding="utf-8").partition(f"\n{line}\n")
+    assert found, f"{path} has no line {line}"
+    path.write_text(before + found + text + after, encoding="utf-8")
+
+
+def run(recipe: str, top: Path) -> tuple[str, Path]:
+    """Follow a recipe, and run its command: what it printed, and the folder of its results."""
+    name, *arguments = follow(recipe, top)
+    assert name == "touchdown"
+    ended = subprocess.run(
+        [sys.executable, "-m", "touchdown", *arguments],
+        cwd=top,
+        env={**os.environ, "PYTHONPATH": str(top / "src")},
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    assert ended.returncode == 0, ended.stderr
+    return ended.stdout, top / arguments[-1]
+
+
+def test_add_a_bearing(repository: Path) -> None:
+    """Rotor and bearing are FMUs; the disk swings on the rubber as a damped oscillator does."""
+    _, folder = run("Add a bearing", repository)
+    with h5py.File(folder / "result.h5") as file:
+        time, y = (np.asarray(file[name]) for name in ("time", "rotor/A.y"))
+    sag, rate, decay = 2.0 * 9.81 / 20e3, (20e3 / 2.0) ** 0.5, 20.0 / (2.0 * 2.0)
+    swing = (rate**2 - decay**2) ** 0.5
+    wanted = sag * (
+        np.exp(-decay * time) * (np.cos(swing * time) + decay / swing * np.sin(swing * time)) - 1.0
+    )
+    assert np.ptp(wanted) > sag
+    np.testing.assert_allclose(y, wanted, rtol=0.0, atol=1e-4 * sag)
+
+
+def test_add_a_coupling_scheme(repository: Path) -> None:
+    printed, folder = run("Add a coupling scheme", repository)
+    assert re.search(r"scheme\s+halves\n", printed)
+    with h5py.File(folder / "result.h5") as file:
+        assert np.max(np.asarray(file["bearing/contact.force"])) > 100.0  # N; it landed
+
+
+def test_add_a_figure(repository: Path) -> None:
+    _, folder = run("Add a figure", repository)
+    assert (folder / "gap.png").stat().st_size > 10_000
+
+
+def test_add_a_study(repository: Path) -> None:
+    printed, _ = run("Add a study", repository)
+    forces = [float(force) for force in re.findall(r"0\.[23] mm +(\d+) N", printed)]
+    assert len(forces) == 2
+    assert 100.0 < forces[0] < forces[1]  # it falls further

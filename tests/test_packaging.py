@@ -1,0 +1,234 @@
+"""One import name, however the project is installed, beside whatever lies next to a user's script."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tarfile
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+from places import ROOT
+
+pytest.importorskip("hatchling", reason="hatchling, which builds the project, is not installed")
+
+PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master")
+NEEDED = ("pyproject.toml", "README.md", "LICENSE", ".gitignore", ".ci", "src", *PACKAGES)
+LAYOUTS = ("wheel", "editable", "checkout")
+
+
+def no_links(folder: str, names: list[str]) -> list[str]:
+    """What a checkout on Windows does not have, and what no checkout should."""
+    return [name for name in names if name == "__pycache__" or Path(folder, name).is_symlink()]
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the checkout without the links to its packages."""
+    folder = tmp_path_factory.mktemp("checkout")
+    for name in NEEDED:
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, folder / name, ignore=no_links)
+        else:
+            shutil.copy(ROOT / name, folder)
+    assert sorted(p.name for p in (folder / "src" / "touchdown").iterdir() if p.is_dir()) == []
+    return folder
+
+
+def packed(project: Path, target: str, folder: Path) -> Path:
+    """What hatchling makes of a project."""
+    command = [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(folder)]
+    subprocess.run(command, cwd=project, check=True, capture_output=True)
+    (made,) = folder.iterdir()
+    return made
+
+
+def entries(wheel: Path) -> dict[str, bytes]:
+    """Content of a wheel's files by name."""
+    with zipfile.ZipFile(wheel) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+@pytest.fixture(scope="module")
+def wheels(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Path]:
+    """Wheels: of the checkout, of its source archive, and the one that an editable install is."""
+    folder = tmp_path_factory.mktemp("built")
+    with tarfile.open(packed(checkout, "sdist", folder / "sdist")) as archive:
+        archive.extractall(folder / "unpacked", filter="data")
+    (source,) = (folder / "unpacked").iterdir()
+    editable = shutil.copytree(checkout, folder / "checkout")  # it gets links
+    return {
+        "wheel": packed(checkout, "wheel", folder / "wheel"),
+        "sdist": packed(source, "wheel", folder / "from sdist"),
+        "editable": packed(editable, "wheel:editable", folder / "editable"),
+    }
+
+
+@pytest.fixture(scope="module")
+def installed(
+    wheels: Mapping[str, Path], checkout: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Mapping[str, Path]:
+    """What each layout puts on the search path; a wheel of pure Python is installed by unpacking it."""
+    found = {"checkout": checkout / "src", "editable": named_by(wheels["editable"])}
+    found["wheel"] = tmp_path_factory.mktemp("site-packages")
+    with zipfile.ZipFile(wheels["wheel"]) as archive:
+        archive.extractall(found["wheel"])
+    return found
+
+
+def named_by(editable: Path) -> Path:
+    """The one folder that an editable install puts on the search path."""
+    (path,) = (content for name, content in entries(editable).items() if name.endswith(".pth"))
+    (line,) = path.decode().splitlines()
+    return Path(line)
+
+
+# -- what is installed -------------------------------------------------------------------------------
+
+
+def tops(names: Iterable[str]) -> list[str]:
+    """First parts of names, what describes the installation left out."""
+    return sorted({top for top in (name.split("/")[0] for name in names) if not top.endswith(".dist-info")})
+
+
+@pytest.mark.parametrize("layout", ["wheel", "sdist"])
+def test_a_wheel_has_one_name(layout: str, wheels: Mapping[str, Path]) -> None:
+    assert tops(entries(wheels[layout])) == ["touchdown"]
+
+
+def test_a_wheel_has_every_file_of_the_packages(wheels: Mapping[str, Path], checkout: Path) -> None:
+    """The shipped scenes and rotors among them, and nothing else."""
+    files = {path.relative_to(checkout) for path in checkout.rglob("*") if path.is_file()}
+    own = {path.as_posix() for path in files if path.parts[0] in PACKAGES}
+    own |= {path.name for path in files if path.parts[0] == "src"}
+    found = {name.removeprefix("touchdown/") for name in entries(wheels["wheel"]) if ".dist-" not in name}
+    assert found == own
+    assert any(name.endswith(".toml") for name in found)
+
+
+def test_the_source_archive_makes_the_same_wheel(wheels: Mapping[str, Path]) -> None:
+    assert entries(wheels["sdist"]) == entries(wheels["wheel"])
+
+
+def test_the_command_is_installed(wheels: Mapping[str, Path]) -> None:
+    (scripts,) = (c for n, c in entries(wheels["wheel"]).items() if n.endswith("entry_points.txt"))
+    assert scripts.decode().split("\n")[:2] == [
+        "[console_scripts]",
+        "touchdown = touchdown.master.cli:main",
+    ]
+
+
+def test_an_editable_install_shows_one_name(wheels: Mapping[str, Path]) -> None:
+    shown = named_by(wheels["editable"])
+    assert [path.name for path in shown.iterdir()] == ["touchdown"]
+    assert all(name.endswith(".pth") for name in tops(entries(wheels["editable"])))
+
+
+# -- beside a user's own files -------------------------------------------------------------------------
+
+SCRIPT = """
+import json
+import bearings, master, rotor, tests
+import touchdown, touchdown.bearings.catalogue, touchdown.rotor.file
+from touchdown.master.cli import main
+assert main(["scenes"]) == 0
+print(json.dumps({
+    "mine": [module.WHOSE for module in (bearings, master, rotor, tests)],
+    "theirs": [module.__file__ for module in (touchdown, touchdown.bearings, touchdown.rotor)],
+}))
+"""
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Path:
+    """A user's folder whose files bear the names of our packages."""
+    for name in ("master", "tests"):
+        (tmp_path / name).mkdir()
+    for name in ("rotor.py", "bearings.py", "master/__init__.py", "tests/__init__.py"):
+        (tmp_path / name).write_text("WHOSE = 'mine'\n")
+    (tmp_path / "script.py").write_text(SCRIPT)
+    return tmp_path
+
+
+def python(folder: Path, path: Path, *arguments: str) -> str:
+    """Standard output of Python run in `folder` with `path` on its search path."""
+    done = subprocess.run(
+        [sys.executable, *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_users_own_modules_do_no_harm(layout: str, installed: Mapping[str, Path], mine: Path) -> None:
+    """A script beside its own rotor.py, bearings.py, master/ and tests/ has them, and the project."""
+    scenes, _, last = python(mine, installed[layout], "script.py").rstrip().rpartition("\n")
+    found = json.loads(last)
+    assert found["mine"] == ["mine"] * 4
+    top = installed[layout].parent if layout in ("editable", "checkout") else installed[layout]
+    assert [file for file in found["theirs"] if not Path(file).is_relative_to(top)] == []
+    assert "disk-caged-simplified" in scenes
+
+
+def test_a_checkout_without_links_runs(installed: Mapping[str, Path], mine: Path) -> None:
+    """As a module, in a folder that Python then searches first."""
+    said = python(mine, installed["checkout"], "-m", "touchdown", "scenes")
+    assert "disk-caged-simplified" in said
+
+
+# -- the links of a checkout ---------------------------------------------------------------------------
+
+
+@pytest.fixture
+def hook(tmp_path: Path) -> Any:
+    """What makes the links, at work on an empty checkout."""
+    path = ROOT / ".ci" / "checkout_links.py"
+    spec = importlib.util.spec_from_file_location("checkout_links", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert module.PACKAGES == PACKAGES
+    for name in ("src/touchdown", *PACKAGES):
+        (tmp_path / name).mkdir(parents=True)
+    return module.CheckoutLinks(str(tmp_path), {}, None, None, "", "wheel")
+
+
+def links(folder: Path) -> dict[str, Path]:
+    """Where each link in src/touchdown leads."""
+    return {path.name: path.resolve() for path in (folder / "src" / "touchdown").iterdir()}
+
+
+def test_an_editable_install_links_the_packages(hook: Any, tmp_path: Path) -> None:
+    for _ in range(2):  # the second time they are there
+        hook.initialize("editable", {})
+        assert links(tmp_path) == {name: (tmp_path / name).resolve() for name in PACKAGES}
+
+
+def test_where_no_links_can_be_made_none_are(
+    hook: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise OSError("privilege not held")
+
+    monkeypatch.setattr(Path, "symlink_to", refused)
+    hook.initialize("editable", {})
+    assert links(tmp_path) == {}
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_plain_wheel_needs_no_links(hook: Any, tmp_path: Path) -> None:
+    hook.initialize("standard", {})
+    assert links(tmp_path) == {}
