@@ -91,7 +91,7 @@ def compare(
 
 def _distinct(items: Iterable[Item]) -> tuple[Item, ...]:
     """In their order. Raises TouchdownError where there are none."""
-    found = tuple(dict.fromkeys(items))
-    if not found:
+    distinct = tuple(dict.fromkeys(items))
+    if not distinct:
         raise TouchdownError("a comparison needs a scheme and a macro step at least")
-    return found
+    return distinct
