@@ -17,7 +17,13 @@ from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import DEFAULT
-from touchdown.master.studies.drop.first_impact import Stop, run_watched
+from touchdown.master.studies.drop.first_impact import (
+    LEAST,
+    Stop,
+    Trace,
+    reported_inside,
+    run_watched,
+)
 
 FINE = 1e-6  # s, macro step of what peak forces are measured against
 LONGEST = 5e-3  # s after the first contact
@@ -34,20 +40,41 @@ class Landing:
     seats: Sequence[Attachment]
     impacts: Mapping[str, tuple[float, float]]  # s from zero: the first impact at each seat
     peaks: Mapping[str, float]  # N: its largest contact force
+    traces: Mapping[str, Trace]
+
+    def inside(self, seat: str) -> Mapping[str, float]:
+        """Largest forces inside the bearing in the first impact (N), by part."""
+        return self.traces[seat].inside_until(self.impacts[seat][1])
+
+    def inside_errors(self, found: Mapping[str, tuple[float, Mapping[str, float]]]) -> Mapping[str, float]:
+        """Relative errors of the largest forces inside, by part, of the worst seat; grazes are left out.
+
+        found: by seat the instant (s from zero) at which they were read, and they (N) by part. Each is
+        held against what it was by that instant: a cage goes on rattling when the journal has parted.
+        """
+        errors: dict[str, float] = {}
+        for seat, (time, forces) in found.items():
+            for part, exact in self.traces[seat].inside_until(time).items():
+                if exact >= LEAST:
+                    errors[part] = max(errors.get(part, 0.0), abs(forces[part] / exact - 1.0))
+        return errors
 
 
 def fine(scene: Scene, step: float) -> Scene:
     """Small macro steps, and bearings that take steps inside as tight as they can."""
     scene = scene.set({"run.scheme": DEFAULT, "run.macro_step": step})
     with opened(scene, True) as system:
-        bearings = {a.bearing: system.components[a.bearing].variables for a in touchdown_seats(system)}
-    settings = {
-        f"{name}.{variable}": value
-        for name, variables in bearings.items()
+        return scene.set(finest_inside(system))
+
+
+def finest_inside(system: System) -> dict[str, float]:
+    """Settings with which touchdown bearings take adaptive steps inside, as tight as they can."""
+    return {
+        f"{a.bearing}.{variable}": value
+        for a in touchdown_seats(system)
         for variable, value in FINE_SETTINGS.items()
-        if variable in variables
+        if variable in system.components[a.bearing].variables
     }
-    return scene.set(settings)
 
 
 def land(scene: Scene, duration: float | None) -> Landing:
@@ -68,7 +95,7 @@ def land(scene: Scene, duration: float | None) -> Landing:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
     peaks = {seat: traces[seat].peaks(end).contact for seat, (_, end) in impacts.items()}
     first = min(start for start, _ in impacts.values())
-    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, peaks)
+    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, peaks, traces)
 
 
 @dataclass(frozen=True)
@@ -101,6 +128,8 @@ class Sampler(Observer):
         self.times: list[float] = []  # s on the simulation's clock
         self.motion: list[list[np.ndarray]] = []
         self.peaks: dict[str, float] = {}
+        self.inside: dict[str, tuple[float, Mapping[str, float]]] = {}  # s from zero, N by part
+        self._end = landing.end
         self._every = every
         self._system = system
         self._read = [system.reader([a.motion(v) for v in SENSED]) for a in landing.seats]
@@ -112,10 +141,17 @@ class Sampler(Observer):
             self.times.append(now.time)
             self.motion.append([read().copy() for read in self._read])
         over = [seat for seat, (end, _) in self._ends.items() if now.since_zero >= end]
-        self.finish(over)
+        self._read_peaks(over, now.since_zero)
 
-    def finish(self, seats: Sequence[str] | None = None) -> None:
-        """Read the peaks of `seats` (all that are left)."""
-        for seat in list(self._ends) if seats is None else seats:
+    def finish(self) -> None:
+        """Read the peaks that are left."""
+        self._read_peaks(list(self._ends), self._end)
+
+    def _read_peaks(self, seats: Sequence[str], time: float) -> None:
+        """Read the peaks of `seats` at `time` (s from zero)."""
+        for seat in seats:
             _, bearing = self._ends.pop(seat)
             self.peaks[seat] = self._system.value(f"{bearing}.contact.peak_force")
+            names = reported_inside(self._system.components[bearing].variables)
+            forces = {part: self._system.value(f"{bearing}.{name}") for part, name in names.items()}
+            self.inside[seat] = time, forces
