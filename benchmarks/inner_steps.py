@@ -105,7 +105,7 @@ def apart(a: Figures, b: Figures) -> float:
     return float(np.hypot(a.x - b.x, a.y - b.y))
 
 
-def _weight_of(case: Case) -> float:
+def _drop_energy(case: Case) -> float:
     """Energy of a drop through the clearance (J)."""
     return case.rotor.mass * GRAVITY * case.clearance
 
@@ -118,7 +118,7 @@ ERRORS: dict[str, Callable[[Figures, Figures, Case], float]] = {
     ),
     "journal's force, %": lambda now, exact, case: 100.0 * abs(now.journal / exact.journal - 1.0),
     "journal's place, um": lambda now, exact, case: 1e6 * apart(now, exact),
-    "energy made, 1e-3 m g c": lambda now, exact, case: 1e3 * abs(now.made) / _weight_of(case),
+    "energy made, 1e-3 m g c": lambda now, exact, case: 1e3 * abs(now.made) / _drop_energy(case),
 }
 
 
