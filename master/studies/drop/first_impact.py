@@ -26,11 +26,12 @@ AVERAGE = 50e-6  # s
 PARTED = 2e-4  # s
 ROUNDING = 1e-12  # s
 PEAKS = ("contact.peak_force", "contact.peak_indentation")  # of a touchdown bearing, since the start
+CONTACT = "force"  # of journal and ring, beside the parts of INSIDE
 INSIDE = {  # of those bearings that have them, N since the start
     "ball": ("balls.peak_force",),
     "side": ("neighbours.peak_force", "pockets.peak_force"),
 }
-LEAST = 1.0  # N; a smaller peak inside is a graze, whose changes say nothing
+LEAST = 1.0  # N; a smaller peak is a graze, whose changes say nothing
 
 
 @dataclass(frozen=True)
@@ -64,10 +65,10 @@ class Trace:
         force = np.max(np.hypot(*averages))
         return Peaks(float(force), float(self.contact[at]), float(self.indentation[at]))
 
-    def inside_until(self, end: float) -> Mapping[str, float]:
-        """Largest forces inside the bearing (N) up to `end` (s from zero), by part."""
+    def momentary_until(self, end: float) -> Mapping[str, float]:
+        """Largest momentary forces (N) up to `end` (s from zero): the contact's, and inside by part."""
         at = self._last(end)
-        return {part: float(force[at]) for part, force in self.inside.items()}
+        return {part: float(force[at]) for part, force in {CONTACT: self.contact, **self.inside}.items()}
 
     def _last(self, end: float) -> int:
         """Index of the last macro step up to `end` (s from zero)."""
@@ -88,10 +89,10 @@ def reported_inside(variables: Container[str]) -> Mapping[str, str]:
     return {part: name for part, names in INSIDE.items() for name in names if name in variables}
 
 
-def inside_line(peaks: Mapping[str, float]) -> str:
-    """Peaks inside a bearing (N, by part) as the rest of a line."""
-    titles = {"ball": "worst ball", "side": "cage or neighbour on a ball"}
-    return "".join(f", {titles[part]} {force:.5g} N" for part, force in peaks.items())
+def forces_text(peaks: Mapping[str, float]) -> str:
+    """Momentary peaks (N, by part) in words."""
+    titles = {CONTACT: "contact force", "ball": "worst ball", "side": "cage or neighbour on a ball"}
+    return ", ".join(f"{titles[part]} {force:.5g} N" for part, force in peaks.items())
 
 
 def _averaged(time: np.ndarray, impulse: np.ndarray) -> np.ndarray:

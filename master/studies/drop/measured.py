@@ -18,7 +18,9 @@ from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import DEFAULT
 from touchdown.master.studies.drop.first_impact import (
+    CONTACT,
     LEAST,
+    ROUNDING,
     Stop,
     Trace,
     reported_inside,
@@ -39,22 +41,21 @@ class Landing:
     zero: float  # s, on the simulation's clock
     seats: Sequence[Attachment]
     impacts: Mapping[str, tuple[float, float]]  # s from zero: the first impact at each seat
-    peaks: Mapping[str, float]  # N: its largest contact force
     traces: Mapping[str, Trace]
 
-    def inside(self, seat: str) -> Mapping[str, float]:
-        """Largest forces inside the bearing in the first impact (N), by part."""
-        return self.traces[seat].inside_until(self.impacts[seat][1])
+    def peaks(self, seat: str) -> Mapping[str, float]:
+        """Largest momentary forces of its first impact (N): the contact's, and inside by part."""
+        return self.traces[seat].momentary_until(self.impacts[seat][1])
 
-    def inside_errors(self, found: Mapping[str, tuple[float, Mapping[str, float]]]) -> Mapping[str, float]:
-        """Relative errors of the largest forces inside, by part, of the worst seat; grazes are left out.
+    def force_errors(self, found: Mapping[str, tuple[float, Mapping[str, float]]]) -> Mapping[str, float]:
+        """Relative errors of the largest forces, by part, of the worst seat; grazes are left out.
 
         found: by seat the instant (s from zero) at which they were read, and they (N) by part. Each is
         held against what it was by that instant: a cage goes on rattling when the journal has parted.
         """
         errors: dict[str, float] = {}
         for seat, (time, forces) in found.items():
-            for part, exact in self.traces[seat].inside_until(time).items():
+            for part, exact in self.traces[seat].momentary_until(time).items():
                 if exact >= LEAST:
                     errors[part] = max(errors.get(part, 0.0), abs(forces[part] / exact - 1.0))
         return errors
@@ -93,9 +94,8 @@ def land(scene: Scene, duration: float | None) -> Landing:
     impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
-    peaks = {seat: traces[seat].peaks(end).contact for seat, (_, end) in impacts.items()}
     first = min(start for start, _ in impacts.values())
-    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, peaks, traces)
+    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, traces)
 
 
 @dataclass(frozen=True)
@@ -127,8 +127,7 @@ class Sampler(Observer):
     def __init__(self, system: System, landing: Landing, every: int) -> None:
         self.times: list[float] = []  # s on the simulation's clock
         self.motion: list[list[np.ndarray]] = []
-        self.peaks: dict[str, float] = {}
-        self.inside: dict[str, tuple[float, Mapping[str, float]]] = {}  # s from zero, N by part
+        self.peaks: dict[str, tuple[float, Mapping[str, float]]] = {}  # s from zero, N by part
         self._end = landing.end
         self._every = every
         self._system = system
@@ -140,18 +139,14 @@ class Sampler(Observer):
         if now.done % self._every == 0:
             self.times.append(now.time)
             self.motion.append([read().copy() for read in self._read])
-        over = [seat for seat, (end, _) in self._ends.items() if now.since_zero >= end]
-        self._read_peaks(over, now.since_zero)
-
-    def finish(self) -> None:
-        """Read the peaks that are left."""
-        self._read_peaks(list(self._ends), self._end)
-
-    def _read_peaks(self, seats: Sequence[str], time: float) -> None:
-        """Read the peaks of `seats` at `time` (s from zero)."""
-        for seat in seats:
+        step = now.time / now.done
+        last = now.since_zero + step > self._end + ROUNDING  # that is known of the landing
+        for seat in [seat for seat, (end, _) in self._ends.items() if last or now.since_zero >= end]:
             _, bearing = self._ends.pop(seat)
-            self.peaks[seat] = self._system.value(f"{bearing}.contact.peak_force")
-            names = reported_inside(self._system.components[bearing].variables)
-            forces = {part: self._system.value(f"{bearing}.{name}") for part, name in names.items()}
-            self.inside[seat] = time, forces
+            self.peaks[seat] = now.since_zero, self._forces(bearing)
+
+    def _forces(self, bearing: str) -> Mapping[str, float]:
+        """Largest momentary forces of a bearing so far (N), by part."""
+        names = reported_inside(self._system.components[bearing].variables)
+        parts = {CONTACT: "contact.peak_force", **names}
+        return {part: self._system.value(f"{bearing}.{name}") for part, name in parts.items()}

@@ -183,8 +183,8 @@ def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> 
     changes = []
     for seat in seats:
         end = exact.ends[seat]
-        before = exact.traces[seat].inside_until(end).get(part, 0.0)
-        after = drop.traces[seat].inside_until(end).get(part)
+        before = exact.traces[seat].momentary_until(end).get(part, 0.0)
+        after = drop.traces[seat].momentary_until(end).get(part)
         if after is not None and before >= LEAST:
             changes.append(after / before - 1.0)
     return max(changes, key=abs, default=None)

@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 
 from touchdown.master.common.files import writing_to
-from touchdown.master.studies.drop.first_impact import AVERAGE, inside_line
+from touchdown.master.studies.drop.first_impact import AVERAGE, forces_text
 from touchdown.master.studies.models.compare import CLEAR, Comparison, Price, Row
 
 WIDTH = 12
@@ -36,8 +36,7 @@ def _about(comparison: Comparison) -> list[str]:
         peaks = drop.peaks[seat]
         about.append(
             f"  {seat}: first impact over at {1e3 * end:.4g} ms, journal force {peaks.force:.5g} N over "
-            f"{1e6 * average:g} us, contact force {peaks.contact:.5g} N"
-            f"{inside_line(drop.traces[seat].inside_until(end))}"
+            f"{1e6 * average:g} us, {forces_text(drop.traces[seat].momentary_until(end))}"
         )
     about.append(
         f"  first contact {1e3 * drop.first:.5g} ms, largest orbit {1e6 * drop.orbit():.4g} um up to "

@@ -20,6 +20,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES
+from touchdown.master.studies.drop.first_impact import CONTACT, INSIDE
 from touchdown.master.studies.drop.measured import (
     FINE,
     Landing,
@@ -50,7 +51,6 @@ LOOSE_OF_MANY = LOOSE[:1]  # each takes about as long as the reference
 AGREED = 0.1  # of the wanted error: what the reference's solvers may differ by
 SATURATED = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
 ABOUT = 1.2  # times the least wall time: as good as the same
-FORCES = ("force", "ball", "side")
 NEVER = 1e9  # a residual of the ledger at which nothing stops
 
 
@@ -131,7 +131,7 @@ class Comparison:
     @property
     def forces(self) -> Sequence[str]:
         """Those of `quantities` that are peak forces."""
-        return [q for q in self.quantities if q in FORCES]
+        return [q for q in self.quantities if q == CONTACT or q in INSIDE]
 
     @property
     def floors(self) -> Mapping[str, float]:
@@ -253,7 +253,6 @@ class _Judge:
                 sampler = Sampler(system, self.looks.landing, self.looks.every[step])
                 outcome = simulate(scene, system, observers=[sampler])
                 outcome.raise_if_stopped()
-                sampler.finish()
         except TouchdownError as error:
             return Row(name, step, failed=str(error))
         residual = outcome.residual
@@ -270,12 +269,10 @@ class _Judge:
         at = np.searchsorted(self.exact.time, times - 1e-10)
         at = np.minimum(at, len(self.exact.time) - 1)
         known = np.abs(self.exact.time[at] - times) < 1e-10  # up to the horizon
-        peaks = self.looks.landing.peaks
         return {
             "position": self.exact.distance(motion[known], at[known], POSITION),
             "velocity": self.exact.distance(motion[known], at[known], VELOCITY),
-            "force": max(abs(sampler.peaks[seat] / peak - 1.0) for seat, peak in peaks.items()),
-            **self.looks.landing.inside_errors(sampler.inside),
+            **self.looks.landing.force_errors(sampler.peaks),
             "energy": residual,
         }
 

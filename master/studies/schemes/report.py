@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from touchdown.master.common.files import write_records, writing_to
-from touchdown.master.studies.drop.first_impact import inside_line
+from touchdown.master.studies.drop.first_impact import forces_text
 from touchdown.master.studies.drop.reference import POSITION
 from touchdown.master.studies.schemes.compare import SHOWN, Comparison, Row
 
@@ -24,9 +24,10 @@ def _about(comparison: Comparison) -> list[str]:
     for seat, (start, end) in landing.impacts.items():
         about.append(
             f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, "
-            f"contact force {landing.peaks[seat]:.5g} N{inside_line(landing.inside(seat))}"
+            f"{forces_text(landing.peaks(seat))}"
         )
     first, second = exact.first, exact.second
+    known = ", ".join(f"{SHOWN[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces)
     until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
     about += [
         f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
@@ -34,18 +35,11 @@ def _about(comparison: Comparison) -> list[str]:
         f"reference: {first.solver.title} ({first.evaluations} evaluations) and {second.solver.title} "
         f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}",
         f"co-simulation in fine steps is off by {1e6 * comparison.fine['position']:.1g} um; "
-        f"peak forces are measured against it, known to {_known(comparison)}",
+        f"peak forces are measured against it, known to: {known}",
         f"wall time {'in process' if asked.in_process else 'through FMUs'}, median of {asked.repeat}; "
         "of monolithic solvers, one run in process",
     ]
     return about
-
-
-def _known(comparison: Comparison) -> str:
-    """How well the peak forces are known."""
-    first, *others = comparison.forces
-    known = [f"{100.0 * comparison.fine[first]:.1g} %"]
-    return ", ".join(known + [f"{SHOWN[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in others])
 
 
 def _table(comparison: Comparison) -> list[str]:
