@@ -10,6 +10,7 @@ from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.studies.drop.measured import finest_inside
 from touchdown.master.studies.modes.compare import BASIS, RIGID
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
@@ -126,7 +127,9 @@ def _law(kind: Variable, value: int) -> str:
 
 
 def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
-    """Longer steps inside bearings of fixed ones, a looser tolerance in those that adapt theirs."""
+    """Longer steps inside bearings of fixed ones, a looser tolerance in those that adapt theirs; and the
+    finest in all, which tell how far the scene's own are off.
+    """
     fixed = [n for n in seats if "micro_step" in system.components[n].variables]
     fixed = [n for n in fixed if system.value(f"{n}.micro_step") > 0.0]
     if fixed:
@@ -138,6 +141,8 @@ def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator
         values = {f"{name}.{variable}": LOOSER * system.value(f"{name}.{variable}") for name in rest}
         title = f"tolerance inside bearings {LOOSER:g} times as large"
         yield Variant(title, scene.set(values))
+    if fixed or rest:
+        yield Variant("fine adaptive steps inside bearings", scene.set(finest_inside(system)))
 
 
 def _housings(scene: Scene, system: System) -> Iterator[Variant]:
