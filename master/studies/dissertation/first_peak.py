@@ -6,6 +6,10 @@ it for half a period of the third bending mode: what does so sooner is a ripple 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.observer import Moment, Observer
@@ -15,22 +19,32 @@ from touchdown.master.results.stresses import stress_figures, stressed
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import Scene
 
+Reader = Callable[[], np.ndarray]
+
 BENDING = (673.5, 1071.0, 2363.0, 2925.0)  # Hz, of rotor II (Table 2, simulated)
 WAIT = 0.5 / BENDING[2]  # s
 
 
 class FirstPeak(Observer):
-    """Ends a run at the first distinct peak after contact of the stress that a rotor's `stress.node` names.
+    """Ends a run at the first distinct peak after contact of the stress that a rotor watches.
 
-    The stresses that the rotor has kept along itself are then those of that instant.
+    The stresses it has kept along itself are then those of that instant.
     """
 
-    def __init__(self, system: System, wait: float = WAIT) -> None:
+    def __init__(self, peak: Reader, touched: Sequence[Reader], wait: float = WAIT) -> None:
+        """Of a time each: peak, when the stress was largest; touched, when a journal was, -1 if not yet.
+
+        wait: s, for which nothing exceeds a distinct peak.
+        """
+        self._peak, self._touched, self._wait = peak, touched, wait
+
+    @classmethod
+    def of(cls, system: System, wait: float = WAIT) -> FirstPeak:
+        """The one for the rotor of `system` and its touchdown bearings."""
         (rotor,) = stressed(system)
-        self._wait = wait
-        self._peak = system.components[rotor].reader(["stress.kept_time"])
         bearings = [system.components[a.bearing] for a in touchdown_seats(system)]
-        self._touched = [bearing.reader(["contact.first_time"]) for bearing in bearings]
+        touched = [bearing.reader(["contact.first_time"]) for bearing in bearings]
+        return cls(system.components[rotor].reader(["stress.kept_time"]), touched, wait)
 
     def stepped(self, now: Moment) -> None:
         touched = [float(read()[0]) for read in self._touched]
@@ -47,7 +61,7 @@ def figures_at_first_peak(scene: Scene, wait: float = WAIT) -> dict[str, object]
     without one.
     """
     with opened(scene, in_process=True) as system:
-        outcome = simulate(scene, system, observers=[FirstPeak(system, wait)])
+        outcome = simulate(scene, system, observers=[FirstPeak.of(system, wait)])
         outcome.raise_if_stopped()
         if outcome.ended is not Ended.AS_WANTED:
             raise TouchdownError(

@@ -6,7 +6,7 @@ the instant. What the source does not state is an assumption.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -40,6 +40,7 @@ AS_SOURCE = {**MODES_ALONE, **COULOMB}
 ALL_FLEXIBILITY = {"rotor.residual": 1, "rotor.stress.mode_acceleration": 1}
 WIDE = offsets(200.0)
 DRAG = both("rolling.resistance", 0.12)
+AS_PRINTED = both("friction.kind", 1) | both("friction.dynamic", 0.18)
 
 
 @dataclass(frozen=True)
@@ -74,9 +75,9 @@ ASSUMPTIONS = (
         "as printed, nothing whirls in case 3 (below)",
     ),
     Assumption(
-        "case 3b: a drag on the inner rings, about 0.06 of load times pitch diameter",
+        "case 3b: a drag on the inner rings, 0.05 of the balls' loads times the pitch diameter",
         DRAG,
-        "fitted to case 3b: without it the rings run up and the whirl stops growing",
+        "fitted to case 3b: without it the whirl does not grow (below)",
     ),
 )
 
@@ -90,7 +91,7 @@ class Reading:
     first: bool = False  # stresses at the first distinct peak; else at the largest
 
 
-READINGS = {
+READINGS: Mapping[str, Sequence[Reading]] = {  # the first is the source's
     "1": (Reading("as the source reads", AS_SOURCE, first=True), Reading("true")),
     "2": (Reading("as the source reads", AS_SOURCE, first=True), Reading("true")),
     "3a": (
@@ -116,14 +117,12 @@ class Change:
     wait: float = WAIT  # s
 
 
-AT_FIRST_PEAK = {  # by case, each followed by its changes
+AT_FIRST_PEAK: Mapping[str, Sequence[Change]] = {  # by case, in its source's reading
     "1": (
         Change("what loads do to the modes left out", ALL_FLEXIBILITY),
         Change("all modes", {"rotor.modes": 0}),
         Change("five modes", {"rotor.modes": 5}),
-        Change(
-            "friction as printed, 0.27 and 0.18", both("friction.kind", 1) | both("friction.dynamic", 0.18)
-        ),
+        Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
         Change(
             f"a peak for {0.25e3 / BENDING[0]:.2f} ms, a quarter of the first mode's",
             wait=0.25 / BENDING[0],
@@ -141,19 +140,15 @@ AT_FIRST_PEAK = {  # by case, each followed by its changes
         Change("the same to the other sides", offsets(-100.0)),
     ),
 }
-AT_LARGEST = {
+AT_LARGEST: Mapping[str, Sequence[Change]] = {
     "3a": (
         Change("offsets as printed", offsets(-100.0)),
         Change("offsets to the other sides", offsets(-200.0)),
-        Change(
-            "friction as printed, 0.27 and 0.18", both("friction.kind", 1) | both("friction.dynamic", 0.18)
-        ),
+        Change("friction as printed, 0.27 and 0.18", AS_PRINTED),
         Change("the drag of case 3b", DRAG),
     ),
-    "3b": (
-        *(
-            Change(f"rolling.resistance = {drag:g}", both("rolling.resistance", drag))
-            for drag in (0.0, 0.06, 0.11, 0.13)
-        ),
-    ),
+    "3b": [
+        Change(f"rolling.resistance = {drag:g}", both("rolling.resistance", drag))
+        for drag in (0.0, 0.06, 0.11, 0.13)
+    ],
 }

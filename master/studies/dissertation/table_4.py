@@ -144,7 +144,7 @@ def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -
             else:
                 lines += _reading(reading.label, drops, case, whirls(drops))
             read.setdefault(case, drops)
-    lines += ["", *_assumptions(), "", *_hinges(at, peaks, read)]
+    lines += ["", *assumption_lines(), "", *_hinges(at, peaks, read)]
     return [*lines, *(f"  stopped: {why}" for why in at.lost)]
 
 
@@ -163,7 +163,7 @@ def _source_reading(case: str) -> Reading:
     return READINGS[case][0]
 
 
-def _changed(case: str, change: Change) -> Scene:
+def changed(case: str, change: Change) -> Scene:
     scene = _scene(case, {**_source_reading(case).settings, **change.settings})
     return scene.swap(rotor=change.rotor) if change.rotor else scene
 
@@ -173,7 +173,7 @@ def _first_peaks(at: Ensemble) -> dict[str, list[list[Figures]]]:
     scenes = {
         case: [
             (_scene(case, _source_reading(case).settings), WAIT),
-            *((_changed(case, change), change.wait) for change in changes),
+            *((changed(case, change), change.wait) for change in changes),
         ]
         for case, changes in AT_FIRST_PEAK.items()
     }
@@ -198,7 +198,7 @@ def _reading(label: str, drops: Sequence[Figures], case: str, whirling: str = ""
     return [f"  {label:<{LABEL - 2}}{stresses}", f"      {'; '.join(told)}"]
 
 
-def _assumptions() -> list[str]:
+def assumption_lines() -> list[str]:
     """What the source's reading assumes, what that sets, and why; then what both readings do."""
     lines = ["assumed in the source's reading"]
     for assumption in ASSUMPTIONS:
@@ -208,7 +208,7 @@ def _assumptions() -> list[str]:
     return [
         *lines,
         "true: as the scenes set it; residual flexibility, mode acceleration, friction of 0.27 and 0.18",
-        "both: the rotor is a surrogate; in each plane the largest stress along it, at the instant when its",
+        "both: the rotor is a surrogate; in each plane the largest stress along it when the",
         "  vertical bending stress at node 4 peaks; rms of ln(here/source) of the four medians",
     ]
 
@@ -242,7 +242,7 @@ def _hinges(
     for case, changes in AT_LARGEST.items():
         lines += [f"case {case}, largest peak", _hinge("as read above", read[case], case, read[case])]
         for number, change in enumerate(changes, start=1):
-            drops = at.whole(f"table4-case{case}-change{number}", _changed(case, change))
+            drops = at.whole(f"table4-case{case}-change{number}", changed(case, change))
             lines.append(f"{_hinge(change.about, drops, case, read[case])}  {whirls(drops)}")
     return lines
 
