@@ -52,6 +52,11 @@ class BallSet:
         return 1.0
 
     @property
+    def may_overlap(self) -> bool:
+        """Whether more balls are admitted than fit."""
+        return False
+
+    @property
     def ball_radius(self) -> float:
         """m"""
         return self.diameter / 2.0
@@ -183,7 +188,8 @@ class BallSet:
                 f"balls.diameter = {self.diameter:g} m does not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be smaller"
             )
-        if self.count * self.touch_angle > 2.0 * math.pi * (1.0 + 1e-12):
+        too_many = self.count * self.touch_angle > 2.0 * math.pi * (1.0 + 1e-12)
+        if too_many and not self.may_overlap:
             # rounded up, so that the remedy is one
             needed = math.ceil(1e6 * self.diameter / math.sin(math.pi / self.count)) / 1e6
             return (
@@ -215,11 +221,23 @@ class FreeBallSet(BallSet):
         minimum=0.0,
         maximum=1.0,
     )
+    crowded: int = integer(
+        0,
+        "1: more balls are admitted than fit, evenly pressed into each other at the start, as the source's "
+        "Table 1 has them",
+        minimum=0,
+        maximum=1,
+    )
+
+    @property
+    def may_overlap(self) -> bool:
+        """Whether more balls are admitted than fit."""
+        return self.crowded == 1
 
     @property
     def spread(self) -> float:
         """Spacing of the balls at the start over even spacing."""
-        touching = self.count * self.touch_angle / (2.0 * math.pi)
+        touching = min(1.0, self.count * self.touch_angle / (2.0 * math.pi))
         return 1.0 + self.bunching * (touching - 1.0)
 
 

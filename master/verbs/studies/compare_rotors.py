@@ -17,7 +17,7 @@ EXAMPLES = (
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("--ensemble", default="4", metavar="N", help="unbalance phases (default: 4)")
+    verb.add_argument("--ensemble", default="8", metavar="N", help="unbalance phases (default: 8)")
     verb.add_argument("--long", action="store_true", help="also the run-down over 16 s")
     add_jobs(verb)
     add_output(verb, Path("runs/rotors"))

@@ -19,7 +19,7 @@ from touchdown.bearings.contact.stiffness import (
     in_series,
     race_contact_stiffness,
 )
-from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.balls import BallSet, FreeBallSet
 
 SETS = {
     "6004": BallSet(),
@@ -150,6 +150,19 @@ def test_balls_that_do_not_fit_are_refused():
     assert problem is not None
     for part in ("17 balls", "0.0048 m", "balls.pitch_diameter = 0.0261 m", "at least 0.02612"):
         assert part in problem
+
+
+def test_crowded_balls_are_admitted_where_that_is_asked_for():
+    """As Table 1 prints them: evenly pressed into each other, however bunched they are to start."""
+    printed = FreeBallSet(pitch_diameter=26.1e-3)
+    assert printed.problem() is not None
+    crowded = replace(printed, crowded=1)
+    assert crowded.problem() is None
+    assert np.diff(crowded.angles()) == pytest.approx(2.0 * math.pi / 17)
+    assert replace(crowded, bunching=1.0).angles() == crowded.angles()
+    other = replace(crowded, diameter=27e-3).problem()
+    assert other is not None
+    assert "it must be smaller" in other
 
 
 @pytest.mark.parametrize(
