@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -129,6 +130,24 @@ def above_zero(text: str | None, unit: str, option: str) -> float | None:
     if not 0.0 < value < float("inf"):
         raise TouchdownError(f"{option} {text} must be above 0")
     return value
+
+
+def several_above_zero(text: str | None, unit: str, option: str) -> tuple[float, ...]:
+    """Numbers above 0 in the SI unit, ascending, with commas between them; none where not given.
+
+    A unit at the end is everyone's. Raises TouchdownError.
+    """
+    from touchdown.master.studies.sweep.variation import listed
+
+    if text is None:
+        return ()
+    given = [above_zero(item, unit, option) for item in listed(text, f"{option} {text}")]
+    return tuple(sorted({value for value in given if value is not None}))
+
+
+def angle(text: str, option: str) -> float:
+    """An angle in degrees; text without a unit is in rad. Raises TouchdownError."""
+    return math.degrees(to_si(text, "rad", option))
 
 
 def results_folder(options: argparse.Namespace, default: str | None = None) -> Path:
