@@ -67,6 +67,23 @@ def add_jobs(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
 
 
+def add_phases(verb: argparse.ArgumentParser) -> None:
+    """Add --grid and --resolution; `angle` reads them."""
+    verb.add_argument(
+        "--grid",
+        default="12 deg",
+        metavar="ANGLE",
+        help="between the phases of the unbalance that are run first; narrower windows may be missed "
+        "(default: 12 deg)",
+    )
+    verb.add_argument(
+        "--resolution",
+        default="4 deg",
+        metavar="ANGLE",
+        help="between phases of different verdicts, at last (default: 4 deg)",
+    )
+
+
 def add_quiet(verb: argparse.ArgumentParser) -> None:
     """Add --quiet."""
     verb.add_argument("--quiet", action="store_true", help="no progress bar")

@@ -1,7 +1,7 @@
 """Flexible rotors' drops beside the source: verdicts of Fig 14, stresses of Table 4, run-down of Fig 15.
 
-Whether a rotor whirls is decided by little: so verdicts are counted over an ensemble of unbalance phases,
-never taken from one run, and what the source leaves open is varied and named.
+Whether a rotor whirls is decided by little: so verdicts are counted over phases of the unbalance, never
+taken from one run, and what the source leaves open is varied and named.
 """
 
 from __future__ import annotations
@@ -14,22 +14,18 @@ from pathlib import Path
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.progress import UNSEEN, Progress
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import lines as tallest
 from touchdown.master.results.spectra import on_grid, waterfall
 from touchdown.master.scene.file import load_scene
+from touchdown.master.studies.dissertation.fig_14 import DURATION, fig_14
 from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Execution, sweep
+from touchdown.master.studies.verdict.study import Plan
 
 SEATS = ("A", "B")
 NO_LIMIT = {"run.stop_residual": 1000.0}  # of a whirl, which moves joules where falling gives less
-
-FIG_14 = {  # misalignment of each bearing [um]: the source's verdict
-    0: "settles",
-    75: "settles",
-    150: "settles",
-    225: "whirls",
-}
 
 CONSTANT = {  # sustained sliding friction of 0.27
     f"bearing_{seat}.friction.{key}": value
@@ -101,25 +97,6 @@ def spread(ensemble: Sequence[Member], key: str) -> str:
     return f"{statistics.median(values):.3g} ({min(values):.3g} to {max(values):.3g})"
 
 
-def fig_14(members: int, folder: Path, jobs: int, done: Callable[[], object]) -> list[str]:
-    """Verdicts of rotor I at both speeds for each misalignment."""
-    lines = [
-        f"{'rpm':>6} {'misalignment':>14}  {'source':<9} verdicts; revolutions at A, largest force at A [N]"
-    ]
-    for rpm in (9000, 18000):
-        for offset, source in FIG_14.items():
-            name = f"rotor1-{rpm}" + (f"-{offset}um" if offset else "")
-            scene = load_scene(name).set({"run.duration": 0.5, **NO_LIMIT})
-            ensemble = sweep(scene, phases(members), folder / name, jobs, Execution(in_process=True), done)
-            turns, force = (
-                spread(ensemble, key) for key in ("whirl_A_revolutions", "peak_contact_force_N_bearing_A")
-            )
-            lines.append(
-                f"{rpm:>6} {f'+-{offset} um':>14}  {source:<9} {verdicts(ensemble)}; {turns}, {force}"
-            )
-    return lines
-
-
 def table_4(members: int, folder: Path, jobs: int, done: Callable[[], object]) -> list[str]:
     """Stresses of rotor II when the vertical bending stress at node 4 peaks, and verdicts."""
     lines = []
@@ -157,24 +134,35 @@ def run_down(folder: Path) -> list[str]:
 
 
 def runs(members: int) -> int:
-    """How many drops `compare` runs, the run-down not counted."""
-    return members * (2 * len(FIG_14) + len(TABLE_4))
+    """How many drops Table 4 runs."""
+    return members * len(TABLE_4)
 
 
 def compare_rotors(
-    members: int, folder: Path, long: bool = False, jobs: int = 2, done: Callable[[], object] = lambda: None
+    members: int,
+    plan: Plan,
+    folder: Path,
+    long: bool = False,
+    jobs: int = 2,
+    progress: Progress = UNSEEN,
 ) -> str:
-    """Run everything and write rotors.txt into `folder`; returns the text. `long`: the run-down too."""
+    """Run everything and write rotors.txt into `folder`; returns the text.
+
+    Fig 14 is counted over the phases that `plan` resolves, Table 4 over `members` of them. `long`: the
+    run-down too. Ctrl-C in Fig 14 raises KeyboardInterrupt.
+    """
+    progress.planned(runs(members))
     lines = [
-        f"{members} unbalance phases per row: median (smallest to largest)",
+        f"Fig 14: rotor I on two cageless bearings, drops of {DURATION:g} s; phases of the unbalance",
+        f"  {plan.spacing:g} deg apart, {plan.resolution:g} deg where neighbours' verdicts differ",
+        *fig_14(plan, folder, jobs, progress),
+        "  at 9000 rpm a whirl may die out (rolling resistance)",
         "",
-        "Fig 14: rotor I on two cageless bearings, drops of 0.5 s",
-        *fig_14(members, folder, jobs, done),
-        "  +-150 um at 18000 rpm is near the edge; at 9000 rpm a whirl may die out (rolling resistance)",
+        f"{members} unbalance phases per row: median (smallest to largest)",
         "",
         "Table 4: rotor II, largest along the rotor when the bending stress at node 4 peaks [MPa]",
         f"{'':<32}" + "".join(f"{header:>26}" for header in HEADERS),
-        *table_4(members, folder, jobs, done),
+        *table_4(members, folder, jobs, progress.done),
         "  cases 1 and 2 hinge on the rotor's geometry (a surrogate) and the contact's stiffness;",
         "  case 3 on friction that goes on sliding, on both bearings standing off to one side, and, for",
         "  the whirl to grow, on a drag on the inner ring",

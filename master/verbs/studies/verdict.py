@@ -11,6 +11,7 @@ from touchdown.master.verbs.arguments import (
     above_zero,
     add_jobs,
     add_output,
+    add_phases,
     add_quiet,
     add_scene_name,
     add_settings,
@@ -31,15 +32,7 @@ EXAMPLES = (
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     add_scene_name(verb)
-    verb.add_argument(
-        "--grid",
-        default="12 deg",
-        metavar="ANGLE",
-        help="between the phases looked at first; narrower windows may be missed (default: 12 deg)",
-    )
-    verb.add_argument(
-        "--resolution", default="4 deg", metavar="ANGLE", help="to which edges are found (default: 4 deg)"
-    )
+    add_phases(verb)
     verb.add_argument("--macro-steps", help='such as "5,10,20,40 us" (default: the scene\'s own)')
     verb.add_argument(
         "--reference",

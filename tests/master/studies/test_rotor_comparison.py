@@ -10,7 +10,6 @@ from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.dissertation import rotors as rotor_comparison
 from touchdown.master.studies.dissertation.rotors import (
-    FIG_14,
     SOURCE_4,
     TABLE_4,
     Case,
@@ -36,7 +35,7 @@ def test_verdicts_are_those_of_the_seat_that_whirls_more() -> None:
 
 def test_the_ensemble_is_spread_around_the_circle() -> None:
     assert phases(4) == {"rotor.unbalance_angle": ["0 deg", "90 deg", "180 deg", "270 deg"]}
-    assert runs(4) == 4 * (2 * len(FIG_14) + len(TABLE_4))
+    assert runs(4) == 4 * len(TABLE_4)
 
 
 def test_a_figure_that_no_run_has_is_a_dash() -> None:
