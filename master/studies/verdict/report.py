@@ -116,10 +116,11 @@ def _own_phase(study: Study) -> Iterator[str]:
         if words is None:
             continue
         found = f"phase {study.phase:g} deg, the scene's own, with {circle.title}: {words or SETTLES}"
-        yield f"{found}, {_nearest(circle, study.phase)}"
+        yield f"{found}, {_nearest(circle, study.phase, study.plan.spacing)}"
 
 
-def _nearest(circle: Circle, phase: float) -> str:
+def _nearest(circle: Circle, phase: float, spacing: float) -> str:
+    """How far a phase is from the nearest edge: near it where a neighbour in the grid lies beyond."""
     known = edges(circle.verdicts)
     if phase in strays(circle.verdicts):
         return "a stray, alone among others"
@@ -127,8 +128,8 @@ def _nearest(circle: Circle, phase: float) -> str:
         return "and no edge anywhere"
     edge = min(known, key=lambda e: distance(e.middle, phase))
     away = distance(edge.middle, phase)
-    if away <= edge.gap:
-        return f"on an edge, at {_edge(edge)} deg: a little turns it round"
+    if away < spacing:
+        return f"near an edge, at {_edge(edge)} deg: another phase of the grid would say otherwise"
     return f"{away:.3g} deg from the nearest edge"
 
 
