@@ -12,7 +12,7 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.verdict.circle import Circle
 from touchdown.master.studies.verdict.phases import share, strays, windows
-from touchdown.master.studies.verdict.report import counts, newtons, percent, reach, write_report
+from touchdown.master.studies.verdict.report import newtons, percent, reach, ways, write_report
 from touchdown.master.studies.verdict.study import Plan, Running, study_verdict
 
 SPEEDS = (9000, 18000)  # rpm
@@ -50,7 +50,7 @@ def _found(circle: Circle) -> str:
     force = circle.largest_force()
     parts = [percent(share(verdicts)), "-" if force is None else newtons(force)]
     for window in windows(verdicts):
-        parts.append(f"{reach(window)}: {counts(verdicts[phase] for phase in window.phases)}")
+        parts.append(f"{reach(window)}: {ways(verdicts, window)}")
     if alone := strays(verdicts):
         parts.append(f"{len(alone)} strays")
     return "; ".join(parts)

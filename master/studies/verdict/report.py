@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections import Counter
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ from touchdown.master.studies.verdict.phases import (
     CONFIDENCE,
     Edge,
     Share,
+    Verdicts,
     Window,
     distance,
     edges,
@@ -24,6 +26,7 @@ from touchdown.master.studies.verdict.phases import (
 )
 from touchdown.master.studies.verdict.study import Study
 
+MOST_ROWS = 4  # of phases with equal verdicts in a window, to be told one by one
 SETTLES = "no whirl"  # in words, where a circle has ""
 
 
@@ -63,16 +66,19 @@ def _window_lines(circle: Circle) -> Iterator[str]:
     if not found:
         yield "  no window whirls"
     for window in found:
-        said = counts(circle.verdicts[phase] for phase in window.phases)
-        yield f"  whirls {reach(window)}: {said}"
+        yield f"  whirls {reach(window)}: {ways(circle.verdicts, window)}"
     if alone:
         listed = ", ".join(f"{phase:g} deg ({circle.verdicts[phase] or SETTLES})" for phase in alone)
         yield f"  strays, alone among others: {listed}"
 
 
-def counts(words: Iterator[str]) -> str:
-    """How often each verdict comes, the most frequent first."""
-    return ", ".join(f"{n} x {word or SETTLES}" for word, n in Counter(words).most_common())
+def ways(verdicts: Verdicts, window: Window) -> str:
+    """How the phases of a window whirl: from where to where, or how often where it changes too often."""
+    rows = [(words, list(row)) for words, row in itertools.groupby(window.phases, key=verdicts.__getitem__)]
+    if 1 < len(rows) <= MOST_ROWS:
+        return ", ".join(f"{row[0]:g} to {row[-1]:g} {words}" for words, row in rows)
+    counted = Counter(verdicts[phase] for phase in window.phases).most_common()
+    return ", ".join(f"{n} x {words}" for words, n in counted)
 
 
 def reach(window: Window) -> str:

@@ -20,8 +20,8 @@ from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Task
 from touchdown.master.studies.verdict import study as verdict_study
 from touchdown.master.studies.verdict.circle import Circle, peak_force, whirling
-from touchdown.master.studies.verdict.phases import edges, windows
-from touchdown.master.studies.verdict.report import report_lines, write_report
+from touchdown.master.studies.verdict.phases import Window, edges, windows
+from touchdown.master.studies.verdict.report import report_lines, ways, write_report
 from touchdown.master.studies.verdict.study import Plan, Study, study_verdict
 
 DISK = "disk-caged-simplified"
@@ -264,6 +264,20 @@ def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], 
     assert [path.parent.name for path in summaries] == ["000.000", "120.000", "240.000"]
     forces = {json.loads(path.read_text())["peak_contact_force_N"] for path in summaries}
     assert len(forces) == 3  # turning it does something
+
+
+@pytest.mark.parametrize(
+    ("kinds", "said"),
+    [
+        ("SS", "2 x S whirl"),
+        ("SST", "0 to 10 S whirl, 20 to 20 T whirl"),
+        ("TSST", "0 to 0 T whirl, 10 to 20 S whirl, 30 to 30 T whirl"),
+        ("STSTSS", "4 x S whirl, 2 x T whirl"),
+    ],
+)
+def test_the_ways_a_window_whirls(kinds: str, said: str) -> None:
+    verdicts = {10.0 * i: f"{kind} whirl" for i, kind in enumerate(kinds)}
+    assert ways(verdicts, Window(None, None, tuple(verdicts))) == said
 
 
 def test_fig_14_is_counted_over_phases_that_resolve_windows(
