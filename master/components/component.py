@@ -103,6 +103,13 @@ class Component(ABC):
         """What the component itself calls the variable `name`."""
         return self._own.get(name, name)
 
+    def second(self) -> Component:
+        """Another instance of the same, with the same names, not initialised.
+
+        Raises TouchdownError where there can be none.
+        """
+        raise TouchdownError(f"there can be no second instance of {self.origin}")
+
     @abstractmethod
     def set(self, values: Mapping[str, float]) -> None:
         """Set parameters or inputs before initialisation; values are in SI units and within bounds."""

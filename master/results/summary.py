@@ -305,6 +305,13 @@ def _run_figures(
     simulated = outcome.end
     return {
         "energy_residual_relative": outcome.residual if scale > 0.0 else None,
+        "energy_residual_of_turnover": outcome.share,
+        "energy_residual_worst_connection": outcome.worst,
+        "energy_made_relative": outcome.made / scale if scale > 0.0 else None,
+        "energy_made_of_turnover": outcome.made / outcome.turnover if outcome.turnover > 0.0 else None,
+        "energy_made_J": outcome.made,
+        "energy_turnover_J": outcome.turnover,
+        "not_audited": "; ".join(outcome.unaudited) or None,
         "energy_balance_relative": balance,
         "energy_scale_J": scale if scale > 0.0 else None,
         "wall_time_s": outcome.wall_time,
@@ -314,6 +321,7 @@ def _run_figures(
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
+        **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
 
 

@@ -183,7 +183,7 @@ def compare_schemes(
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.set({"run.stop_residual": NEVER})
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
     begin("fine steps")
     landing = land(scene, asked.duration)
     looks = plan(landing, (*asked.steps, 2.0 * FINE))
@@ -255,13 +255,13 @@ class _Judge:
                 outcome.raise_if_stopped()
         except TouchdownError as error:
             return Row(name, step, failed=str(error))
-        residual = outcome.residual
-        return Row(name, step, self._errors(sampler, residual), ledger=self._alarm(residual))
+        errors = self._errors(sampler, outcome.residual)
+        return Row(name, step, errors, ledger=self._alarm(outcome.share))
 
-    def _alarm(self, residual: float) -> Alarm:
-        if residual > self.stop:
+    def _alarm(self, share: float) -> Alarm:
+        if share > self.stop:
             return Alarm.STOPS
-        return Alarm.WARNS if residual > self.warn else Alarm.NONE
+        return Alarm.WARNS if share > self.warn else Alarm.NONE
 
     def _errors(self, sampler: Sampler, residual: float) -> Mapping[str, float]:
         times = np.array(sampler.times) - self.looks.landing.zero
