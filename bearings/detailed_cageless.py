@@ -19,9 +19,9 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
 from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
-from touchdown.bearings.contact.pair import OUTSIDE, Place, press
+from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import part
+from touchdown.bearings.rolling.ball_state import MOST_STATES, part
 from touchdown.bearings.rolling.balls import BallContacts, Coordinates, FreeBallSet
 from touchdown.bearings.rolling.bodies import outputs
 from touchdown.bearings.rolling.bodies.declarations import (
@@ -32,10 +32,8 @@ from touchdown.bearings.rolling.bodies.declarations import (
     derived,
     problem,
 )
-from touchdown.bearings.rolling.bodies.races import race_contacts
-from touchdown.bearings.rolling.bodies.side import note, note_apart
+from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import (
-    MOST_STATES,
     X,
     Y,
     ball_motion,
@@ -48,6 +46,7 @@ from touchdown.bearings.rolling.bodies.state import (
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import leapfrog
+from touchdown.bearings.rolling.side import note, note_apart, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -98,7 +97,6 @@ def _neighbour_contacts(q, dq, m):
     """Each ball in q against the next; adds to the balls' derivatives in dq, returns the heat (W)."""
     p, d = m.p, m.d
     count, apart = p.balls.count, 2.0 * d.ball_radius
-    grip = m.s.step * d.side_grip
     loss = 0.0
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):
@@ -112,7 +110,8 @@ def _neighbour_contacts(q, dq, m):
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
         this, following = ball_motion(q, b, m), ball_motion(q, k, m)
-        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, grip)
+        kick = _kick(b, k, at, m)
+        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, kick)
         note(m.s.side, b, c, at.indentation, d.ball_contact)
         push(dq, k, c.fx, c.fy, c.first_moment, m)
         push(dq, b, -c.fx, -c.fy, c.second_moment, m)
@@ -121,11 +120,25 @@ def _neighbour_contacts(q, dq, m):
 
 
 @kernel
+def _kick(b, k, place, m):
+    """The `Kick` of balls `b` and `k`, the next.
+
+    The answer along n is doubled: the neighbours on either side push as they did in the kick before, and a
+    row of balls under much damping would else swing from kick to kick.
+    """
+    d, before, side = m.d, m.s.before, m.s.side
+    answers = 2.0 / d.mass + 2.0 * place.second * place.second / d.inertia, 4.0 / d.mass
+    first, second = ball_motion(before, k, m), ball_motion(before, b, m)
+    last = side.tangential[b], side.normal[b]
+    return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+
+
+@kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
-    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
-    inner, outer = race_contacts(q, dq, m)
+    press_races(q, dq, m)
     rubbing = _neighbour_contacts(q, dq, m)
+    j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
@@ -151,8 +164,8 @@ def report(q, m):
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=True)
     outputs.state_contacts(o.neighbours, m.s.side, p.balls)
-    stored = outputs.stored(m.s.side, m.d.ball_contact, count)
-    ring.report_energy(q, m, kinetic, potential + stored, p.ring.inertia)
+    in_sides = stored(m.s.side, m.d.ball_contact, count)
+    ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
 
 
 @kernel
@@ -162,7 +175,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
-    m.s.step = m.d.micro_step
+    m.s.kick = 0.5 * m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
@@ -178,7 +191,7 @@ def integrate(m, work, span):
 @kernel
 def instant(t, q, dq, m):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
-    m.s.step = 0.0
+    m.s.kick = 0.0
     seat.instant(react, t, q, dq, m)
 
 
@@ -199,7 +212,6 @@ def derive(p: Parameters) -> Derived:
         **fields,  # type: ignore[arg-type]
         ball_contact=damped(side, b.ball_mass),
         ball_friction=prepared(p.ball_friction),
-        side_grip=4.0 * (1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia),
         size=Coordinates(
             coordinates=6 + 3 * b.count,
             constraints=1,

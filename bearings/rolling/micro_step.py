@@ -1,29 +1,44 @@
 """How a bearing steps whose light bodies hit stiff contacts: leapfrog, resolving every hit.
 
-Within a step friction may stop the sliding, but not reverse it (`bearings.contact.pair.friction_force`);
-m.s.step is the length of that step, and zero where friction acts as it stands.
+What depends on velocity acts over the kick that follows an evaluation, implicitly
+(`bearings.contact.kick`): m.s.kick is its length, zero where the laws are to act as they stand, and
+m.s.before the accelerations of the kick before.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.modelkit.integrators import verlet
 from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.variables import array, real
 
 STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step
 
 
+@dataclass(frozen=True)
+class KickMemory:
+    """What a kick starts from."""
+
+    kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
+    rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
+    before: tuple = array(MOST_STATES)  # derivative of the state then
+
+
 @kernel
-def forecast(trial, dq, h, m):
-    """Velocities of the copies in `trial` at the end of a micro-step of h (s), which is noted in m.s.step.
+def forecast(trial, dq, h, kick, m):
+    """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s).
 
     dq: derivative of the state at its beginning.
     """
     seat.forecast(trial, dq, h)
-    m.s.step = h
+    m.s.kick = kick
+    n = m.s.seat.inside
+    m.s.before[:n] = dq[:n]
 
 
 @inlined

@@ -2,10 +2,9 @@
 
     v_half = v + h/2 a        q' = q + h v_half        a' = a(q', v_half)        v' = v_half + h/2 a'
 
-Undamped contacts neither gain nor lose energy in the long run. What depends on velocity is evaluated at
-v_half; a friction force that a model limits to what stops the sliding within a step takes it to zero, as
-an implicit step would, however steep the law (Hairer, Lubich, Wanner, Geometric Numerical Integration,
-2nd ed., section I.1.4).
+Undamped contacts neither gain nor lose energy in the long run (Hairer, Lubich, Wanner, Geometric Numerical
+Integration, 2nd ed., section I.1.4). Between two drifts the velocities get one kick, a' over half of either
+step; a' is evaluated with those before it, and a model may take what depends on velocity implicitly over it.
 
 The step is bounded from above, and by the fastest contact: h w <= `RESOLUTION`, w its angular frequency
 (the method is stable up to 2).
@@ -20,7 +19,7 @@ from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 RESOLUTION = 0.8
-GROWTH = 1.25  # of the step; friction was limited for the step before
+GROWTH = 1.25  # of the step; a kick was to be as long as the step before
 
 
 @inlined
@@ -35,9 +34,10 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
     """Advance the state q[:n] over `span` (s) in place, in steps of at most `longest` (s).
 
     rhs(t, q, dq, m) and observe(t, q, m) as for `dopri.integrate`. drift(trial, q, v, h, m) sets each
-    position in `trial` to that in q plus h (s) times its velocity in v. forecast(trial, dq, h, m) may add
-    h/2 dq to velocities in `trial` that are evaluated at the end of the step, not in its middle, and notes
-    h. fastest(m) is the largest angular frequency at the last evaluation (rad/s). work: `dopri.scratch`,
+    position in `trial` to that in q plus h (s) times its velocity in v. forecast(trial, dq, h, kick, m) may
+    add h/2 dq to velocities in `trial` that are evaluated at the end of the step, not in its middle, and
+    notes how long (s) the kick will be that follows: h, but h/2 at the end of the span, as at its beginning.
+    fastest(m) is the largest angular frequency at the last evaluation (rad/s). work: `dopri.scratch`,
     of which four rows (n,) are used.
     Returns (status, number of evaluations of rhs).
     """
@@ -69,7 +69,7 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
             half[i] = q[i] + 0.5 * h * f[i]
             trial[i] = half[i]
         drift(trial, q, half, h, m)
-        forecast(trial, f, h, m)
+        forecast(trial, f, h, h if t < span else 0.5 * h, m)
         rhs(t, trial, f_new, m)
         for i in range(n):
             q[i] = half[i] + 0.5 * h * f_new[i]

@@ -10,21 +10,8 @@ import math
 from touchdown.bearings import seat
 from touchdown.bearings.rolling.balls import watch_balls, watch_contacts
 from touchdown.bearings.rolling.bodies.state import ball_motion
+from touchdown.bearings.rolling.side import largest, stored
 from touchdown.modelkit.kernel import kernel
-
-
-@kernel
-def largest(contacts, balls):
-    """(Normal force on one of a row (N), indentation (m), ball) of the most loaded contact; 0: none.
-
-    balls: the record of `BallSet`.
-    """
-    force, indentation, ball = 0.0, 0.0, 0
-    for b in range(balls.count):
-        if contacts.normal[b] > force:
-            force, ball = contacts.normal[b], b
-        indentation = max(indentation, contacts.indentation[b])
-    return force / balls.rows, indentation, ball
 
 
 @kernel
@@ -57,17 +44,6 @@ def approach(m):
 def state_contacts(report, contacts, balls):
     """Largest force (N) and indentation (m) now, in `report` (BallContacts); balls: a `BallSet` record."""
     report.force, report.indentation, _ = largest(contacts, balls)
-
-
-@kernel
-def stored(contacts, law, count):
-    """Energy (J) of one kind of contact of `count` balls; law: a record."""
-    energy = 0.0
-    for b in range(count):
-        depth = contacts.indentation[b]
-        if depth > 0.0:
-            energy += law.stiffness * depth ** (law.exponent + 1.0) / (law.exponent + 1.0)
-    return energy
 
 
 @kernel

@@ -1,8 +1,8 @@
 """All balls of a bearing against one race.
 
-The same contact as `bearings.contact.pair.press`, for all balls at once: the loops below are vector code
-(`bearings.rolling.ball_state`) and make up most of a detailed bearing's cost. Where a race is no circle,
-the contact is searched for.
+The same contact as `bearings.contact.pair.press`, for all balls at once: the loops below, and those of
+`bearings.rolling.rubbing` for friction, are vector code (`bearings.rolling.ball_state`) and make up most of
+a detailed bearing's cost. Where a race is no circle, the contact is searched for.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.friction import curve, follow
+from touchdown.bearings.contact.kick import damped_normal
 from touchdown.bearings.contact.laws import hertz
-from touchdown.bearings.contact.pair import Place, friction_force, slip
+from touchdown.bearings.contact.pair import Place, slip
 from touchdown.bearings.contact.search import Disc, Outline, race_place
-from touchdown.bearings.rolling.ball_state import rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
+from touchdown.bearings.rolling.rubbing import RubbedRace
 from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
 
 @dataclass(frozen=True)
-class Contacts:
+class Contacts(RubbedRace):
     """One contact of each ball, at the last evaluation; places as in `bearings.contact.pair.Place`."""
 
     nx: tuple = array(MOST_BALLS)
@@ -31,13 +31,7 @@ class Contacts:
     indentation: tuple = array(MOST_BALLS)
     second: tuple = array(MOST_BALLS)
     across: tuple = array(MOST_BALLS)
-    fx: tuple = array(MOST_BALLS)  # on the ball
-    fy: tuple = array(MOST_BALLS)
-    moment: tuple = array(MOST_BALLS)  # on the race
-    normal: tuple = array(MOST_BALLS)
-    tangential: tuple = array(MOST_BALLS)
     stiffness: tuple = array(MOST_BALLS)
-    loss: tuple = array(MOST_BALLS)
 
 
 class Balls(NamedTuple):
@@ -52,13 +46,12 @@ class Balls(NamedTuple):
 
 
 class Race(NamedTuple):
-    """What a race is for its balls: on which side of it they lie, its radius, law and grip."""
+    """What a race is for its balls: on which side of it they lie, its radius and law."""
 
     side: float
     radius: float  # m
     stiffness: float  # N/m^1.5
     damping: float  # N s/m2
-    grip: float  # s/kg
 
 
 class Places(NamedTuple):
@@ -71,16 +64,24 @@ class Places(NamedTuple):
     across: object  # m
 
 
-class Forces(NamedTuple):
-    """What a race does to all balls, an array each."""
+class Before(NamedTuple):
+    """Changes of velocity over the kick before: of all balls, an array each, and of their race's centre."""
 
-    fx: object  # N, on the ball
-    fy: object
-    moment: object  # N m, on the race
+    length: float  # s, of the kick
+    ax: object  # m/s2, of the balls
+    ay: object
+    race_x: float  # m/s
+    race_y: float
+    answer: float  # s/kg, of a ball's speed to a force over the kick
+
+
+class Forces(NamedTuple):
+    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before."""
+
     normal: object  # N
-    tangential: object  # N
     stiffness: object  # N/m, at this load
-    loss: object  # W, heat
+    loss: object  # W, heat of damping
+    sliding: object  # m/s, before the kick
 
 
 @inlined
@@ -94,8 +95,7 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    pressed = c.fx[:n], c.fy[:n], c.moment[:n], c.normal[:n], c.tangential[:n]
-    return Forces(*pressed, c.stiffness[:n], c.loss[:n])
+    return Forces(c.normal[:n], c.stiffness[:n], c.loss[:n], c.sliding[:n])
 
 
 @kernel
@@ -128,39 +128,47 @@ def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
 
 
 @kernel
-def _press_all(balls, ring, race, friction, places, forces):
-    """Set the `forces` (n,) (N, N m, N/m, W) on all `balls` at their `places` (n,); friction: a `Curve`."""
+def squeeze_all(balls, ring, race, before, places, forces):
+    """Set the `forces` (n,) (N, N/m, W, m/s) of all `balls` at their `places` (n,), but for friction.
+
+    ring: Motion of the race; before: `Before`.
+    """
     reach = race.side * balls.radius
     for b in range(len(places.nx)):
         ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
         nx, ny, indentation = places.nx[b], places.ny[b], places.indentation[b]
         place = Place(nx, ny, indentation, reach, places.second[b], places.across[b])
         sliding, rate = slip(ball, ring, place, race.side)
-        normal, elastic, stiff = hertz(place.indentation, rate, race.stiffness, race.damping)
-        mu, _ = follow(sliding, friction)
-        tangential = friction_force(sliding, mu, normal, race.grip)
-        along = -race.side * normal
-        forces.fx[b] = along * place.nx - tangential * place.ny
-        forces.fy[b] = along * place.ny + tangential * place.nx
-        forces.moment[b] = place.across * along - place.second * tangential
+        elastic, damping, stiff = hertz(place.indentation, race.stiffness, race.damping)
+        faster_x = before.length * before.ax[b] - before.race_x
+        faster_y = before.length * before.ay[b] - before.race_y
+        others = race.side * (faster_x * nx + faster_y * ny) + before.answer * forces.normal[b]
+        normal = damped_normal(elastic, damping, rate, before.answer, others)
         forces.normal[b] = normal
-        forces.tangential[b] = tangential
         forces.stiffness[b] = stiff
-        forces.loss[b] = (normal - elastic) * rate - tangential * sliding
+        forces.loss[b] = (normal - elastic) * (rate + 0.5 * (others - before.answer * normal))
+        forces.sliding[b] = sliding
 
 
 @kernel
-def press_race(balls, ring, race, friction, contacts):
-    """Forces of all `balls` on a race around `ring` (Motion), from the places in `contacts`, kept there.
+def pressing(contacts, side, count):
+    """The `Total` (N, N m) of normal forces that `count` balls on that `side` of a race exert on it."""
+    fx, fy, moment = 0.0, 0.0, 0.0
+    for b in range(count):
+        along = side * contacts.normal[b]
+        fx += along * contacts.nx[b]
+        fy += along * contacts.ny[b]
+        moment -= along * contacts.across[b]
+    return Total(fx, fy, moment, 0.0)
 
-    friction: a record. Returns the `Total` (N, N m, W) on the race.
-    """
-    n = rounded(len(balls.x))
-    _press_all(balls, ring, race, curve(friction), places_of(contacts, n), forces_of(contacts, n))
-    fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
-    for b in range(len(balls.x)):
-        fx -= contacts.fx[b]
-        fy -= contacts.fy[b]
-        moment += contacts.moment[b]
+
+@kernel
+def with_friction(pressed, contacts, count):
+    """`Total` (N, N m, W) on a race that is `pressed` (Total) and rubbed by `count` balls."""
+    fx, fy, moment, loss = pressed.fx, pressed.fy, pressed.moment, 0.0
+    for b in range(count):
+        fx += contacts.tangential[b] * contacts.ny[b]
+        fy -= contacts.tangential[b] * contacts.nx[b]
+        moment -= contacts.tangential[b] * contacts.second[b]
         loss += contacts.loss[b]
     return Total(fx, fy, moment, loss)

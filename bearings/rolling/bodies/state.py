@@ -11,8 +11,7 @@ import math
 
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import BALLS, LANES, part
-from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.bodies.declarations import BallBodiesParameters
 from touchdown.bearings.rolling.bodies.race import Balls
 from touchdown.modelkit.kernel import kernel
@@ -20,7 +19,6 @@ from touchdown.modelkit.ports import Motion
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
 SIZE = 6
-MOST_STATES = BALLS + SIZE * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
 
 
 @kernel

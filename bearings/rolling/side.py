@@ -33,3 +33,28 @@ def note_apart(contacts, b):
     """Remember that ball `b` has no contact (0 N)."""
     contacts.normal[b], contacts.tangential[b] = 0.0, 0.0
     contacts.indentation[b], contacts.stiffness[b] = -1.0, 0.0
+
+
+@kernel
+def largest(contacts, balls):
+    """(Normal force on one of a row (N), indentation (m), ball) of the most loaded contact; 0: none.
+
+    balls: the record of `BallSet`.
+    """
+    force, indentation, ball = 0.0, 0.0, 0
+    for b in range(balls.count):
+        if contacts.normal[b] > force:
+            force, ball = contacts.normal[b], b
+        indentation = max(indentation, contacts.indentation[b])
+    return force / balls.rows, indentation, ball
+
+
+@kernel
+def stored(contacts, law, count):
+    """Energy (J) of one kind of contact of `count` balls; law: a record."""
+    energy = 0.0
+    for b in range(count):
+        depth = contacts.indentation[b]
+        if depth > 0.0:
+            energy += law.stiffness * depth ** (law.exponent + 1.0) / (law.exponent + 1.0)
+    return energy
