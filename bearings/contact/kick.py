@@ -38,16 +38,20 @@ STILL = Kick(0.0, 0.0, 0.0, 0.0)
 
 
 class Line(NamedTuple):
-    """Mean force over a kick, for a change ds of the relative speed: start - slope ds."""
+    """Mean force over a kick, for a change ds of the relative speed: (start - slope ds)/base.
+
+    Left as a fraction, as whoever solves for ds divides anyway.
+    """
 
     start: float  # N
     slope: float  # N s/m
+    base: float
 
 
 @woven
-def end_weight(z):
-    """theta: how much of the change counts in the mean over a kick; z: decay rate times its length."""
-    return (3.0 + z) / (6.0 + z)
+def force_on(line, kick):
+    """The force (N) of a contact alone over a `Kick`, from its `Line`."""
+    return (line.start - line.slope * kick.sliding) / (line.base + line.slope * kick.across)
 
 
 @woven
@@ -85,4 +89,5 @@ def friction_line(sliding, expected, answer, normal, law):
     spot = end if expected >= 0.0 else -end
     mu, slope = follow(spot, law)
     slope *= normal
-    return Line(slope * (spot - sliding) - normal * mu, slope * end_weight(answer * slope))
+    z = answer * slope
+    return Line((6.0 + z) * (slope * (spot - sliding) - normal * mu), (3.0 + z) * slope, 6.0 + z)

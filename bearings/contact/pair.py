@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from touchdown.bearings.contact.friction import curve
-from touchdown.bearings.contact.kick import Kick, damped_normal, friction_line
+from touchdown.bearings.contact.kick import Kick, damped_normal, force_on, friction_line
 from touchdown.bearings.contact.laws import elastic_and_damping
 from touchdown.modelkit.kernel import kernel, woven
 
@@ -117,5 +117,5 @@ def press(first, second, place, side, law, friction, kick):
     """
     s = squeeze(first, second, place, side, law, kick)
     line = friction_line(s.sliding, s.sliding + kick.sliding, kick.across, s.normal, curve(friction))
-    tangential = (line.start - line.slope * kick.sliding) / (1.0 + line.slope * kick.across)
+    tangential = force_on(line, kick)
     return rubbed(place, side, s, tangential, kick.sliding + kick.across * tangential)

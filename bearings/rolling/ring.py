@@ -102,7 +102,7 @@ def bore_line(at, kick, squeezed, m):
         return Bore(at.nx, at.ny, at.second, 0.0, 0.0)
     expected = squeezed.sliding + kick.sliding
     line = friction_line(squeezed.sliding, expected, kick.across, squeezed.normal, curve(m.d.friction))
-    return Bore(at.nx, at.ny, at.second, line.start, line.slope)
+    return Bore(at.nx, at.ny, at.second, line.start / line.base, line.slope / line.base)
 
 
 @kernel

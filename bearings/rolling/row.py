@@ -20,7 +20,7 @@ from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
 from touchdown.bearings.rolling.side import note, note_apart
 from touchdown.modelkit.angles import cosine_and_sine
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
@@ -105,14 +105,14 @@ def _loads_of(s, n):
     return Loads(s.elastic[:n], s.indentation[:n], *ways, s.along[:n])
 
 
-@kernel
+@woven
 def _directions(angle, cosine, sine):
     """Set (n,) cosines and sines of the attitude angles (rad)."""
     for b in range(len(cosine)):
         cosine[b], sine[b] = cosine_and_sine(angle[b])
 
 
-@kernel
+@woven
 def _press_all(gap, way, before, gravity, course, loads, inner, outer):
     """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
 
@@ -228,7 +228,7 @@ def rub_balls(q, dq, m):
     return ring.rub_journal(at, squeezed, friction, change, m), _with_friction(pressed, m)
 
 
-@kernel
+@woven
 def _drive(dq, m):
     """How all but friction at races, in dq, changes the sliding speeds over the kick."""
     s, rb, h = m.s, m.d.ball_radius, m.s.kick
@@ -239,7 +239,7 @@ def _drive(dq, m):
         s.inner.driven[b] = h * (along - around)
 
 
-@kernel
+@woven
 def _rub(dq, share, m):
     """Add friction at both races to the balls' derivatives dq; share: of its moment in the push, as printed."""
     s, spun = m.s, m.d.ball_radius / m.d.inertia
@@ -250,7 +250,7 @@ def _rub(dq, share, m):
         turning[b] += spun * (f_o - f_i)
 
 
-@kernel
+@woven
 def _pressing(m):
     """`Total` (N, N m) of the forces of all balls on the ring but for friction."""
     fx, fy, at = 0.0, 0.0, m.s.balls
@@ -260,7 +260,7 @@ def _pressing(m):
     return Total(fx, fy, 0.0, 0.0)
 
 
-@kernel
+@woven
 def _with_friction(pressed, m):
     """`Total` (N, N m, W) on the ring that is `pressed` (Total) and rubbed."""
     fx, fy, moment, heat, at, s = pressed.fx, pressed.fy, 0.0, 0.0, m.s.balls, m.s

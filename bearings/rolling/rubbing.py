@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.variables import array
 
 
@@ -117,7 +117,7 @@ def over_ring(nx, ny, lever, moved):
     return moved.y * nx - moved.x * ny + lever * moved.spin
 
 
-@kernel
+@woven
 def _draw_lines(law, answers, moved, at, outer, inner):
     """Set `held` and `gain` (n,) of both races; law: a `Curve`; moved: `Moved` in the kick before."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
@@ -131,7 +131,7 @@ def _draw_lines(law, answers, moved, at, outer, inner):
         line_o = friction_line(outer.sliding[b], expected_o, w_oo, outer.normal[b], law)
         line_i = friction_line(inner.sliding[b], expected_i, w_ii, inner.normal[b], law)
         alone_o, alone_i = line_o.start - line_o.slope * e_o, line_i.start - line_i.slope * e_i
-        d_o, d_i = 1.0 + line_o.slope * w_oo, 1.0 + line_i.slope * w_ii
+        d_o, d_i = line_o.base + line_o.slope * w_oo, line_i.base + line_i.slope * w_ii
         c_o, c_i = line_o.slope * w_oi, line_i.slope * w_io
         inverse = 1.0 / (d_o * d_i - c_o * c_i)
         outer.held[b] = (d_i * alone_o - c_o * alone_i) * inverse
@@ -140,7 +140,7 @@ def _draw_lines(law, answers, moved, at, outer, inner):
         inner.gain[b] = d_o * line_i.slope * inverse
 
 
-@kernel
+@woven
 def _settle(answers, moved, at, outer, inner):
     """Set the friction (n,) at both races, add its heat to their `loss`; moved: `Moved` in this kick."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
@@ -157,7 +157,7 @@ def _settle(answers, moved, at, outer, inner):
         inner.loss[b] -= f_i * (inner.sliding[b] + 0.5 * ds_i)
 
 
-@kernel
+@woven
 def _turn_ring(h, count, around, at, inner):
     """`Moved`: what a kick of h (s) does to the ring, with `count` balls; around: `Around`."""
     push, bore = around.push, around.bore
@@ -194,7 +194,7 @@ def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
     return Moved(h * x, h * y, h * spin)
 
 
-@kernel
+@woven
 def rub(h, count, law, answers, around, at, outer, inner):
     """Friction of `count` balls at both races and of the journal in the bore over a kick of h (s).
 

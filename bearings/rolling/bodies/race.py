@@ -17,7 +17,7 @@ from touchdown.bearings.contact.pair import Place, slip
 from touchdown.bearings.contact.search import Disc, Outline, race_place
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.rubbing import RubbedRace
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
@@ -99,21 +99,6 @@ def forces_of(contacts, n):
 
 
 @kernel
-def find_on_circle(balls, ring, race, places):
-    """Set the `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion)."""
-    reach = race.side * balls.radius
-    for b in range(len(places.nx)):
-        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
-        distance = math.sqrt(dx * dx + dy * dy)
-        inverse = 1.0 / distance
-        places.nx[b] = dx * inverse
-        places.ny[b] = dy * inverse
-        places.indentation[b] = race.side * (distance + reach - race.radius)
-        places.second[b] = distance + reach
-        places.across[b] = 0.0
-
-
-@kernel
 def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
     """Set the places (m) of all `balls` on a race with a profile, turned by `angle` (rad), in `contacts`.
 
@@ -127,30 +112,64 @@ def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
         c.second[b], c.across[b] = at.second, at.across
 
 
-@kernel
-def squeeze_all(balls, ring, race, before, places, forces):
-    """Set the `forces` (n,) (N, N/m, W, m/s) of all `balls` at their `places` (n,), but for friction.
+class Squeezed(NamedTuple):
+    """A ball pressed against a race, before friction."""
 
-    ring: Motion of the race; before: `Before`.
+    normal: float  # N
+    stiffness: float  # N/m
+    loss: float  # W
+    sliding: float  # m/s
+
+
+@woven
+def _squeeze(b, balls, ring, place, race, before, last):
+    """Ball `b` at its `Place` on a race, `Squeezed`; last: its normal force (N) in the kick before."""
+    ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
+    sliding, rate = slip(ball, ring, place, race.side)
+    elastic, damping, stiffness = hertz(place.indentation, race.stiffness, race.damping)
+    faster_x = before.length * before.ax[b] - before.race_x
+    faster_y = before.length * before.ay[b] - before.race_y
+    others = race.side * (faster_x * place.nx + faster_y * place.ny) + before.answer * last
+    normal = damped_normal(elastic, damping, rate, before.answer, others)
+    loss = (normal - elastic) * (rate + 0.5 * (others - before.answer * normal))
+    return Squeezed(normal, stiffness, loss, sliding)
+
+
+@woven
+def press_circle(balls, ring, race, before, places, forces):
+    """Set the `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
+
+    before: `Before`. Forces (n,) (N, N/m, W, m/s) are those of pressing, friction comes later.
     """
     reach = race.side * balls.radius
     for b in range(len(places.nx)):
-        ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
-        nx, ny, indentation = places.nx[b], places.ny[b], places.indentation[b]
-        place = Place(nx, ny, indentation, reach, places.second[b], places.across[b])
-        sliding, rate = slip(ball, ring, place, race.side)
-        elastic, damping, stiff = hertz(place.indentation, race.stiffness, race.damping)
-        faster_x = before.length * before.ax[b] - before.race_x
-        faster_y = before.length * before.ay[b] - before.race_y
-        others = race.side * (faster_x * nx + faster_y * ny) + before.answer * forces.normal[b]
-        normal = damped_normal(elastic, damping, rate, before.answer, others)
-        forces.normal[b] = normal
-        forces.stiffness[b] = stiff
-        forces.loss[b] = (normal - elastic) * (rate + 0.5 * (others - before.answer * normal))
-        forces.sliding[b] = sliding
+        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        inverse = 1.0 / distance
+        second = distance + reach
+        place = Place(dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0)
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
+        places.nx[b], places.ny[b] = place.nx, place.ny
+        places.indentation[b], places.second[b], places.across[b] = place.indentation, second, 0.0
+        forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
+        forces.loss[b], forces.sliding[b] = pressed.loss, pressed.sliding
 
 
-@kernel
+@woven
+def press_curve(balls, ring, race, before, places, forces):
+    """Set the `forces` (n,) of all `balls` on any race, whose `places` were found (`find_on_curve`).
+
+    The rest as for `press_circle`.
+    """
+    reach, p = race.side * balls.radius, places
+    for b in range(len(p.nx)):
+        place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
+        forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
+        forces.loss[b], forces.sliding[b] = pressed.loss, pressed.sliding
+
+
+@woven
 def pressing(contacts, side, count):
     """The `Total` (N, N m) of normal forces that `count` balls on that `side` of a race exert on it."""
     fx, fy, moment = 0.0, 0.0, 0.0
@@ -162,7 +181,7 @@ def pressing(contacts, side, count):
     return Total(fx, fy, moment, 0.0)
 
 
-@kernel
+@woven
 def with_friction(pressed, contacts, count):
     """`Total` (N, N m, W) on a race that is `pressed` (Total) and rubbed by `count` balls."""
     fx, fy, moment, loss = pressed.fx, pressed.fy, pressed.moment, 0.0

@@ -17,17 +17,17 @@ from touchdown.bearings.rolling.ball_state import part, rounded
 from touchdown.bearings.rolling.bodies.race import (
     Before,
     Race,
-    find_on_circle,
     find_on_curve,
     forces_of,
     places_of,
+    press_circle,
+    press_curve,
     pressing,
-    squeeze_all,
     with_friction,
 )
 from touchdown.bearings.rolling.bodies.state import ANGLE, SPIN, VX, VY, X, Y, balls_of
 from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 
 
@@ -49,18 +49,19 @@ def press_races(q, dq, m):
     _accelerate(balls, dq, m)
 
 
-@kernel
+@woven
 def _one_race(balls, body, angle, race, before, profile, starts, contacts, m):
     """All balls press the race of `body` (Motion), turned by `angle` (rad)."""
     n = rounded(m.p.balls.count)
+    places, forces = places_of(contacts, n), forces_of(contacts, n)
     if m.d.searched == 1:
         find_on_curve(balls, body, angle, race, profile, starts, m.s.search, contacts)
+        press_curve(balls, body, race, before, places, forces)
     else:
-        find_on_circle(balls, body, race, places_of(contacts, n))
-    squeeze_all(balls, body, race, before, places_of(contacts, n), forces_of(contacts, n))
+        press_circle(balls, body, race, before, places, forces)
 
 
-@kernel
+@woven
 def _accelerate(balls, dq, m):
     """Derivatives dq (m.n,) of the `balls` that both races press, and under gravity."""
     d, gravity, inner, outer = m.d, m.p.gravity, m.s.inner, m.s.outer
@@ -102,7 +103,7 @@ def rub_races(q, dq, m):
     return ring.rub_journal(at, squeezed, friction, change, m), on_inner, on_outer
 
 
-@kernel
+@woven
 def _drive(dq, m):
     """How all but friction at races, in dq, changes the sliding speeds over the kick; and the angle between."""
     s, inner, outer, rb, h = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick
@@ -115,7 +116,7 @@ def _drive(dq, m):
         s.cross[b] = outer.nx[b] * inner.nx[b] + outer.ny[b] * inner.ny[b]
 
 
-@kernel
+@woven
 def _rub(dq, m):
     """Add friction at both races to the balls' derivatives dq."""
     inner, outer = m.s.inner, m.s.outer
