@@ -96,7 +96,7 @@ class Parameters(RollingParameters):
 
     interface: Interface = group(Interface, tolerance=2e-5)
     micro_step: float = real(
-        2e-6,
+        2.5e-6,
         "s",
         "longest step inside, of the velocity Verlet method; 0: adaptive linearly implicit steps of the "
         "error interface.tolerance",
@@ -193,7 +193,7 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     force, indentation = largest_pressed(m)
     watch_balls(force, indentation, m)
-    side, overlap, _ = largest(m.s.side, m.p.balls)
+    side, overlap, _ = largest(m.s.side, m.p.balls.count, m.p.balls.rows)
     watch_contacts(side, overlap, m.o.neighbours)
 
 
@@ -204,7 +204,7 @@ def report(q, m):
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
     o.balls.force, o.balls.indentation = largest_pressed(m)
-    o.neighbours.force, o.neighbours.indentation, _ = largest(m.s.side, p.balls)
+    o.neighbours.force, o.neighbours.indentation, _ = largest(m.s.side, count, p.balls.rows)
     moving = d.mass * d.pitch_radius**2
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
     kinetic, height, pressed, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0

@@ -32,7 +32,7 @@ class Touch(NamedTuple):
 
 @kernel
 def place_in_bore(journal, ring, journal_radius, clearance):
-    """`Place` (m) of a journal of `journal_radius` (m) in the bore of `ring` (Motion), wider by `clearance`.
+    """`Place` (m) of a journal of `journal_radius` in the bore of `ring` (Motion), wider by `clearance`.
 
     In the very middle it has no direction, and n is zero.
     """
@@ -54,8 +54,8 @@ def touch_of(press, indentation):
 def touch(journal, ring, journal_radius, clearance, law, friction):
     """Contact of a journal of `journal_radius` (m) with the bore of `ring`, wider by `clearance` (m).
 
-    journal, ring: Motion (m, m/s, rad/s); law, friction: records. Returns a `Touch` (N, N m, m, W); the force
-    on the ring is the opposite one.
+    journal, ring: Motion (m, m/s, rad/s); law, friction: records. Returns a `Touch` (N, N m, m, W); the
+    force on the ring is the opposite one.
     """
     place = place_in_bore(journal, ring, journal_radius, clearance)
     if place.indentation <= 0.0:

@@ -6,7 +6,8 @@ implicitly, with the mean of the force over the kick. A contact's relative speed
 
     ds = e + w f        e: by all other forces        w = h J M^-1 J': the answer to its own force f
 
-and the force is a line through its value at the speed s0 where the kick is expected to end (`friction_line`):
+and the force is a line through its value at the speed s0 where the kick is expected to end
+(`friction_line`):
 
     f = F(s0) + F'(s0) (s + theta ds - s0)        theta = (3 + z)/(6 + z)        z = -w F'(s0)
 
@@ -82,7 +83,8 @@ def friction_line(sliding, expected, answer, normal, law):
     """Friction of a contact under the force `normal` (N) over a kick, as a `Line`.
 
     sliding: speed before the kick (m/s); expected: after it, without friction; answer: as `Kick.across`;
-    law: a `Curve`. The kick is expected to end where a friction that rises linearly to its peak would take it.
+    law: a `Curve`. The kick is expected to end where a friction that rises linearly to its peak would
+    take it.
     """
     reach, size = answer * normal, abs(expected)
     end = max(size / (1.0 + reach * steepest(law)), size - reach * highest(law))

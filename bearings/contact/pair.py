@@ -62,8 +62,9 @@ def slip(first, second, place, side):
 def kick_of(h, answers, first, second, place, side, last):
     """The `Kick` of h (s) at `place`, for bodies whose accelerations are about those of the kick before.
 
-    answers: of the sliding speed and of the approach (1/kg) to the contact's own forces; first, second: Motion
-    with accelerations (m/s2, rad/s2) for velocities; last: (friction, normal force) (N) of the kick before.
+    answers: of the sliding speed and of the approach (1/kg) to the contact's own forces; first, second:
+    Motion with accelerations (m/s2, rad/s2) for velocities; last: (friction, normal force) (N) of the kick
+    before.
     """
     across, along = h * answers[0], h * answers[1]
     sliding, rate = slip(first, second, place, side)

@@ -14,7 +14,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.modelkit.integrators import verlet
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import inlined, woven
 from touchdown.modelkit.variables import array, real
 
 STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step
@@ -29,7 +29,7 @@ class KickMemory:
     before: tuple = array(MOST_STATES)  # derivative of the state then
 
 
-@kernel
+@woven
 def forecast(trial, dq, h, kick, m):
     """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s).
 

@@ -16,7 +16,7 @@ from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.contact.pair import INSIDE, kick_of, rubbed, squeeze
 from touchdown.bearings.rolling.pitch_circle import Gap
 from touchdown.bearings.rolling.rubbing import Bore, Moved, Push
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
 
@@ -66,21 +66,21 @@ def ring_motion(q):
 
 @kernel
 def journal_on_ring(q, m):
-    """The journal's `Touch` with the ring (N, N m, m), by the laws as they stand, remembered for `watch`."""
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`."""
     p, journal = m.p, seat.journal_motion(q)
     t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction)
     note(m.s.ring, t)
     return t
 
 
-@kernel
+@woven
 def moved_before(m):
-    """`Moved` (m/s, rad/s): what a kick as long as this one would do to the ring at its last acceleration."""
+    """`Moved` (m/s, rad/s): what a kick as long as this one does to the ring at its last acceleration."""
     h, a = m.s.kick, m.s.before
     return Moved(h * a[RVX], h * a[RVY], h * a[RW])
 
 
-@kernel
+@woven
 def meet_journal(q, m):
     """(`Place` of the journal in the bore (m), its `Kick`, the ring answering alone, its `Squeeze`).
 
@@ -95,7 +95,7 @@ def meet_journal(q, m):
     return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick)
 
 
-@kernel
+@woven
 def bore_line(at, kick, squeezed, m):
     """`Bore`: the journal's friction `at` a place of the bore over a `kick`, if `squeezed`."""
     if squeezed.normal <= 0.0:
@@ -105,7 +105,7 @@ def bore_line(at, kick, squeezed, m):
     return Bore(at.nx, at.ny, at.second, line.start / line.base, line.slope / line.base)
 
 
-@kernel
+@woven
 def push_on(at, squeezed, balls, m):
     """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
     p, n = m.p, squeezed.normal
@@ -113,7 +113,7 @@ def push_on(at, squeezed, balls, m):
     return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
 
 
-@kernel
+@woven
 def rub_journal(at, squeezed, friction, change, m):
     """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
 
@@ -155,7 +155,7 @@ def accelerate(q, dq, m, journal, balls):
     dq[RW] = (journal.ring_moment + balls.moment) / m.p.ring.inertia
 
 
-@kernel
+@woven
 def drift(trial, q, mid, h):
     """The ring's position in the state `trial`: that in q and h (s) times its velocity in `mid`."""
     trial[RX] = q[RX] + h * mid[RVX]

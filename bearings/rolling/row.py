@@ -78,7 +78,7 @@ def place(q, count, angles):
         q[BALLS + b + count], q[BALLS + b + 2 * count] = 0.0, 0.0
 
 
-@kernel
+@woven
 def drift(trial, q, mid, h, m):
     """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     seat.drift(trial, q, mid, h, m)
@@ -135,7 +135,7 @@ def _press_all(gap, way, before, gravity, course, loads, inner, outer):
         inner.loss[b], outer.loss[b] = ball.heat, 0.0
 
 
-@kernel
+@woven
 def press_balls(q, dq, m):
     """Both races press all balls in the state q; sets the balls' derivatives in dq, gravity included."""
     s, at, count = m.s, m.s.balls, m.p.balls.count
@@ -175,7 +175,9 @@ def neighbour_forces(q, dq, m):
         following = Motion(0.0, 0.0, lever * orbit[k], 0.0, spin[k])
         this = Motion(0.0, 0.0, lever * orbit[b], 0.0, spin[b])
         place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
-        c = press(following, this, place, OUTSIDE, d.ball_contact, d.ball_friction, _kick(b, k, place, lever, m))
+        c = press(
+            following, this, place, OUTSIDE, d.ball_contact, d.ball_friction, _kick(b, k, place, lever, m)
+        )
         note(m.s.side, b, c, place.indentation, d.ball_contact)
         push = c.normal * lever / (rm * rm * d.mass)
         faster[b] -= push
@@ -190,8 +192,8 @@ def neighbour_forces(q, dq, m):
 def _kick(b, k, place, lever, m):
     """The `Kick` of balls `b` and `k`, the next, whose chord has a `lever` (m) about the middle.
 
-    The answer along the chord is doubled: the neighbours on either side push as they did in the kick before,
-    and a row of balls under much damping would else swing from kick to kick.
+    The answer along the chord is doubled: the neighbours on either side push as they did in the kick
+    before, and a row of balls under much damping would else swing from kick to kick.
     """
     d, side = m.d, m.s.side
     faster, turning = part(m.s.before, ORBIT, m), part(m.s.before, SPIN, m)
@@ -202,7 +204,7 @@ def _kick(b, k, place, lever, m):
     return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
 
 
-@kernel
+@woven
 def rub_balls(q, dq, m):
     """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
 
@@ -215,14 +217,23 @@ def rub_balls(q, dq, m):
     at, kick, squeezed = ring.meet_journal(q, m)
     pressed = _pressing(m)
     answers = Answers(
-        h * (1.0 + share) / d.mass, h * (1.0 - share) / d.mass, h * d.ball_radius * d.ball_radius / d.inertia
+        h * (1.0 + share) / d.mass,
+        h * (1.0 - share) / d.mass,
+        h * d.ball_radius * d.ball_radius / d.inertia,
     )
     around = Around(
         ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
     )
     inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
     friction, change = rub(
-        h, count, curve(d.race_friction), answers, around, inner, rubbed_of(s.outer, n), rubbed_of(s.inner, n)
+        h,
+        count,
+        curve(d.race_friction),
+        answers,
+        around,
+        inner,
+        rubbed_of(s.outer, n),
+        rubbed_of(s.inner, n),
     )
     _rub(dq, share, m)
     return ring.rub_journal(at, squeezed, friction, change, m), _with_friction(pressed, m)
@@ -241,7 +252,7 @@ def _drive(dq, m):
 
 @woven
 def _rub(dq, share, m):
-    """Add friction at both races to the balls' derivatives dq; share: of its moment in the push, as printed."""
+    """Add friction at both races to the balls' derivatives dq; share: of its moment, as printed."""
     s, spun = m.s, m.d.ball_radius / m.d.inertia
     faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
     for b in range(len(faster)):
@@ -273,7 +284,7 @@ def _with_friction(pressed, m):
     return Total(fx, fy, moment, heat)
 
 
-@kernel
+@woven
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s

@@ -1,8 +1,9 @@
 """Friction of all balls at both races, and of the journal in the bore, over a kick of the leapfrog method.
 
 A ball's two contacts share its velocity and its spin, all inner contacts and the bore share the ring's: so
-they are solved together (`bearings.contact.kick` for one contact alone). With f_o, f_i the friction on a ball
-along t, e the changes of the sliding speeds by all other forces, and Delta the ring's change of velocity,
+they are solved together (`bearings.contact.kick` has one contact alone). With f_o, f_i the friction on a
+ball along t, e the changes of the sliding speeds by all other forces, and Delta the ring's change of
+velocity,
 
     ds_o = e_o + w_oo f_o + w_oi f_i
     ds_i = e_i + w_io f_o + w_ii f_i - J . Delta            J = (t_x, t_y, lever)
@@ -21,7 +22,7 @@ from typing import NamedTuple
 
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import inlined, woven
 from touchdown.modelkit.variables import array
 
 

@@ -36,17 +36,14 @@ def note_apart(contacts, b):
 
 
 @kernel
-def largest(contacts, balls):
-    """(Normal force on one of a row (N), indentation (m), ball) of the most loaded contact; 0: none.
-
-    balls: the record of `BallSet`.
-    """
+def largest(contacts, count, rows):
+    """(Normal force on one of `rows` (N), indentation (m), ball) of the most loaded of `count`; 0: none."""
     force, indentation, ball = 0.0, 0.0, 0
-    for b in range(balls.count):
+    for b in range(count):
         if contacts.normal[b] > force:
             force, ball = contacts.normal[b], b
         indentation = max(indentation, contacts.indentation[b])
-    return force / balls.rows, indentation, ball
+    return force / rows, indentation, ball
 
 
 @kernel

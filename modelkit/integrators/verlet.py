@@ -4,7 +4,7 @@
 
 Undamped contacts neither gain nor lose energy in the long run (Hairer, Lubich, Wanner, Geometric Numerical
 Integration, 2nd ed., section I.1.4). Between two drifts the velocities get one kick, a' over half of either
-step; a' is evaluated with those before it, and a model may take what depends on velocity implicitly over it.
+step; a' is evaluated with those before it, and a model may take what depends on velocity implicitly.
 
 The step is bounded from above, and by the fastest contact: h w <= `RESOLUTION`, w its angular frequency
 (the method is stable up to 2).
@@ -36,9 +36,9 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
     rhs(t, q, dq, m) and observe(t, q, m) as for `dopri.integrate`. drift(trial, q, v, h, m) sets each
     position in `trial` to that in q plus h (s) times its velocity in v. forecast(trial, dq, h, kick, m) may
     add h/2 dq to velocities in `trial` that are evaluated at the end of the step, not in its middle, and
-    notes how long (s) the kick will be that follows: h, but h/2 at the end of the span, as at its beginning.
+    notes how long (s) the kick will be that follows: h, but h/2 at the end of the span, as at its start.
     fastest(m) is the largest angular frequency at the last evaluation (rad/s). work: `dopri.scratch`,
-    of which four rows (n,) are used.
+    of which four rows (n,) are used; the first holds rhs at the start.
     Returns (status, number of evaluations of rhs).
     """
     t = 0.0
@@ -47,7 +47,6 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
     before = longest
     f, f_new = work[0], work[1]  # dq at both ends of a step
     half, trial = work[2], work[3]  # q with the velocities of the middle; trial state
-    rhs(t, q, f, m)
     while t < span:
         steps += 1
         if steps > MOST_STEPS:
@@ -77,4 +76,4 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
         for i in range(n):
             f[i] = f_new[i]
         observe(t, q, m)
-    return status, steps + 1
+    return status, steps

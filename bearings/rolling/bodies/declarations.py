@@ -29,7 +29,7 @@ class BallBodiesParameters(RollingParameters):
     """What both detailed models share."""
 
     micro_step: float = real(
-        2e-6,
+        2.5e-6,
         "s",
         "longest step inside, of the velocity Verlet method; 0: adaptive Dormand-Prince steps of the "
         "error interface.tolerance",

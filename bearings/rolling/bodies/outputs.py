@@ -17,10 +17,10 @@ from touchdown.modelkit.kernel import kernel
 @kernel
 def watch(m, sides):
     """Peaks (N, m), after a micro-step; `sides` is the report of the cage's or neighbours' contacts."""
-    s, o, balls = m.s, m.o, m.p.balls
-    inner, sunk_in, first = largest(s.inner, balls)
-    outer, sunk_out, second = largest(s.outer, balls)
-    side, overlap, _ = largest(s.side, balls)
+    s, o, count, rows = m.s, m.o, m.p.balls.count, m.p.balls.rows
+    inner, sunk_in, first = largest(s.inner, count, rows)
+    outer, sunk_out, second = largest(s.outer, count, rows)
+    side, overlap, _ = largest(s.side, count, rows)
     watch_contacts(inner, sunk_in, o.inner)
     watch_contacts(outer, sunk_out, o.outer)
     watch_contacts(side, overlap, sides)
@@ -41,9 +41,9 @@ def approach(m):
 
 
 @kernel
-def state_contacts(report, contacts, balls):
-    """Largest force (N) and indentation (m) now, in `report` (BallContacts); balls: a `BallSet` record."""
-    report.force, report.indentation, _ = largest(contacts, balls)
+def state_contacts(report, contacts, count, rows):
+    """Largest force (N) and indentation (m) of `count` balls now, in `report` (BallContacts)."""
+    report.force, report.indentation, _ = largest(contacts, count, rows)
 
 
 @kernel
@@ -55,8 +55,8 @@ def report(q, m, neighbours):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
-    state_contacts(o.inner, s.inner, p.balls)
-    state_contacts(o.outer, s.outer, p.balls)
+    state_contacts(o.inner, s.inner, count, p.balls.rows)
+    state_contacts(o.outer, s.outer, count, p.balls.rows)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation = approach(m)
     kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0

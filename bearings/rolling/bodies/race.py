@@ -137,7 +137,7 @@ def _squeeze(b, balls, ring, place, race, before, last):
 
 @woven
 def press_circle(balls, ring, race, before, places, forces):
-    """Set the `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
+    """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
 
     before: `Before`. Forces (n,) (N, N/m, W, m/s) are those of pressing, friction comes later.
     """

@@ -3,8 +3,8 @@
 A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
 each with its own stiffness and with friction. Races are circles, or curves where a profile says so.
 
-What acts on the balls is found in two rounds: the races press (`press_races`), then, when all else is known,
-they rub (`rub_races`).
+What acts on the balls is found in two rounds: the races press (`press_races`), then, when all else is
+known, they rub (`rub_races`).
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from touchdown.bearings.rolling.bodies.race import (
 )
 from touchdown.bearings.rolling.bodies.state import ANGLE, SPIN, VX, VY, X, Y, balls_of
 from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
-from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.kernel import woven
 from touchdown.modelkit.ports import Motion
 
 
-@kernel
+@woven
 def press_races(q, dq, m):
     """Both races press all balls in the state q; sets the balls' derivatives in dq, gravity included."""
     p, d, s = m.p, m.d, m.s
@@ -77,7 +77,7 @@ def _accelerate(balls, dq, m):
         alpha[b] = 0.0
 
 
-@kernel
+@woven
 def rub_races(q, dq, m):
     """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
 
@@ -94,7 +94,14 @@ def rub_races(q, dq, m):
     )
     inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
     friction, change = rub(
-        h, count, curve(d.race_friction), answers, around, inner, rubbed_of(s.outer, n), rubbed_of(s.inner, n)
+        h,
+        count,
+        curve(d.race_friction),
+        answers,
+        around,
+        inner,
+        rubbed_of(s.outer, n),
+        rubbed_of(s.inner, n),
     )
     _rub(dq, m)
     on_inner = with_friction(pressed, s.inner, count)
@@ -105,7 +112,7 @@ def rub_races(q, dq, m):
 
 @woven
 def _drive(dq, m):
-    """How all but friction at races, in dq, changes the sliding speeds over the kick; and the angle between."""
+    """How all but friction at races, in dq, changes the sliding speeds over the kick."""
     s, inner, outer, rb, h = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick
     ax, ay, alpha = part(dq, VX, m), part(dq, VY, m), part(dq, SPIN, m)
     for b in range(len(ax)):
