@@ -53,9 +53,8 @@ LAWS = {
 every_side = pytest.mark.parametrize("side", SIDES.values(), ids=SIDES)
 every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 every_friction = pytest.mark.parametrize("friction", FRICTIONS.values(), ids=FRICTIONS)
-every_kick = pytest.mark.parametrize(
-    "h", [0.0, 1e-7, 2.5e-6, 1e-4], ids=["still", "0.1us", "2.5us", "100us"]
-)
+LENGTHS = {"still": 0.0, "0.1us": 1e-7, "2.5us": 2.5e-6, "100us": 1e-4}  # s
+every_kick = pytest.mark.parametrize("h", LENGTHS.values(), ids=LENGTHS)
 
 
 class Pair(NamedTuple):
