@@ -38,7 +38,7 @@ from touchdown.bearings.rolling.bodies.state import (
     ring_weights,
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
-from touchdown.bearings.rolling.micro_step import leapfrog
+from touchdown.bearings.rolling.micro_step import book, leapfrog
 from touchdown.bearings.rolling.side import stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
@@ -93,17 +93,19 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, dq, m)
-    rubbing = cage.pocket_contacts(q, dq, m)
+    cage.pocket_contacts(q, dq, m)
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + cage.rubbing(q, dq, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
 
 
 @kernel

@@ -45,8 +45,8 @@ from touchdown.bearings.rolling.bodies.state import (
     ring_weights,
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
-from touchdown.bearings.rolling.micro_step import leapfrog
-from touchdown.bearings.rolling.side import note, note_apart, stored
+from touchdown.bearings.rolling.micro_step import book, leapfrog
+from touchdown.bearings.rolling.side import heat_of, note, note_apart, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -94,10 +94,9 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 @kernel
 def _neighbour_contacts(q, dq, m):
-    """Each ball in q against the next; adds to the balls' derivatives in dq, returns the heat (W)."""
+    """Each ball in q against the next; adds to the balls' derivatives in dq."""
     p, d = m.p, m.d
     count, apart = p.balls.count, 2.0 * d.ball_radius
-    loss = 0.0
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):
         k = b + 1 if b + 1 < count else 0
@@ -112,11 +111,9 @@ def _neighbour_contacts(q, dq, m):
         this, following = ball_motion(q, b, m), ball_motion(q, k, m)
         kick = _kick(b, k, at, m)
         c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, kick)
-        note(m.s.side, b, c, at.indentation, d.ball_contact)
+        note(m.s.side, b, c, at, d.ball_contact)
         push(dq, k, c.fx, c.fy, c.first_moment, m)
         push(dq, b, -c.fx, -c.fy, c.second_moment, m)
-        loss += c.loss
-    return loss
 
 
 @kernel
@@ -134,20 +131,34 @@ def _kick(b, k, place, m):
 
 
 @kernel
+def _rubbing(dq, m):
+    """Heat (W) between neighbours over the kick whose accelerations are in dq."""
+    loss, count = 0.0, m.p.balls.count
+    for b in range(count):
+        if m.s.side.normal[b] > 0.0:
+            k = b + 1 if b + 1 < count else 0
+            this, following = ball_motion(dq, b, m), ball_motion(dq, k, m)
+            loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
+    return loss
+
+
+@kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, dq, m)
-    rubbing = _neighbour_contacts(q, dq, m)
+    _neighbour_contacts(q, dq, m)
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + _rubbing(dq, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
 
 
 @kernel

@@ -60,7 +60,7 @@ from touchdown.bearings.rolling.declarations import (
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.micro_step import KickMemory, leapfrog, resolved_step
+from touchdown.bearings.rolling.micro_step import KickMemory, book, leapfrog, resolved_step
 from touchdown.bearings.rolling.pitch_circle import RollingResistance
 from touchdown.bearings.rolling.row import (
     MOST_STATES,
@@ -74,6 +74,7 @@ from touchdown.bearings.rolling.row import (
     place,
     press_balls,
     rub_balls,
+    rubbing,
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
 from touchdown.bearings.rolling.rubbing import RubbedRace
@@ -164,6 +165,7 @@ class Hidden(RollingMemory, KickMemory):
     inner: RubbedRace = group(RubbedRace)
     outer: RubbedRace = group(RubbedRace)
     side: SideContacts = group(SideContacts)
+    lever: tuple = array(MOST_BALLS)  # m, of the chord between neighbours that touch, about the middle
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Hidden)
@@ -174,17 +176,19 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
     press_balls(q, dq, m)
-    rubbing = neighbour_forces(q, dq, m)
+    neighbour_forces(q, dq, m)
     j, balls = rub_balls(q, dq, m)
     ring.accelerate(q, dq, m, j, balls)
-    dq[ring.LOSS] = j.loss + balls.loss + rubbing
+    dq[ring.LOSS] = j.loss + balls.loss + rubbing(dq, m)
     return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
 
 
 @kernel

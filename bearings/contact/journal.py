@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings.contact.kick import STILL
-from touchdown.bearings.contact.pair import INSIDE, Place, press, slip
+from touchdown.bearings.contact.pair import INSIDE, Place, heat, press, slip
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import real
 
@@ -44,10 +44,10 @@ def place_in_bore(journal, ring, journal_radius, clearance):
 
 
 @kernel
-def touch_of(press, indentation):
-    """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m)."""
+def touch_of(press, indentation, loss):
+    """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m); loss: W."""
     c = press
-    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, c.loss)
+    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, loss)
 
 
 @kernel
@@ -61,7 +61,8 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
     if place.indentation <= 0.0:
         _, rate = slip(journal, ring, place, INSIDE)
         return Touch(0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
-    return touch_of(press(journal, ring, place, INSIDE, law, friction, STILL), place.indentation)
+    pressed = press(journal, ring, place, INSIDE, law, friction, STILL)
+    return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0))
 
 
 @dataclass(frozen=True)

@@ -43,8 +43,9 @@ class Press(NamedTuple):
     second_moment: float
     normal: float  # N
     tangential: float  # N, on the first body along t
-    rate: float  # m/s, of the indentation
-    loss: float  # W, heat
+    sliding: float  # m/s, of the first body over the second along t, before the kick
+    rate: float  # m/s, of the indentation, before the kick
+    damped: float  # N, what of the normal force is damping
 
 
 @woven
@@ -77,7 +78,7 @@ class Squeeze(NamedTuple):
     sliding: float  # m/s, of the first body over the second along t, before the kick
     rate: float  # m/s, of the indentation, before the kick
     normal: float  # N
-    loss: float  # W, heat of damping
+    damped: float  # N, what of it is damping
 
 
 @kernel
@@ -86,16 +87,12 @@ def squeeze(first, second, place, side, law, kick):
     sliding, rate = slip(first, second, place, side)
     elastic, damping = elastic_and_damping(place.indentation, law)
     normal = damped_normal(elastic, damping, rate, kick.along, kick.rate)
-    middle = rate + 0.5 * (kick.rate - kick.along * normal)
-    return Squeeze(sliding, rate, normal, (normal - elastic) * middle)
+    return Squeeze(sliding, rate, normal, normal - elastic)
 
 
 @kernel
-def rubbed(place, side, squeezed, tangential, change):
-    """The `Press` of bodies that are `squeezed` and rub with a force `tangential` (N).
-
-    change: of the sliding speed over the kick (m/s); what friction does in it is exact.
-    """
+def rubbed(place, side, squeezed, tangential):
+    """The `Press` of bodies that are `squeezed` and rub with a force `tangential` (N)."""
     along = -side * squeezed.normal
     return Press(
         along * place.nx - tangential * place.ny,
@@ -104,9 +101,19 @@ def rubbed(place, side, squeezed, tangential, change):
         place.across * along - place.second * tangential,
         squeezed.normal,
         tangential,
+        squeezed.sliding,
         squeezed.rate,
-        squeezed.loss - tangential * (squeezed.sliding + 0.5 * change),
+        squeezed.damped,
     )
+
+
+@woven
+def heat(press, sliding, rate):
+    """Heat (W) of a `Press` over a kick that changes its sliding speed and its rate by so much (m/s).
+
+    The mean force does its work at the mean speed: to the kinetic energy of the bodies this is exact.
+    """
+    return press.damped * (press.rate + 0.5 * rate) - press.tangential * (press.sliding + 0.5 * sliding)
 
 
 @kernel
@@ -114,9 +121,8 @@ def press(first, second, place, side, law, friction, kick):
     """Contact of two bodies (Motion) at `place`, for an indentation above zero, over a `Kick`.
 
     side: INSIDE or OUTSIDE; law, friction: records. Friction is the law's, -mu N (2.39). Returns a `Press`
-    (N, N m, m/s, W).
+    (N, N m, m/s).
     """
     s = squeeze(first, second, place, side, law, kick)
     line = friction_line(s.sliding, s.sliding + kick.sliding, kick.across, s.normal, curve(friction))
-    tangential = force_on(line, kick)
-    return rubbed(place, side, s, tangential, kick.sliding + kick.across * tangential)
+    return rubbed(place, side, s, force_on(line, kick))

@@ -50,13 +50,13 @@ class Gap(NamedTuple):
 
 
 class Squeezed(NamedTuple):
-    """What happens at one ball but for friction: loads in N, heat in W."""
+    """What happens at one ball but for friction, in N."""
 
     force: float  # between the rings
     elastic: float
     outer: float  # on the outer race, with what the ball's orbit adds
     held: float  # of the narrowing gap and of rolling resistance on the ball, against t
-    heat: float
+    drag: float  # the latter alone
 
 
 class Pressed(NamedTuple):
@@ -127,19 +127,18 @@ def rolling_drag(speed):
 
 @woven
 def squeeze_ball(at, gap, c, s, orbit, way, along, others):
-    """`Squeezed` (N, W) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
+    """`Squeezed` (N) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
 
     along (s/kg), others (m/s): as for `bearings.contact.kick.damped_normal`.
     """
     depth = max(at.indentation, 0.0)
     elastic = way.stiffness * (depth * math.sqrt(depth))
     force = damped_normal(elastic, way.damping * depth, at.rate, along, others)
-    middle = at.rate + 0.5 * (others - along * force)
     outer = force + at.radius * way.mass * orbit * orbit
     v = at.radius * orbit
     drag = way.resistance * (force + outer) * rolling_drag(v)
     held = elastic * (gap.ey * c - gap.ex * s) / at.radius + drag
-    return Squeezed(force, elastic, outer, held, (force - elastic) * middle + drag * v)
+    return Squeezed(force, elastic, outer, held, drag)
 
 
 @kernel
@@ -152,7 +151,9 @@ def between_races(gap, c, s, orbit, spin, rm, m):
     ball = squeeze_ball(at, gap, c, s, orbit, way, 0.0, 0.0)
     inner = coefficient(at.inner, d.race_friction) * ball.force
     outer = coefficient(at.outer, d.race_friction) * ball.outer
-    heat = ball.heat + inner * at.inner + outer * at.outer
+    heat = (
+        (ball.force - ball.elastic) * at.rate + inner * at.inner + outer * at.outer + ball.drag * rm * orbit
+    )
     return Pressed(ball.force, ball.elastic, at.indentation, inner, outer, ball.held, at.lever, heat)
 
 

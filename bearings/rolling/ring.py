@@ -13,9 +13,9 @@ from touchdown.bearings.contact.friction import curve
 from touchdown.bearings.contact.journal import note, place_in_bore, touch, touch_of, watch_contact
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.contact.laws import elastic_energy
-from touchdown.bearings.contact.pair import INSIDE, kick_of, rubbed, squeeze
+from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
 from touchdown.bearings.rolling.pitch_circle import Gap
-from touchdown.bearings.rolling.rubbing import Bore, Moved, Push
+from touchdown.bearings.rolling.rubbing import Bore, Moved, Push, over_ring
 from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
@@ -114,14 +114,18 @@ def push_on(at, squeezed, balls, m):
 
 
 @woven
-def rub_journal(at, squeezed, friction, change, m):
+def rub_journal(at, squeezed, friction, moved, m):
     """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
 
-    friction: N, along t; change: of the sliding speed over the kick (m/s).
+    friction: N, along t; moved: what the kick does to the ring (`Moved`).
     """
-    t = touch_of(rubbed(at, INSIDE, squeezed, friction, change), at.indentation)
-    note(m.s.ring, t)
-    m.s.rubbed = friction
+    s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
+    ahead = over_ring(at.nx, at.ny, at.second, moved)
+    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -(moved.x * at.nx + moved.y * at.ny)))
+    note(s.ring, t)
+    s.rubbed = friction
+    elastic = squeezed.normal - squeezed.damped
+    s.brake.jx, s.brake.jy, s.brake.jm = t.fx + elastic * at.nx, t.fy + elastic * at.ny, t.journal_moment
     return t
 
 

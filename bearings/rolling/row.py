@@ -18,7 +18,7 @@ from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
-from touchdown.bearings.rolling.side import note, note_apart
+from touchdown.bearings.rolling.side import heat_of, note, note_apart
 from touchdown.modelkit.angles import cosine_and_sine
 from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
@@ -40,6 +40,9 @@ class RaceBalls:
     cross: tuple = array(MOST_BALLS)  # of the directions along both races: they are one
     radius: tuple = array(MOST_BALLS)  # m, on which the ball's centre runs
     along: tuple = array(MOST_BALLS)  # m/s2, along the race, but for friction and neighbours
+    rate: tuple = array(MOST_BALLS)  # m/s, at which the rings approach, before the kick
+    damped: tuple = array(MOST_BALLS)  # N, what of the force between the rings is damping
+    drag: tuple = array(MOST_BALLS)  # N, rolling resistance
 
 
 class Course(NamedTuple):
@@ -68,6 +71,9 @@ class Loads(NamedTuple):
     cross: object
     radius: object  # m
     along: object  # m/s2
+    rate: object  # m/s
+    damped: object  # N
+    drag: object  # N
 
 
 @kernel
@@ -102,7 +108,7 @@ def raceway(m):
 def _loads_of(s, n):
     """`Loads` (n,) as views of `s` (RaceBalls)."""
     ways = s.lever[:n], s.cross[:n], s.radius[:n]
-    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.along[:n])
+    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.along[:n], s.rate[:n], s.damped[:n], s.drag[:n])
 
 
 @woven
@@ -132,7 +138,7 @@ def _press_all(gap, way, before, gravity, course, loads, inner, outer):
         loads.along[b] = -ball.held * by_mass - gravity * c
         inner.normal[b], outer.normal[b] = ball.force, ball.outer
         inner.sliding[b], outer.sliding[b] = -at.inner, -at.outer
-        inner.loss[b], outer.loss[b] = ball.heat, 0.0
+        loads.rate[b], loads.damped[b], loads.drag[b] = at.rate, ball.force - ball.elastic, ball.drag
 
 
 @woven
@@ -156,12 +162,10 @@ def press_balls(q, dq, m):
 
 @kernel
 def neighbour_forces(q, dq, m):
-    """Each ball in the state q against the next one; adds to the derivatives dq, returns the heat (W)."""
+    """Each ball in the state q against the next one; adds to the derivatives dq."""
     p, d, at = m.p, m.d, m.s.balls
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
-    angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
-    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
-    heat = 0.0
+    angle, faster, turning = part(q, ANGLE, m), part(dq, ORBIT, m), part(dq, SPIN, m)
     for b in range(count):
         k = b + 1 if b + 1 < count else 0
         between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
@@ -172,20 +176,18 @@ def neighbour_forces(q, dq, m):
         square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
         lever = rm * math.sqrt(1.0 - square)
         # the bodies that touch: along the chord, and by their spins
-        following = Motion(0.0, 0.0, lever * orbit[k], 0.0, spin[k])
-        this = Motion(0.0, 0.0, lever * orbit[b], 0.0, spin[b])
+        following, this = _along_chord(q, k, lever, m), _along_chord(q, b, lever, m)
         place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
         c = press(
             following, this, place, OUTSIDE, d.ball_contact, d.ball_friction, _kick(b, k, place, lever, m)
         )
-        note(m.s.side, b, c, place.indentation, d.ball_contact)
+        note(m.s.side, b, c, place, d.ball_contact)
+        m.s.lever[b] = lever
         push = c.normal * lever / (rm * rm * d.mass)
         faster[b] -= push
         faster[k] += push
         turning[b] += c.second_moment / d.inertia
         turning[k] += c.first_moment / d.inertia
-        heat += c.loss
-    return heat
 
 
 @kernel
@@ -195,13 +197,29 @@ def _kick(b, k, place, lever, m):
     The answer along the chord is doubled: the neighbours on either side push as they did in the kick
     before, and a row of balls under much damping would else swing from kick to kick.
     """
-    d, side = m.d, m.s.side
-    faster, turning = part(m.s.before, ORBIT, m), part(m.s.before, SPIN, m)
+    d, side, before = m.d, m.s.side, m.s.before
     answers = 2.0 * d.ball_radius * d.ball_radius / d.inertia, 4.0 / d.mass
-    first = Motion(0.0, 0.0, lever * faster[k], 0.0, turning[k])
-    second = Motion(0.0, 0.0, lever * faster[b], 0.0, turning[b])
+    first, second = _along_chord(before, k, lever, m), _along_chord(before, b, lever, m)
     last = side.tangential[b], side.normal[b]
     return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+
+
+@kernel
+def _along_chord(q, b, lever, m):
+    """Motion of ball `b` in the state q along a chord of a `lever` (m) about the middle, and its spin."""
+    return Motion(0.0, 0.0, lever * part(q, ORBIT, m)[b], 0.0, part(q, SPIN, m)[b])
+
+
+@kernel
+def rubbing(dq, m):
+    """Heat (W) between neighbours over the kick whose accelerations are in dq."""
+    loss, count = 0.0, m.p.balls.count
+    for b in range(count):
+        if m.s.side.normal[b] > 0.0:
+            k, lever = b + 1 if b + 1 < count else 0, m.s.lever[b]
+            following, this = _along_chord(dq, k, lever, m), _along_chord(dq, b, lever, m)
+            loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
+    return loss
 
 
 @woven
@@ -225,7 +243,7 @@ def rub_balls(q, dq, m):
         ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
     )
     inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
-    friction, change = rub(
+    friction, moved = rub(
         h,
         count,
         curve(d.race_friction),
@@ -235,8 +253,10 @@ def rub_balls(q, dq, m):
         rubbed_of(s.outer, n),
         rubbed_of(s.inner, n),
     )
-    _rub(dq, share, m)
-    return ring.rub_journal(at, squeezed, friction, change, m), _with_friction(pressed, m)
+    _rub(q, dq, share, moved, m)
+    balls = _with_friction(pressed, m)
+    s.brake.hx, s.brake.hy = pressed.fx - balls.fx, pressed.fy - balls.fy
+    return ring.rub_journal(at, squeezed, friction, moved, m), balls
 
 
 @woven
@@ -251,14 +271,20 @@ def _drive(dq, m):
 
 
 @woven
-def _rub(dq, share, m):
-    """Add friction at both races to the balls' derivatives dq; share: of its moment, as printed."""
-    s, spun = m.s, m.d.ball_radius / m.d.inertia
-    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
+def _rub(q, dq, share, moved, m):
+    """Add friction at both races to the balls' derivatives dq, and all other heat to that of friction.
+
+    share: of friction's moment, as printed; moved: what the kick does to the ring (`Moved`).
+    """
+    s, at, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
+    orbit, faster, turning = part(q, ORBIT, m), part(dq, ORBIT, m), part(dq, SPIN, m)
     for b in range(len(faster)):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
-        faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (s.balls.radius[b] * m.d.mass)
+        faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
         turning[b] += spun * (f_o - f_i)
+        middle = at.rate[b] + 0.5 * (moved.x * at.cosine[b] + moved.y * at.sine[b])
+        along = at.radius[b] * (orbit[b] + half * faster[b])
+        s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
 
 
 @woven

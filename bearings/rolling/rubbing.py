@@ -40,7 +40,7 @@ class RubbedRace:
 
 
 class Rubbed(NamedTuple):
-    """A `RubbedRace`, an array each; `tangential` is set anew, `loss` added to, the last two are set."""
+    """A `RubbedRace`, an array each; `tangential` is set anew, `loss` and the last two are set."""
 
     normal: object  # N
     tangential: object  # N
@@ -143,7 +143,7 @@ def _draw_lines(law, answers, moved, at, outer, inner):
 
 @woven
 def _settle(answers, moved, at, outer, inner):
-    """Set the friction (n,) at both races, add its heat to their `loss`; moved: `Moved` in this kick."""
+    """Set the friction (n,) at both races, and its heat; moved: `Moved` in this kick."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
     for b in range(len(at.nx)):
         w_oi = at.cross[b] * answers.inner - answers.spin
@@ -154,8 +154,8 @@ def _settle(answers, moved, at, outer, inner):
         ds_o = outer.driven[b] + w_oo * f_o + w_oi * f_i
         ds_i = inner.driven[b] + w_io * f_o + w_ii * f_i - ahead
         outer.tangential[b], inner.tangential[b] = f_o, f_i
-        outer.loss[b] -= f_o * (outer.sliding[b] + 0.5 * ds_o)
-        inner.loss[b] -= f_i * (inner.sliding[b] + 0.5 * ds_i)
+        outer.loss[b] = -f_o * (outer.sliding[b] + 0.5 * ds_o)
+        inner.loss[b] = -f_i * (inner.sliding[b] + 0.5 * ds_i)
 
 
 @woven
@@ -200,12 +200,12 @@ def rub(h, count, law, answers, around, at, outer, inner):
     """Friction of `count` balls at both races and of the journal in the bore over a kick of h (s).
 
     law: `Curve` of the races; answers: `Answers`; around: `Around`; at: `Inner`; outer, inner: `Rubbed`,
-    where friction and its heat are set. Returns (friction on the journal along t (N), change of its sliding
-    speed by the ring's motion (m/s)).
+    where friction and its heat are set. Returns (friction on the journal along t (N), `Moved`: what the
+    kick does to the ring).
     """
     _draw_lines(law, answers, around.moved, at, outer, inner)
     now = _turn_ring(h, count, around, at, inner)
     _settle(answers, now, at, outer, inner)
     bore = around.bore
     ahead = over_ring(bore.nx, bore.ny, bore.lever, now)
-    return bore.held + bore.gain * ahead, -ahead
+    return bore.held + bore.gain * ahead, now

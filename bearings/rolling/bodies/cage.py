@@ -14,7 +14,7 @@ from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, press
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.balls import BallSet
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
-from touchdown.bearings.rolling.side import note, note_apart
+from touchdown.bearings.rolling.side import heat_of, note, note_apart
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
@@ -79,15 +79,12 @@ def _kick(b, place, rx, ry, m):
 
 @kernel
 def pocket_contacts(q, dq, m):
-    """All balls against their pockets; adds to the balls' accelerations in dq, sets the cage's derivatives.
-
-    Returns the heat (W).
-    """
+    """All balls against their pockets; adds to the balls' derivatives in dq, sets the cage's."""
     p, d = m.p, m.d
     rb, clearance = d.ball_radius, p.cage.clearance
     i = first_component(m)
     c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
-    fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
+    fx, fy, moment = 0.0, 0.0, 0.0
     for b in range(p.balls.count):
         rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
         ball, pocket = ball_motion(q, b, m), _pocket(q, i, rx, ry)
@@ -100,16 +97,27 @@ def pocket_contacts(q, dq, m):
         at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
         kick = _kick(b, at, rx, ry, m)
         push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, kick)
-        note(m.s.side, b, push_out, at.indentation, d.cage_contact)
+        note(m.s.side, b, push_out, at, d.cage_contact)
         push(dq, b, push_out.fx, push_out.fy, push_out.first_moment, m)
         fx -= push_out.fx
         fy -= push_out.fy
         moment += push_out.second_moment - rx * push_out.fy + ry * push_out.fx
-        loss += push_out.loss
     dq[i + X], dq[i + Y], dq[i + ANGLE] = q[i + VX], q[i + VY], q[i + SPIN]
     dq[i + VX] = fx / p.cage.mass
     dq[i + VY] = fy / p.cage.mass - p.gravity
     dq[i + SPIN] = moment / d.cage_inertia
+
+
+@kernel
+def rubbing(q, dq, m):
+    """Heat (W) of all pockets over the kick whose accelerations are in dq."""
+    d, i = m.d, first_component(m)
+    c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
+    loss = 0.0
+    for b in range(m.p.balls.count):
+        if m.s.side.normal[b] > 0.0:
+            rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
+            loss += heat_of(m.s.side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
     return loss
 
 

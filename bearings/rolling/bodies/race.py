@@ -32,6 +32,8 @@ class Contacts(RubbedRace):
     second: tuple = array(MOST_BALLS)
     across: tuple = array(MOST_BALLS)
     stiffness: tuple = array(MOST_BALLS)
+    rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
+    damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
 
 
 class Balls(NamedTuple):
@@ -80,8 +82,9 @@ class Forces(NamedTuple):
 
     normal: object  # N
     stiffness: object  # N/m, at this load
-    loss: object  # W, heat of damping
+    damped: object  # N, what of it is damping
     sliding: object  # m/s, before the kick
+    rate: object  # m/s, of the indentation, before the kick
 
 
 @inlined
@@ -95,7 +98,7 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    return Forces(c.normal[:n], c.stiffness[:n], c.loss[:n], c.sliding[:n])
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], c.sliding[:n], c.rate[:n])
 
 
 @kernel
@@ -117,8 +120,9 @@ class Squeezed(NamedTuple):
 
     normal: float  # N
     stiffness: float  # N/m
-    loss: float  # W
+    damped: float  # N
     sliding: float  # m/s
+    rate: float  # m/s
 
 
 @woven
@@ -131,15 +135,14 @@ def _squeeze(b, balls, ring, place, race, before, last):
     faster_y = before.length * before.ay[b] - before.race_y
     others = race.side * (faster_x * place.nx + faster_y * place.ny) + before.answer * last
     normal = damped_normal(elastic, damping, rate, before.answer, others)
-    loss = (normal - elastic) * (rate + 0.5 * (others - before.answer * normal))
-    return Squeezed(normal, stiffness, loss, sliding)
+    return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
 
 
 @woven
 def press_circle(balls, ring, race, before, places, forces):
     """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
 
-    before: `Before`. Forces (n,) (N, N/m, W, m/s) are those of pressing, friction comes later.
+    before: `Before`. Forces (n,) (N, N/m, m/s) are those of pressing, friction comes later.
     """
     reach = race.side * balls.radius
     for b in range(len(places.nx)):
@@ -152,7 +155,7 @@ def press_circle(balls, ring, race, before, places, forces):
         places.nx[b], places.ny[b] = place.nx, place.ny
         places.indentation[b], places.second[b], places.across[b] = place.indentation, second, 0.0
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
-        forces.loss[b], forces.sliding[b] = pressed.loss, pressed.sliding
+        forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
 
 @woven
@@ -166,7 +169,7 @@ def press_curve(balls, ring, race, before, places, forces):
         place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
         pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
-        forces.loss[b], forces.sliding[b] = pressed.loss, pressed.sliding
+        forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
 
 @woven

@@ -93,7 +93,7 @@ def rub_races(q, dq, m):
         ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
     )
     inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
-    friction, change = rub(
+    friction, moved = rub(
         h,
         count,
         curve(d.race_friction),
@@ -103,11 +103,13 @@ def rub_races(q, dq, m):
         rubbed_of(s.outer, n),
         rubbed_of(s.inner, n),
     )
-    _rub(dq, m)
+    _rub(dq, moved, m)
     on_inner = with_friction(pressed, s.inner, count)
-    on_outer = with_friction(pressing(s.outer, INSIDE, count), s.outer, count)
+    pressed_out = pressing(s.outer, INSIDE, count)
+    on_outer = with_friction(pressed_out, s.outer, count)
     s.outer_moment = on_outer.moment
-    return ring.rub_journal(at, squeezed, friction, change, m), on_inner, on_outer
+    s.brake.hx, s.brake.hy = on_outer.fx - pressed_out.fx, on_outer.fy - pressed_out.fy
+    return ring.rub_journal(at, squeezed, friction, moved, m), on_inner, on_outer
 
 
 @woven
@@ -124,9 +126,12 @@ def _drive(dq, m):
 
 
 @woven
-def _rub(dq, m):
-    """Add friction at both races to the balls' derivatives dq."""
-    inner, outer = m.s.inner, m.s.outer
+def _rub(dq, moved, m):
+    """Add friction at both races to the balls' derivatives dq, and the heat of damping to that of friction.
+
+    moved: what the kick does to the ring (`Moved`).
+    """
+    inner, outer, h = m.s.inner, m.s.outer, m.s.kick
     ax, ay, alpha = part(dq, VX, m), part(dq, VY, m), part(dq, SPIN, m)
     by_mass, by_inertia = 1.0 / m.d.mass, m.d.ball_radius / m.d.inertia
     for b in range(len(ax)):
@@ -134,3 +139,8 @@ def _rub(dq, m):
         ax[b] -= (f_o * outer.ny[b] + f_i * inner.ny[b]) * by_mass
         ay[b] += (f_o * outer.nx[b] + f_i * inner.nx[b]) * by_mass
         alpha[b] += (f_o - f_i) * by_inertia
+        dx, dy = h * ax[b], h * ay[b]
+        into_outer = dx * outer.nx[b] + dy * outer.ny[b]
+        into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
+        outer.loss[b] += outer.damped[b] * (outer.rate[b] + 0.5 * into_outer)
+        inner.loss[b] += inner.damped[b] * (inner.rate[b] + 0.5 * into_inner)
