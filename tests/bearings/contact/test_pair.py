@@ -19,7 +19,7 @@ from touchdown.bearings.contact.friction import (
 )
 from touchdown.bearings.contact.kick import STILL, Kick
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
-from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, Press, kick_of, press, slip
+from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, Press, heat, kick_of, press, slip
 from touchdown.bearings.rolling.ball_state import rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.bodies.race import (
@@ -170,10 +170,10 @@ def test_power_balance(side, law, friction):
         on_second = -found.fx * second.vx - found.fy * second.vy + found.second_moment * second.spin
         step = 1e-4 * place.indentation
         lower, upper = (elastic_energy(place.indentation + d, law) for d in (-step, step))
-        storing = (upper - lower) / (2.0 * step) * found.rate
-        scale = abs(storing) + abs(found.loss) + abs(on_first) + abs(on_second)
-        assert on_first + on_second == pytest.approx(-(storing + found.loss), abs=1e-8 * scale)
-        assert found.loss >= -1e-12 * scale
+        storing, loss = (upper - lower) / (2.0 * step) * found.rate, heat(found, 0.0, 0.0)
+        scale = abs(storing) + abs(loss) + abs(on_first) + abs(on_second)
+        assert on_first + on_second == pytest.approx(-(storing + loss), abs=1e-8 * scale)
+        assert loss >= -1e-12 * scale
 
 
 class Free(NamedTuple):
@@ -251,21 +251,19 @@ def test_heat_of_a_kick(side, law, friction, h):
     rng = np.random.default_rng(4)
     for _ in range(20):
         pair, free = random_pair(rng, side), random_free(rng)
-        place = pair.place._replace(across=0.0)
+        place = pair.place
         others = slip(*accelerations(free, free.others), place, side)
         answers = answers_of(free, place)
         kick = Kick(h * answers[0], h * answers[1], h * others[0], h * others[1])
-        found = pressed(pair._replace(place=place), side, law, friction, kick)
+        found = pressed(pair, side, law, friction, kick)
         contact = on_both(place, side, found.tangential, found.normal)
-        bodies = pair.first, pair.second
-        middle = after(bodies, accelerations(free, free.others + contact), 0.5 * h)
+        bodies, rates = (pair.first, pair.second), accelerations(free, free.others + contact)
+        changes = [h * each for each in slip(*rates, place, side)]
+        middle = after(bodies, rates, 0.5 * h)
         work = [push @ [b.vx, b.vy, b.spin] for push, b in zip(contact, middle, strict=True)]
-        sliding, rate = slip(*middle, place, side)
-        storing = elastic_force(place.indentation, law) * rate
-        heat = (found.normal * rate - storing) - found.tangential * sliding
+        storing = elastic_force(place.indentation, law) * slip(*middle, place, side)[1]
         scale = float(np.sum(np.abs(work))) + abs(storing)
-        assert sum(work) == pytest.approx(-(storing + found.loss), abs=1e-11 * scale)
-        assert found.loss == pytest.approx(heat, abs=1e-11 * scale)
+        assert sum(work) == pytest.approx(-(storing + heat(found, *changes)), abs=1e-11 * scale)
 
 
 def turned(body: Motion, angle: float) -> Motion:
@@ -390,7 +388,7 @@ def rub_all(bunch: Bunch, h: float, friction: Any) -> None:
     n, apart = rounded(count), empty_contacts()
     along = rates.vy * c["nx"][:count] - rates.vx * c["ny"][:count]
     c["driven"][:count] = h * (along + side * BALL * rates.spin)
-    for name in ("normal", "sliding", "driven", "loss"):
+    for name in ("normal", "sliding", "driven"):
         apart[name][:count] = 0.0
     for contacts in (c, apart):
         contacts["tangential"][:count] = 0.0
@@ -405,13 +403,25 @@ def rub_all(bunch: Bunch, h: float, friction: Any) -> None:
     rub(h, count, curve(friction), answers, around, where, *races)
 
 
+def kick_alone(bunch: Bunch, b: int, h: float) -> Kick:
+    """What ball `b` of a bunch meets at its race over a kick of h (s)."""
+    rates = Motion(*(part[b] for part in bunch.rates[:5]))
+    answers = 1.0 / MASS + BALL * BALL / INERTIA, 1.0 / MASS
+    last = 0.0, bunch.last[b]
+    return Kick(*kick_of(h, answers, rates, bunch.ring_rates, place_of(bunch, b), bunch.race.side, last))
+
+
 def one_of(bunch: Bunch, b: int, h: float, law: Any, friction: Any) -> Press:
     """Ball `b` of a bunch as a pair with its race, over a kick of h (s)."""
-    ball, rates = (Motion(*(part[b] for part in of[:5])) for of in (bunch.balls, bunch.rates))
-    place, side = place_of(bunch, b), bunch.race.side
-    answers = 1.0 / MASS + BALL * BALL / INERTIA, 1.0 / MASS
-    kick = kick_of(h, answers, rates, bunch.ring_rates, place, side, (0.0, bunch.last[b]))
-    return pressed(Pair(ball, bunch.ring, place), side, law, friction, Kick(*kick))
+    ball = Motion(*(part[b] for part in bunch.balls[:5]))
+    pair = Pair(ball, bunch.ring, place_of(bunch, b))
+    return pressed(pair, bunch.race.side, law, friction, kick_alone(bunch, b, h))
+
+
+def slipped(bunch: Bunch, b: int, h: float, found: Press) -> float:
+    """Change (m/s) of the sliding speed of ball `b` over a kick of h (s)."""
+    kick = kick_alone(bunch, b, h)
+    return kick.sliding + kick.across * found.tangential
 
 
 @every_side
@@ -434,11 +444,13 @@ def test_many_balls_are_many_pairs(side, friction, h, damping, askew):
         total = Total(*with_friction(pressing(c, side, count), c, count))
         for b in range(count):
             place, found = place_of(bunch, b), one_of(bunch, b, h, law, friction)
-            many = [c[name][b] for name in ("normal", "tangential", "loss")]
-            one = [found.normal, found.tangential, found.loss]
-            np.testing.assert_allclose(many, one, rtol=1e-10, atol=1e-12 * found.normal)
+            for name in ("normal", "tangential", "damped", "sliding", "rate"):
+                one = getattr(found, name)
+                assert c[name][b] == pytest.approx(one, rel=1e-10, abs=1e-12 * (1.0 + found.normal))
+            rubbing = heat(found._replace(damped=0.0), slipped(bunch, b, h, found), 0.0)
+            assert c["loss"][b] == pytest.approx(rubbing, rel=1e-10, abs=1e-12 * found.normal)
             assert c["stiffness"][b] == pytest.approx(1.95e10 * max(place.indentation, 0.0) ** 0.5)
-            sums += [-found.fx, -found.fy, found.second_moment, found.loss]
+            sums += [-found.fx, -found.fy, found.second_moment, rubbing]
             size += found.normal
             apart += place.indentation < 0.0
             assert (found.normal > 0.0) <= (place.indentation > 0.0)
