@@ -100,18 +100,21 @@ def follow(speed, law):
     """
     v = abs(speed)
     last = saturation(2.0 * law.slope * v)
-    plateau = last / (2.0 - last)
     level = law.dynamic
     if law.extra != 0.0:
         level += law.extra * (1.0 - saturation(law.faded * v * v))
-    value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
-    if law.g1 != 0.0:
+    if law.g1 == 0.0:
+        plateau = last / (2.0 - last)
+        value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
+    else:
         flat = saturation(2.0 * law.g3 * v)
-        steep = last
+        both = 1.0 / ((2.0 - last) * (2.0 - flat))
+        plateau, fall = last * (2.0 - flat) * both, flat * (2.0 - last) * both
+        rise = plateau
         if law.g2 != law.slope:
             steep = saturation(2.0 * law.g2 * v)
-        both = 1.0 / ((2.0 - steep) * (2.0 - flat))
-        rise, fall = steep * (2.0 - flat) * both, flat * (2.0 - steep) * both
+            rise = steep / (2.0 - steep)
+        value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
         value += law.g1 * (rise - fall)
         slope += law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
     value += law.g6 * v

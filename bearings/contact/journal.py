@@ -11,7 +11,8 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.bearings.contact.kick import STILL
+from touchdown.bearings.contact.pair import INSIDE, Place, heat, press, slip
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import real
 
@@ -30,26 +31,38 @@ class Touch(NamedTuple):
 
 
 @kernel
-def touch(journal, ring, journal_radius, clearance, law, friction, grip=0.0):
+def place_in_bore(journal, ring, journal_radius, clearance):
+    """`Place` (m) of a journal of `journal_radius` in the bore of `ring` (Motion), wider by `clearance`.
+
+    In the very middle it has no direction, and n is zero.
+    """
+    ex, ey = journal.x - ring.x, journal.y - ring.y
+    distance = math.sqrt(ex * ex + ey * ey)
+    inverse = 1.0 / distance if distance > 0.0 else 0.0
+    reach = distance + journal_radius
+    return Place(ex * inverse, ey * inverse, distance - clearance, journal_radius, reach, 0.0)
+
+
+@kernel
+def touch_of(press, indentation, loss):
+    """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m); loss: W."""
+    c = press
+    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, loss)
+
+
+@kernel
+def touch(journal, ring, journal_radius, clearance, law, friction):
     """Contact of a journal of `journal_radius` (m) with the bore of `ring`, wider by `clearance` (m).
 
-    journal, ring: Motion (m, m/s, rad/s); law, friction: records; grip (s/kg) as in `pair.press`. Returns a
-    `Touch` (N, N m, m, W); the force on the ring is the opposite one.
+    journal, ring: Motion (m, m/s, rad/s); law, friction: records. Returns a `Touch` (N, N m, m, W); the
+    force on the ring is the opposite one.
     """
-    ex = journal.x - ring.x
-    ey = journal.y - ring.y
-    distance = math.sqrt(ex * ex + ey * ey)
-    indentation = distance - clearance
-    if distance == 0.0:
-        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, 0.0, 0.0)
-    nx = ex / distance
-    ny = ey / distance
-    if indentation <= 0.0:
-        rate = (journal.vx - ring.vx) * nx + (journal.vy - ring.vy) * ny
-        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0)
-    place = Place(nx, ny, indentation, journal_radius, distance + journal_radius, 0.0)
-    c = press(journal, ring, place, INSIDE, law, friction, grip)
-    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, c.loss)
+    place = place_in_bore(journal, ring, journal_radius, clearance)
+    if place.indentation <= 0.0:
+        _, rate = slip(journal, ring, place, INSIDE)
+        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
+    pressed = press(journal, ring, place, INSIDE, law, friction, STILL)
+    return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0))
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings.contact.friction import coefficient
-from touchdown.bearings.contact.pair import friction_force
+from touchdown.bearings.contact.kick import damped_normal
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import real
 
@@ -47,6 +47,16 @@ class Gap(NamedTuple):
     ux: float
     uy: float
     spin: float
+
+
+class Squeezed(NamedTuple):
+    """What happens at one ball but for friction, in N."""
+
+    force: float  # between the rings
+    elastic: float
+    outer: float  # on the outer race, with what the ball's orbit adds
+    held: float  # of the narrowing gap and of rolling resistance on the ball, against t
+    drag: float  # the latter alone
 
 
 class Pressed(NamedTuple):
@@ -84,7 +94,6 @@ class Raceway(NamedTuple):
     inner_radius: float  # m
     ball_radius: float  # m
     mass: float  # kg, of a ball
-    grip: float  # s/kg, as for `bearings.contact.pair.friction_force`
     resistance: float  # of rolling, force over force
 
 
@@ -117,22 +126,19 @@ def rolling_drag(speed):
 
 
 @woven
-def press_ball(at, gap, c, s, orbit, friction, way):
-    """`Pressed` (N, m, W) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
+def squeeze_ball(at, gap, c, s, orbit, way, along, others):
+    """`Squeezed` (N) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
 
-    friction: coefficients at the inner and the outer race.
+    along (s/kg), others (m/s): as for `bearings.contact.kick.damped_normal`.
     """
     depth = max(at.indentation, 0.0)
     elastic = way.stiffness * (depth * math.sqrt(depth))
-    force = max(elastic + way.damping * depth * at.rate, 0.0)
-    inner = -friction_force(at.inner, friction[0], force, way.grip)
-    pressed = force + at.radius * way.mass * orbit * orbit
-    outer = -friction_force(at.outer, friction[1], pressed, way.grip)
+    force = damped_normal(elastic, way.damping * depth, at.rate, along, others)
+    outer = force + at.radius * way.mass * orbit * orbit
     v = at.radius * orbit
-    drag = way.resistance * (force + pressed) * rolling_drag(v)
+    drag = way.resistance * (force + outer) * rolling_drag(v)
     held = elastic * (gap.ey * c - gap.ex * s) / at.radius + drag
-    heat = inner * at.inner + (force - elastic) * at.rate + outer * at.outer + drag * v
-    return Pressed(force, elastic, at.indentation, inner, outer, held, at.lever, heat)
+    return Squeezed(force, elastic, outer, held, drag)
 
 
 @kernel
@@ -140,11 +146,15 @@ def between_races(gap, c, s, orbit, spin, rm, m):
     """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
-    resistance = m.p.rolling.resistance
-    way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, 0.0, resistance)
+    way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
     at = meet(gap, c, s, orbit, spin, way)
-    friction = coefficient(at.inner, d.race_friction), coefficient(at.outer, d.race_friction)
-    return press_ball(at, gap, c, s, orbit, friction, way)
+    ball = squeeze_ball(at, gap, c, s, orbit, way, 0.0, 0.0)
+    inner = coefficient(at.inner, d.race_friction) * ball.force
+    outer = coefficient(at.outer, d.race_friction) * ball.outer
+    heat = (
+        (ball.force - ball.elastic) * at.rate + inner * at.inner + outer * at.outer + ball.drag * rm * orbit
+    )
+    return Pressed(ball.force, ball.elastic, at.indentation, inner, outer, ball.held, at.lever, heat)
 
 
 @kernel

@@ -29,8 +29,8 @@ def drift(trial, q, v, h, m):
 
 
 @kernel
-def forecast(trial, dq, h, m):
-    m[GRIP] = h
+def forecast(trial, dq, h, kick, m):
+    m[GRIP] = kick
 
 
 @kernel
@@ -45,6 +45,7 @@ def observe(t, q, m):
 
 @kernel
 def run(q, m, work, span, longest):
+    rhs(0.0, q, work[0], m)
     return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, longest)
 
 

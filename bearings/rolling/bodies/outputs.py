@@ -10,30 +10,17 @@ import math
 from touchdown.bearings import seat
 from touchdown.bearings.rolling.balls import watch_balls, watch_contacts
 from touchdown.bearings.rolling.bodies.state import ball_motion
+from touchdown.bearings.rolling.side import largest, stored
 from touchdown.modelkit.kernel import kernel
-
-
-@kernel
-def largest(contacts, balls):
-    """(Normal force on one of a row (N), indentation (m), ball) of the most loaded contact; 0: none.
-
-    balls: the record of `BallSet`.
-    """
-    force, indentation, ball = 0.0, 0.0, 0
-    for b in range(balls.count):
-        if contacts.normal[b] > force:
-            force, ball = contacts.normal[b], b
-        indentation = max(indentation, contacts.indentation[b])
-    return force / balls.rows, indentation, ball
 
 
 @kernel
 def watch(m, sides):
     """Peaks (N, m), after a micro-step; `sides` is the report of the cage's or neighbours' contacts."""
-    s, o, balls = m.s, m.o, m.p.balls
-    inner, sunk_in, first = largest(s.inner, balls)
-    outer, sunk_out, second = largest(s.outer, balls)
-    side, overlap, _ = largest(s.side, balls)
+    s, o, count, rows = m.s, m.o, m.p.balls.count, m.p.balls.rows
+    inner, sunk_in, first = largest(s.inner, count, rows)
+    outer, sunk_out, second = largest(s.outer, count, rows)
+    side, overlap, _ = largest(s.side, count, rows)
     watch_contacts(inner, sunk_in, o.inner)
     watch_contacts(outer, sunk_out, o.outer)
     watch_contacts(side, overlap, sides)
@@ -54,20 +41,9 @@ def approach(m):
 
 
 @kernel
-def state_contacts(report, contacts, balls):
-    """Largest force (N) and indentation (m) now, in `report` (BallContacts); balls: a `BallSet` record."""
-    report.force, report.indentation, _ = largest(contacts, balls)
-
-
-@kernel
-def stored(contacts, law, count):
-    """Energy (J) of one kind of contact of `count` balls; law: a record."""
-    energy = 0.0
-    for b in range(count):
-        depth = contacts.indentation[b]
-        if depth > 0.0:
-            energy += law.stiffness * depth ** (law.exponent + 1.0) / (law.exponent + 1.0)
-    return energy
+def state_contacts(report, contacts, count, rows):
+    """Largest force (N) and indentation (m) of `count` balls now, in `report` (BallContacts)."""
+    report.force, report.indentation, _ = largest(contacts, count, rows)
 
 
 @kernel
@@ -79,8 +55,8 @@ def report(q, m, neighbours):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
-    state_contacts(o.inner, s.inner, p.balls)
-    state_contacts(o.outer, s.outer, p.balls)
+    state_contacts(o.inner, s.inner, count, p.balls.rows)
+    state_contacts(o.outer, s.outer, count, p.balls.rows)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation = approach(m)
     kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
