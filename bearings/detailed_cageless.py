@@ -141,7 +141,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m, m.o.neighbours)
+    outputs.watch(m.time + t, m, m.o.neighbours)
 
 
 @kernel

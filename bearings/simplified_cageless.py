@@ -40,6 +40,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
 from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.peaks import Largest, PeakMemory, watch_peaks
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import part
 from touchdown.bearings.rolling.balls import (
@@ -47,8 +48,8 @@ from touchdown.bearings.rolling.balls import (
     BallContacts,
     Coordinates,
     FreeBallSet,
+    largest,
     watch_balls,
-    watch_contacts,
 )
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
@@ -69,7 +70,6 @@ from touchdown.bearings.rolling.row import (
     RaceBalls,
     drift,
     fastest,
-    largest,
     neighbour_forces,
     place,
     race_forces,
@@ -162,6 +162,7 @@ class Hidden(RollingMemory):
 
     balls: RaceBalls = group(RaceBalls)
     pushed: PushedBalls = group(PushedBalls)
+    pushed_peaks: PeakMemory = group(PeakMemory)
     step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
 
 
@@ -190,9 +191,10 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    force, indentation = largest(m)
-    watch_balls(force, indentation, m)
-    watch_contacts(m.s.pushed.force / m.p.balls.rows, m.s.pushed.overlap, m.o.neighbours)
+    time, pushed = m.time + t, m.s.pushed
+    watch_balls(time, largest(m.s.balls.force, m.s.balls.indentation, m.p.balls), m)
+    push = Largest(pushed.force / m.p.balls.rows, pushed.overlap, pushed.loaded, pushed.deepest)
+    watch_peaks(time, push, m.o.neighbours, m.s.pushed_peaks)
 
 
 @kernel
@@ -201,7 +203,8 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    o.balls.force, o.balls.indentation = largest(m)
+    now = largest(s.force, s.indentation, p.balls)
+    o.balls.force, o.balls.indentation = now.force, now.indentation
     o.neighbours.force = m.s.pushed.force / p.balls.rows
     o.neighbours.indentation = m.s.pushed.overlap
     moving = d.mass * d.pitch_radius**2

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.peaks import Largest, watch_peaks
 from touchdown.bearings.contact.stiffness import in_series, race_contact_stiffness
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import integer, real
@@ -243,7 +244,7 @@ class BallReport:
         0.0, "N", "largest force between a ball and a race since the start", local=True
     )
     first_impact_force: float = real(
-        0.0, "N", "largest force between a ball and a race during the journal's first contact", local=True
+        0.0, "N", "largest force between a ball and a race in the journal's first impact", local=True
     )
     peak_indentation: float = real(
         0.0, "m", "largest approach of the rings at a ball since the start", local=True
@@ -276,24 +277,29 @@ class BallContacts:
 
 
 @kernel
-def watch_balls(force, indentation, m):
-    """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step."""
-    o = m.o.balls
-    if force > o.peak_force:
-        o.peak_force = force
-    if indentation > o.peak_indentation:
-        o.peak_indentation = indentation
-    if force > o.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.left == 0.0:
-        o.first_impact_force = force
+def largest(force, indentation, balls):
+    """`Largest` (N on one of a row, m) of contacts whose forces (N) and indentations (m) are given by ball.
+
+    balls: the record of `BallSet`.
+    """
+    most, depth, loaded, deepest = 0.0, 0.0, 0, 0
+    for b in range(balls.count):
+        if force[b] > most:
+            most, loaded = force[b], b
+        if indentation[b] > depth:
+            depth, deepest = indentation[b], b
+    return Largest(most / balls.rows, depth, loaded, deepest)
 
 
 @kernel
-def watch_contacts(force, indentation, report):
-    """Keep the peaks of force (N) and indentation (m) in `report` (`BallContacts`), after a micro-step."""
-    if force > report.peak_force:
-        report.peak_force = force
-    if indentation > report.peak_indentation:
-        report.peak_indentation = indentation
+def watch_balls(time, now, m):
+    """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step.
+
+    now: `Largest`, at `time` (s).
+    """
+    force = watch_peaks(time, now, m.o.balls, m.s.ball_peaks)
+    if force > m.o.balls.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.over == 0.0:
+        m.o.balls.first_impact_force = force
 
 
 @dataclass(frozen=True)

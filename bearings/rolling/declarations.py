@@ -8,6 +8,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness
 from touchdown.modelkit.kernel import kernel
@@ -92,3 +93,4 @@ class RollingMemory:
     seat: seat.SeatMemory = group(seat.SeatMemory)
     ring: Touched = group(Touched)
     contact: ContactMemory = group(ContactMemory)
+    ball_peaks: PeakMemory = group(PeakMemory)

@@ -20,7 +20,7 @@ from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, press_ball
 from touchdown.modelkit.angles import cosine_and_sine
 from touchdown.modelkit.kernel import inlined, kernel
-from touchdown.modelkit.variables import array, real
+from touchdown.modelkit.variables import array, integer, real
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
 MOST_STATES = BALLS + 3 * MOST_BALLS + LANES  # and room to run past the last ball
@@ -49,6 +49,8 @@ class PushedBalls:
 
     force: float = real(0.0, "N", "largest")
     overlap: float = real(0.0, "m", "largest")
+    loaded: int = integer(0, "first ball of the most loaded pair")
+    deepest: int = integer(0, "first ball of the pair that overlaps most")
     energy: float = real(0.0, "J", "stored in the contacts")
     stiffness: float = real(0.0, "N/m", "largest")
 
@@ -210,8 +212,10 @@ def neighbour_forces(q, dq, m):
         turning[k] -= rb * rub / d.inertia
         heat += rub * sliding + (force - elastic) * rate
         s.energy += elastic_energy(overlap, d.ball_contact)
-        s.force = max(s.force, force)
-        s.overlap = max(s.overlap, overlap)
+        if force > s.force:
+            s.force, s.loaded = force, b
+        if overlap > s.overlap:
+            s.overlap, s.deepest = overlap, b
         s.stiffness = max(s.stiffness, d.ball_contact.exponent * force / overlap)
     return heat
 
@@ -228,14 +232,3 @@ def fastest(m):
     if s.ring.indentation > 0.0:
         below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
     return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * s.pushed.stiffness / d.mass)), s.seat.fastest)
-
-
-@kernel
-def largest(m):
-    """(Largest force on one of a row (N), largest indentation (m)) of the balls between the rings."""
-    s = m.s.balls
-    force, indentation = 0.0, 0.0
-    for b in range(m.p.balls.count):
-        force = max(force, s.force[b])
-        indentation = max(indentation, s.indentation[b])
-    return force / m.p.balls.rows, indentation

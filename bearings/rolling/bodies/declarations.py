@@ -8,6 +8,7 @@ from touchdown.bearings.contact import profile as race_profile
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
 from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, damped
+from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.contact.profile import RaceProfile
 from touchdown.bearings.contact.search import SearchReport
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts
@@ -105,6 +106,9 @@ class BallBodiesMemory(RollingMemory):
     inner: Contacts = group(Contacts)
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)
+    inner_peaks: PeakMemory = group(PeakMemory)
+    outer_peaks: PeakMemory = group(PeakMemory)
+    side_peaks: PeakMemory = group(PeakMemory)
     step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
     outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
     outer_moment: float = real(0.0, "N.m", "of the balls on the outer ring, about its centre")
