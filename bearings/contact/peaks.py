@@ -2,9 +2,9 @@
 
 A light body on a stiff contact may swing by h w = 0.8 in a step (`modelkit.integrators.verlet`), and the
 largest of such samples is up to 8 % below the extremum. So the parabola through the last three stands for
-the motion where the middle one is the largest: that leaves 0.1 % of a swing at h w = 0.4, 0.6 % at 0.6, 1.7 %
-at 0.8 at most, a third of it on the average. Of a force that begins or ends within the three, or that moves
-from one ball to another, it is no parabola, and the samples count.
+the motion where the middle one is the largest: of a Hertz contact that leaves at most 0.1 % at h w = 0.4,
+0.6 % at 0.6 and 1.7 % at 0.8, less than half of it on the average. A force that begins or ends within the
+three, or that moves from one ball to another, is no parabola, and the samples count.
 """
 
 from __future__ import annotations
@@ -68,9 +68,9 @@ def crest(samples, time, value, place):
     """
     top = value
     if time - samples.time > SLIVER * (samples.time - samples.time_before):
-        if samples.last > samples.before and samples.last >= value and samples.before > 0.0 and value > 0.0:
-            if samples.place_before == samples.place and samples.place == place:
-                top = vertex(samples, time, value)
+        same = samples.place_before == samples.place and samples.place == place
+        if same and samples.last > samples.before > 0.0 and samples.last >= value > 0.0:
+            top = vertex(samples, time, value)
         samples.time_before, samples.before = samples.time, samples.last
         samples.place_before = samples.place
     samples.time, samples.last, samples.place = time, value, place

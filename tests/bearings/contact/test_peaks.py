@@ -51,7 +51,7 @@ def hertz_impact():
     frequency = math.sqrt(1.5 * math.sqrt(depth))
 
     def rhs(_, y):
-        return y[1], -max(y[0], 0.0) ** 1.5
+        return y[1], -(max(y[0], 0.0) ** 1.5)
 
     motion = solve_ivp(rhs, (0.0, 6.0), (0.0, 1.0), rtol=1e-10, atol=1e-12, dense_output=True).sol
 
@@ -63,7 +63,7 @@ def hertz_impact():
 
 @pytest.mark.parametrize("step", STEPS)
 def test_peak_of_a_linear_impact(step):
-    """sqrt(k m) v, from samples wherever they lie; less than the samples' own error by ten times or more."""
+    """sqrt(k m) v, from samples wherever they lie; their own error is eight times that and more."""
     errors, plain = [], []
     for phase in PHASES:
         times = sampled(step, phase, math.pi)
