@@ -118,7 +118,7 @@ def report(q, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=False)
-    outputs.state_contacts(o.pockets, m.s.side, p.balls)
+    outputs.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
     stored = outputs.stored(m.s.side, m.d.cage_contact, count)
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + stored, p.ring.inertia)

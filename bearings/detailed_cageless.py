@@ -150,7 +150,7 @@ def report(q, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=True)
-    outputs.state_contacts(o.neighbours, m.s.side, p.balls)
+    outputs.state_contacts(o.neighbours, m.s.side, m)
     stored = outputs.stored(m.s.side, m.d.ball_contact, count)
     ring.report_energy(q, m, kinetic, potential + stored, p.ring.inertia)
 

@@ -191,9 +191,9 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    time, pushed = m.time + t, m.s.pushed
-    watch_balls(time, largest(m.s.balls.force, m.s.balls.indentation, m.p.balls), m)
-    push = Largest(pushed.force / m.p.balls.rows, pushed.overlap, pushed.loaded, pushed.deepest)
+    time, pushed, count, rows = m.time + t, m.s.pushed, m.p.balls.count, m.p.balls.rows
+    watch_balls(time, largest(m.s.balls.force, m.s.balls.indentation, count, rows), m)
+    push = Largest(pushed.force / rows, pushed.overlap, pushed.loaded, pushed.deepest)
     watch_peaks(time, push, m.o.neighbours, m.s.pushed_peaks)
 
 
@@ -203,7 +203,7 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    now = largest(s.force, s.indentation, p.balls)
+    now = largest(s.force, s.indentation, count, p.balls.rows)
     o.balls.force, o.balls.indentation = now.force, now.indentation
     o.neighbours.force = m.s.pushed.force / p.balls.rows
     o.neighbours.indentation = m.s.pushed.overlap

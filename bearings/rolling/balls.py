@@ -11,11 +11,17 @@ from scipy.optimize import least_squares
 
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
 from touchdown.bearings.contact.peaks import Largest, watch_peaks
-from touchdown.bearings.contact.stiffness import in_series, race_contact_stiffness
+from touchdown.bearings.contact.stiffness import (
+    exact_ellipse,
+    in_series,
+    printed_ellipse,
+    race_contact_stiffness,
+)
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import integer, real
 
 MOST_BALLS = 32  # room in the state vector
+EXACT, PRINTED = range(2)  # values of `BallSet.hertz`
 
 
 @dataclass(frozen=True)
@@ -33,6 +39,15 @@ class BallSet:
     pitch_diameter: float = real(31e-3, "m", "pitch diameter", above=0.0)
     play: float = real(5e-6, "m", "radial play between balls and races; negative: preload")
     conformity: float = real(1.04, "1", "groove radius over ball radius", above=1.0, maximum=2.0)
+    outer_conformity: float = real(
+        0.0, "1", "the same of the outer race; 0: as of the inner one", minimum=0.0, maximum=2.0
+    )
+    hertz: int = integer(
+        EXACT,
+        "elliptic integrals of the race contacts: 0 exact, 1 as the source prints them (2.46)",
+        minimum=0,
+        maximum=1,
+    )
     modulus: float = real(207e9, "Pa", "modulus of elasticity of balls and rings", above=0.0)
     poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
     density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
@@ -89,14 +104,17 @@ class BallSet:
 
     def inner_stiffness(self) -> float:
         """Ball on inner race (2.45), N/m^1.5."""
-        return race_contact_stiffness(
-            self.diameter, self.inner_radius, self.conformity, self.modulus, self.poisson
-        )
+        return self._race_stiffness(self.inner_radius, self.conformity)
 
     def outer_stiffness(self) -> float:
         """Ball on outer race (2.45), N/m^1.5."""
+        return self._race_stiffness(-self.outer_radius, self.outer_conformity or self.conformity)
+
+    def _race_stiffness(self, race_radius: float, conformity: float) -> float:
+        """Ball on a race of `race_radius` (m, negative for the outer one), N/m^1.5."""
+        ellipse = printed_ellipse if self.hertz == PRINTED else exact_ellipse
         return race_contact_stiffness(
-            self.diameter, -self.outer_radius, self.conformity, self.modulus, self.poisson
+            self.diameter, race_radius, conformity, self.modulus, self.poisson, ellipse
         )
 
     def series_stiffness(self) -> float:
@@ -191,6 +209,11 @@ class BallSet:
                 f"balls.count = {self.count} balls of {self.diameter:g} m do not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"
             )
+        if 0.0 < self.outer_conformity <= 1.0:
+            return (
+                f"balls.outer_conformity = {self.outer_conformity:g} must be above 1, "
+                "or 0 for a groove like the inner race's"
+            )
         if -self.play >= self.diameter:
             return (
                 f"balls.play = {self.play:g} m presses the balls flat; "
@@ -277,18 +300,18 @@ class BallContacts:
 
 
 @kernel
-def largest(force, indentation, balls):
-    """`Largest` (N on one of a row, m) of contacts whose forces (N) and indentations (m) are given by ball.
+def largest(force, indentation, count, rows):
+    """`Largest` (N on one of those side by side, m) of the contacts of `count` balls in `rows`.
 
-    balls: the record of `BallSet`.
+    force, indentation: of each ball, or of those side by side (N, m).
     """
     most, depth, loaded, deepest = 0.0, 0.0, 0, 0
-    for b in range(balls.count):
+    for b in range(count):
         if force[b] > most:
             most, loaded = force[b], b
         if indentation[b] > depth:
             depth, deepest = indentation[b], b
-    return Largest(most / balls.rows, depth, loaded, deepest)
+    return Largest(most / rows, depth, loaded, deepest)
 
 
 @kernel

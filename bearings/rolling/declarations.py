@@ -74,7 +74,10 @@ def race_stiffness(b: BallSet) -> RaceStiffness:
     return RaceStiffness(b.inner_stiffness(), b.outer_stiffness(), b.series_stiffness())
 
 
-GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
+GEOMETRY = (
+    *("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.outer_conformity"),
+    *("balls.modulus", "balls.poisson", "balls.hertz"),
+)
 
 
 def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:

@@ -92,8 +92,8 @@ def report(q, m, work):
 def look(q, m, since_middle, work):
     """Keep in m.o what is largest of the stresses of q (N,), at a time within the macro step.
 
-    since_middle: s after its middle; work: scratch, two rows of 3 R or more. Returns the largest bending and
-    the largest shear stress now (Pa).
+    since_middle: s after its middle; work: scratch, two rows of 3 R or more. Returns the largest bending
+    and the largest shear stress now (Pa).
     """
     bending, shear = _along(work[0], m), _along(work[1], m)
     rows = m.d.stress

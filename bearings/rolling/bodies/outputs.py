@@ -20,20 +20,20 @@ def watch(time, m, sides):
 
     sides: report of the balls' contacts with the cage or with each other.
     """
-    s, o, balls = m.s, m.o, m.p.balls
-    inner = largest(s.inner.normal, s.inner.indentation, balls)
-    outer = largest(s.outer.normal, s.outer.indentation, balls)
+    s, o, count, rows = m.s, m.o, m.p.balls.count, m.p.balls.rows
+    inner = largest(s.inner.normal, s.inner.indentation, count, rows)
+    outer = largest(s.outer.normal, s.outer.indentation, count, rows)
     watch_peaks(time, inner, o.inner, s.inner_peaks)
     watch_peaks(time, outer, o.outer, s.outer_peaks)
-    watch_peaks(time, largest(s.side.normal, s.side.indentation, balls), sides, s.side_peaks)
+    watch_peaks(time, largest(s.side.normal, s.side.indentation, count, rows), sides, s.side_peaks)
     force, contact = inner.force, inner.loaded
     if outer.force > force:
-        force, contact = outer.force, outer.loaded + balls.count
+        force, contact = outer.force, outer.loaded + count
     depth, deepest = approach(m)
     before = o.balls.peak_force
     watch_balls(time, Largest(force, depth, contact, deepest), m)
     if o.balls.peak_force > before:
-        o.hardest.ball = contact % balls.count + 1
+        o.hardest.ball = contact % count + 1
 
 
 @kernel
@@ -48,9 +48,9 @@ def approach(m):
 
 
 @kernel
-def state_contacts(report, contacts, balls):
-    """Largest force (N) and indentation (m) now, in `report` (BallContacts); balls: a `BallSet` record."""
-    now = largest(contacts.normal, contacts.indentation, balls)
+def state_contacts(report, contacts, m):
+    """Largest force (N) and indentation (m) of all balls' `contacts` now, in `report` (BallContacts)."""
+    now = largest(contacts.normal, contacts.indentation, m.p.balls.count, m.p.balls.rows)
     report.force, report.indentation = now.force, now.indentation
 
 
@@ -74,8 +74,8 @@ def report(q, m, neighbours):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
-    state_contacts(o.inner, s.inner, p.balls)
-    state_contacts(o.outer, s.outer, p.balls)
+    state_contacts(o.inner, s.inner, m)
+    state_contacts(o.outer, s.outer, m)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation, _ = approach(m)
     kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
