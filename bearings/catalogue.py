@@ -4,8 +4,8 @@ Filled in, because the source does not give them: masses and inertias of the inn
 outer rings (catalogue mass less the other parts), static load ratings of the small bearings, the cage
 as heavy as two balls. Corrected: the pitch diameter of the 6904, printed as 26.1 mm, which cannot hold
 17 balls of 4.8 mm; 28.5 mm is the mean of bore and outside diameter. Read: the 5 um of Table 1 as radial
-play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on diameter. The stiffness
-of the races is the source's, with its fits for the elliptic integrals.
+play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on diameter. Stiffness of
+the races is the source's, with its fits for the elliptic integrals.
 """
 
 from __future__ import annotations

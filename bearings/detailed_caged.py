@@ -15,8 +15,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, Coordinates
 from touchdown.bearings.rolling.bodies import cage, outputs
@@ -196,7 +196,10 @@ def check(p: Parameters) -> str | None:
             f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
             f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
         )
-    return problem(p) or friction_problem(p.cage_friction, "cage_friction")
+    pocket = out_of_proportion(
+        "cage.clearance", p.cage.clearance, "half of balls.diameter", p.balls.ball_radius
+    )
+    return pocket or problem(p, "cage_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -17,7 +17,6 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
 from touchdown.bearings.contact.pair import OUTSIDE, Place, press
 from touchdown.bearings.rolling import ring
@@ -212,7 +211,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return problem(p) or friction_problem(p.ball_friction, "ball_friction")
+    return problem(p, "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

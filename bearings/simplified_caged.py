@@ -24,7 +24,6 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_force
 from touchdown.bearings.contact.peaks import Largest
 from touchdown.bearings.rolling import ring
@@ -34,6 +33,7 @@ from touchdown.bearings.rolling.declarations import (
     RollingMemory,
     RollingOutputs,
     RollingParameters,
+    problem,
     race_stiffness,
     starts_from,
     state_constants,
@@ -328,11 +328,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return (
-        p.balls.problem()
-        or friction_problem(p.friction, "friction")
-        or friction_problem(p.race_friction, "race_friction")
-    )
+    return problem(p, "friction", "race_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

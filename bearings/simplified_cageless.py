@@ -38,7 +38,6 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
 from touchdown.bearings.contact.peaks import Largest, PeakMemory, watch_peaks
 from touchdown.bearings.rolling import ring
@@ -56,6 +55,7 @@ from touchdown.bearings.rolling.declarations import (
     RollingMemory,
     RollingOutputs,
     RollingParameters,
+    problem,
     race_stiffness,
     starts_from,
     state_constants,
@@ -307,13 +307,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    laws = {
-        "friction": p.friction,
-        "race_friction": p.race_friction,
-        "ball_friction": p.ball_friction,
-    }
-    problems = [p.balls.problem(), *(friction_problem(law, name) for name, law in laws.items())]
-    return next((text for text in problems if text), None)
+    return problem(p, "friction", "race_friction", "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -7,8 +7,8 @@ integrals of the first and second kind of the parameter 1 - 1/kappa^2, Hertz's t
 
 of the curvatures across to those along the shaft (about 22-33 for a deep groove ball bearing). The source
 fits powers and logarithms of the ratio instead, after Brewe and Hamrock (1977); with them an inner race is
-1.4-1.7 % too stiff, an outer race 0.6-0.7 %. It prints (2.44) upside down (its 2.45 would take the root of a
-negative number) and names the two integrals of (2.46) the wrong way round: 1.0003 + 0.5968/ratio is the
+1.4-1.7 % too stiff, an outer race 0.6-0.7 %. It prints (2.44) upside down (its 2.45 would take the root of
+a negative number) and names the two integrals of (2.46) the wrong way round: 1.0003 + 0.5968/ratio is the
 second kind and 1.5277 + 0.6023 ln(ratio) the first.
 """
 

@@ -11,6 +11,7 @@ from scipy.optimize import least_squares
 
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
 from touchdown.bearings.contact.peaks import Largest, watch_peaks
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.contact.stiffness import (
     exact_ellipse,
     in_series,
@@ -214,12 +215,12 @@ class BallSet:
                 f"balls.outer_conformity = {self.outer_conformity:g} must be above 1, "
                 "or 0 for a groove like the inner race's"
             )
-        if -self.play >= self.diameter:
-            return (
-                f"balls.play = {self.play:g} m presses the balls flat; "
-                f"it must be above {-self.diameter:g} m"
-            )
-        return None
+        lengths = {"play": self.play, "expected_indentation": self.expected_indentation}
+        problems = (
+            out_of_proportion(f"balls.{name}", length, "half of balls.diameter", self.ball_radius)
+            for name, length in lengths.items()
+        )
+        return next(filter(None, problems), None)
 
 
 @dataclass(frozen=True)

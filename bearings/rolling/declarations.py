@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.contact.peaks import PeakMemory
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness
 from touchdown.modelkit.kernel import kernel
@@ -28,6 +30,20 @@ class RollingParameters:
     friction: FrictionLaw = group(FrictionLaw)
     balls: BallSet = group(BallSet)
     ring: ring.Ring = group(ring.Ring)
+
+
+def problem(p: RollingParameters, *frictions: str) -> str | None:
+    """What is wrong between the parameters that all rolling bearings share, or None.
+
+    frictions: names of the parameter groups that are friction laws.
+    """
+    journal = "journal_radius", p.journal_radius
+    return (
+        p.balls.problem()
+        or out_of_proportion("clearance", p.clearance, *journal)
+        or out_of_proportion("contact.expected_indentation", p.contact.expected_indentation, *journal)
+        or friction_problem(p, *frictions)
+    )
 
 
 @dataclass(frozen=True)

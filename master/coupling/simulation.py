@@ -35,7 +35,7 @@ class Outcome:
     zero: float = 0.0  # s, the scene's zero on the simulation's clock
     end: float = 0.0  # s, on the simulation's clock
     wall_time: float = 0.0  # s, stepping only
-    start_up: float = 0.0  # s, loading and initialising
+    start_up: float = 0.0  # s, loading, initialising, and compiling what is new in the first step
     residual: float = 0.0  # of the ledger, over its scale
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
     ended: Ended = Ended.COMPLETED
@@ -99,13 +99,13 @@ def simulate(
             told.append(Retirement(coupling, told))
             told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.residual)))
             start_up = clock.perf_counter() - began
-            wall_time = _loop(coupling, told, now, interrupted)
+            wall_time, compiling = _loop(coupling, told, now, interrupted)
     return Outcome(
         steps=now.done,
         zero=zero,
         end=now.time,
         wall_time=wall_time,
-        start_up=start_up,
+        start_up=start_up + compiling,
         residual=ledger.residual,
         warned_at=judge.warned_at,
         ended=now.ended or Ended.COMPLETED,
@@ -136,12 +136,16 @@ def energy_scale(scene: Scene, system: Values) -> float:
 
 def _loop(
     coupling: Stepper, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
-) -> float:
-    """Take macro steps until the end, or until the run is to end; returns the time it took (s)."""
+) -> tuple[float, float]:
+    """Take macro steps until the end, or until the run is to end.
+
+    Returns the time that stepping took and what the first step took beyond the others' mean (s): kernels
+    are compiled in it.
+    """
     step = coupling.run.macro_step
     at_beats = [observer.stepped for observer in observers]
     at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
-    began = clock.perf_counter()
+    began = settled = clock.perf_counter()
     try:
         for number in range(now.steps):
             if interrupted.is_set():
@@ -151,11 +155,17 @@ def _loop(
             now.move(number + 1, step)
             for stepped in at_beats if now.beat else at_steps:
                 stepped(now)
+            if number == 0:
+                settled = clock.perf_counter()
             if now.ended is not None:
                 break
     except TouchdownError as error:
         now.fail(str(error))
-    return clock.perf_counter() - began
+    ended = clock.perf_counter()
+    if now.done < 2:
+        return ended - began, 0.0
+    each = (ended - settled) / (now.done - 1)
+    return now.done * each, settled - began - each
 
 
 class _Recording(Observer):

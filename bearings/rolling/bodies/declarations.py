@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from touchdown.bearings.contact import profile as race_profile
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, damped
 from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.contact.profile import RaceProfile
@@ -21,6 +20,7 @@ from touchdown.bearings.rolling.declarations import (
     RollingParameters,
     race_stiffness,
 )
+from touchdown.bearings.rolling.declarations import problem as rolling_problem
 from touchdown.bearings.rolling.micro_step import resolved_step
 from touchdown.modelkit.variables import array, group, groups, integer, real
 
@@ -155,14 +155,15 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
     }
 
 
-def problem(p: BallBodiesParameters) -> str | None:
-    """What is wrong between the parameters of balls and races, or None."""
+def problem(p: BallBodiesParameters, side: str) -> str | None:
+    """What is wrong between the parameters of journal, balls and races, or None.
+
+    side: name of the friction law of the balls' contacts with each other or the cage.
+    """
     b = p.balls
     inner, outer = b.inner_radius - 0.5 * b.play, b.outer_radius + 0.5 * b.play
     problems = (
-        b.problem(),
-        friction_problem(p.friction, "friction"),
-        friction_problem(p.race_friction, "race_friction"),
+        rolling_problem(p, "friction", "race_friction", side),
         race_profile.problem("inner_profile", p.inner_profile, inner, b.ball_radius, hollow=False),
         race_profile.problem("outer_profile", p.outer_profile, outer, b.ball_radius, hollow=True),
     )

@@ -111,7 +111,7 @@ def test_the_ellipse_of_spheres_is_a_circle():
 
 
 def test_displacement_of_a_loaded_bearing():
-    """7 balls of 11.5 mm, grooves of 0.52 and 0.53 of it, 1000 N over a ball: by a bearing program 15.1101 um.
+    """7 balls of 11.5 mm, grooves of 0.52 and 0.53 of it, 1000 N on a ball: a program has 15.1101 um.
 
     The source's fits give 15.0296 um.
     """
@@ -247,7 +247,7 @@ def test_a_preload_beyond_the_ball_is_refused():
     assert BallSet(play=-20e-6).problem() is None
     problem = BallSet(play=-6.4e-3).problem()
     assert problem is not None
-    assert "balls.play = -0.0064 m" in problem
+    assert "balls.play = -0.0064 m is out of all proportion" in problem
 
 
 def test_ball_set_geometry():
