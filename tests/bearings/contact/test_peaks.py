@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.bearings import bushing
+from touchdown.bearings import bushing, simplified_cageless
 from touchdown.bearings.contact.journal import ContactMemory, ContactReport, Touched, watch_contact
 from touchdown.bearings.contact.peaks import Samples, crest
 from touchdown.modelkit.instance import Instance
@@ -147,6 +147,33 @@ def test_bushing_finds_the_peak_of_hertz(macro, tolerance):
     assert contact["peak_indentation"] == pytest.approx(depth, rel=3e-4)
     assert contact["peak_force"] == pytest.approx(stiffness * depth**1.5, rel=5e-4)
     assert stiffness * depth**1.5 == pytest.approx(400.5, abs=0.05)
+
+
+def test_the_first_impact_has_its_largest_ball_force():
+    """A disk on a cageless bearing whose ring rattles: what balls bore until it was free for `PARTED`."""
+    instance = Instance(simplified_cageless.MODEL)
+    m = instance.memory
+    law = m["p"]["contact"]
+    law["exponent"], law["damping"], law["dissipation"] = 10 / 9, 0.0, 0.12
+    journal, step = m["u"]["journal"], 4e-6
+    journal["y"], journal["vy"], journal["inv_m"], journal["ay_free"] = -0.2999e-3, -0.0767, 1 / 1.65, -9.81
+    instance.start(0.0)
+    free, peak = 0, 0.0
+    partings: list[float] = []  # largest force on a ball when the ring left the journal
+    for number in range(1500):
+        instance.step(number * step, step)
+        q, report = m["q"][0], m["o"][0]
+        for i, name in enumerate(("x", "y", "vx", "vy")):
+            journal[name] = q[i]
+        touching = report["contact"]["indentation"] >= 0.0
+        free = 0 if touching or report["contact"]["first_time"] < 0.0 else free + 1
+        if free == 1:
+            partings.append(float(report["balls"]["peak_force"]))
+        if peak == 0.0 and free * step > PARTED + 2.0 * step:
+            peak = float(report["balls"]["peak_force"])
+    assert len(partings) > 1
+    assert peak > 10.0 * partings[0]  # that was the ring's rattle
+    assert report["balls"]["first_impact_force"] == peak
 
 
 def test_the_first_impact_outlasts_a_rattle():
