@@ -48,7 +48,7 @@ def exact_ellipse(ratio: float) -> Ellipse:
         return (kappa**2 * second - first) / (first - second) - ratio
 
     # kappa is below its ratio, and about the ratio to the power of 2/3 near a circle
-    kappa = brentq(mismatch, 1.0 + 0.5 * (ratio - 1.0) / ratio, ratio, xtol=1e-14, rtol=1e-14)
+    kappa = brentq(mismatch, 1.0 + 0.5 * (ratio - 1.0) / ratio, ratio, xtol=1e-14)
     return of(cast(float, kappa))
 
 

@@ -81,7 +81,7 @@ def test_order_of_the_leapfrog_steps(friction: float, order: float) -> None:
     ):  # fmt: skip
         laws |= {f"{law}.static": friction * static, f"{law}.dynamic": friction * dynamic}
         laws |= {f"{law}.g6": friction * 1e-4}
-    exact = inside_at_end(touching(micro_step=0.0, **{"interface.tolerance": 1e-10}, **laws))
+    exact = inside_at_end(touching(micro_step=0.0, **{"interface.tolerance": 1e-11}, **laws))
     steps = 4e-8 / 2.0 ** np.arange(3)
     errors = [float(np.max(np.abs(inside_at_end(touching(micro_step=h, **laws)) - exact))) for h in steps]
     slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -57,7 +57,7 @@ def test_unknown_scene_to_show(command: Command):
         (("--set", "bearing.clearance=0"), "clearance = 0 m"),
         (
             ("--set", "bearing.clearance=0.3"),
-            "clearance = 0.3 m is out of all proportion to journal_radius = 0.0097 m; it may be a tenth of "
+            "clearance = 0.3 m is out of all proportion to journal_radius = 0.0097 m; it may be half of "
             "that at most. A plain number is in m; write '0.3 mm' where mm are meant",
         ),
         (("--set", "bearing.balls.play=5e-3"), "balls.play = 0.005 m is out of all proportion to half of"),
