@@ -91,16 +91,15 @@ def race_stiffness(b: BallSet) -> RaceStiffness:
 
 
 GEOMETRY = (
-    *("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.outer_conformity"),
+    *("balls.diameter", "balls.pitch_diameter", "balls.conformity"),
     *("balls.modulus", "balls.poisson", "balls.hertz"),
 )
 
 
 def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:
     """Initial dependencies of a rolling bearing's outputs; `counted`: what of `Coordinates` it counts."""
-    known: dict[str, tuple[str, ...]] = {
-        f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")
-    }
+    outer = (*GEOMETRY, "balls.outer_conformity")
+    known = {"stiffness.inner": GEOMETRY, "stiffness.outer": outer, "stiffness.series": outer}
     known["contact.rate"] = RATE_FROM
     return known | {f"size.{name}": ("balls.count",) for name in counted}
 
