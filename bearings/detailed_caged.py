@@ -15,8 +15,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, Coordinates
@@ -112,7 +112,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m, m.o.pockets)
+    outputs.watch(m.time + t, m, m.o.pockets)
 
 
 @kernel
@@ -121,7 +121,7 @@ def report(q, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=False)
-    outputs.state_contacts(o.pockets, m.s.side, count, p.balls.rows)
+    outputs.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
     in_sides = stored(m.s.side, m.d.cage_contact, count)
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
@@ -197,7 +197,10 @@ def check(p: Parameters) -> str | None:
             f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
             f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
         )
-    return problem(p) or friction_problem(p.cage_friction, "cage_friction")
+    pocket = out_of_proportion(
+        "cage.clearance", p.cage.clearance, "half of balls.diameter", p.balls.ball_radius
+    )
+    return pocket or problem(p, "cage_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -17,7 +17,6 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
 from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
@@ -165,7 +164,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m, m.o.neighbours)
+    outputs.watch(m.time + t, m, m.o.neighbours)
 
 
 @kernel
@@ -174,7 +173,7 @@ def report(q, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=True)
-    outputs.state_contacts(o.neighbours, m.s.side, count, p.balls.rows)
+    outputs.state_contacts(o.neighbours, m.s.side, m)
     in_sides = stored(m.s.side, m.d.ball_contact, count)
     ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
 
@@ -235,7 +234,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return problem(p) or friction_problem(p.ball_friction, "ball_friction")
+    return problem(p, "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -39,8 +39,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.peaks import PeakMemory, watch_peaks
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import part
 from touchdown.bearings.rolling.balls import (
@@ -48,14 +48,15 @@ from touchdown.bearings.rolling.balls import (
     BallContacts,
     Coordinates,
     FreeBallSet,
+    largest,
     watch_balls,
-    watch_contacts,
 )
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
     RollingParameters,
+    problem,
     race_stiffness,
     starts_from,
     state_constants,
@@ -69,7 +70,6 @@ from touchdown.bearings.rolling.row import (
     RaceBalls,
     drift,
     fastest,
-    largest_pressed,
     neighbour_forces,
     place,
     press_balls,
@@ -78,7 +78,7 @@ from touchdown.bearings.rolling.row import (
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
 from touchdown.bearings.rolling.rubbing import RubbedRace
-from touchdown.bearings.rolling.side import SideContacts, largest, stored
+from touchdown.bearings.rolling.side import SideContacts, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -165,6 +165,7 @@ class Hidden(RollingMemory, KickMemory):
     inner: RubbedRace = group(RubbedRace)
     outer: RubbedRace = group(RubbedRace)
     side: SideContacts = group(SideContacts)
+    side_peaks: PeakMemory = group(PeakMemory)
     lever: tuple = array(MOST_BALLS)  # m, of the chord between neighbours that touch, about the middle
 
 
@@ -195,10 +196,10 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    force, indentation = largest_pressed(m)
-    watch_balls(force, indentation, m)
-    side, overlap, _ = largest(m.s.side, m.p.balls.count, m.p.balls.rows)
-    watch_contacts(side, overlap, m.o.neighbours)
+    time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
+    watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
+    push = largest(s.side.normal, s.side.indentation, count, rows)
+    watch_peaks(time, push, m.o.neighbours, s.side_peaks)
 
 
 @kernel
@@ -207,8 +208,10 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    o.balls.force, o.balls.indentation = largest_pressed(m)
-    o.neighbours.force, o.neighbours.indentation, _ = largest(m.s.side, count, p.balls.rows)
+    now = largest(m.s.inner.normal, s.indentation, count, p.balls.rows)
+    o.balls.force, o.balls.indentation = now.force, now.indentation
+    now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
+    o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
     moving = d.mass * d.pitch_radius**2
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
     kinetic, height, pressed, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
@@ -302,13 +305,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    laws = {
-        "friction": p.friction,
-        "race_friction": p.race_friction,
-        "ball_friction": p.ball_friction,
-    }
-    problems = [p.balls.problem(), *(friction_problem(law, name) for name, law in laws.items())]
-    return next((text for text in problems if text), None)
+    return problem(p, "friction", "race_friction", "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 from scipy.optimize import brentq, minimize_scalar
 
@@ -162,13 +162,26 @@ def makkar_amplitude(static: float, dynamic: float, g2: float, g3: float, slope:
     return float(cast(float, root))
 
 
-def problem(law: FrictionLaw, name: str) -> str | None:
-    """Why the law of parameter group `name` has no curve, or None."""
-    if law.kind == MAKKAR and law.g2 <= law.g3:
-        return (
-            f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
-            "the difference of their curves is what rises to the static coefficient"
-        )
+def problem(parameters: Any, *names: str) -> str | None:
+    """Why a law in one of these groups of a model's parameters has no curve, or not the one set; or None.
+
+    Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else;
+    as it stands by default it was not.
+    """
+    usual = type(parameters)()
+    for name in names:
+        law = getattr(parameters, name)
+        if law.kind == MAKKAR and law.g2 <= law.g3:
+            return (
+                f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
+                "the difference of their curves is what rises to the static coefficient"
+            )
+        if law.kind == COULOMB and law.static not in (law.dynamic, getattr(usual, name).static):
+            return (
+                f"{name}.static = {law.static:g} does nothing with {name}.kind = 0 (Coulomb), whose "
+                f"coefficient is {name}.dynamic = {law.dynamic:g}; leave it out, or take {name}.kind = 1 "
+                "(Stribeck) or 2 (Makkar)"
+            )
     return None
 
 

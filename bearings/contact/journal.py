@@ -13,8 +13,10 @@ from typing import NamedTuple
 
 from touchdown.bearings.contact.kick import STILL
 from touchdown.bearings.contact.pair import INSIDE, Place, heat, press, slip
+from touchdown.bearings.contact.peaks import Largest, PeakMemory, watch_peaks
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import real
+from touchdown.modelkit.ports import PARTED
+from touchdown.modelkit.variables import group, real
 
 
 class Touch(NamedTuple):
@@ -103,7 +105,7 @@ def note(touched, contact):
 
 @dataclass(frozen=True)
 class ContactMemory:
-    """Last accepted micro-step before the first contact, to locate it in time."""
+    """Last accepted micro-step before the first contact, to locate it in time; then what follows it."""
 
     time: float = real(0.0, "s", "time")
     gap: float = real(0.0, "m", "gap")
@@ -112,7 +114,9 @@ class ContactMemory:
     y: float = real(0.0, "m", "journal")
     vx: float = real(0.0, "m/s", "journal")
     vy: float = real(0.0, "m/s", "journal")
-    left: float = real(0.0, "1", "1: the journal has left the ring after its first contact")
+    touching: float = real(0.0, "s", "last micro-step in contact")
+    over: float = real(0.0, "1", "1: the first impact is over, the journal free for longer than a rattle")
+    peaks: PeakMemory = group(PeakMemory)
 
 
 RATE_FROM = ("contact.stiffness", "contact.exponent", "contact.expected_indentation", "journal.inv_m")
@@ -150,19 +154,18 @@ def _crossing(f0, d0, f1, d1, h):
 
 @kernel
 def watch_contact(time, journal, touched, report, memory):
-    """Keep the peaks and the first contact; called after each accepted micro-step.
+    """Keep the peaks, the first contact and the first impact's end; called after each accepted micro-step.
 
     time: s; journal: Motion (m, m/s) at that time; touched, report, memory: records of `Touched`,
     `ContactReport` and `ContactMemory`.
     """
-    normal, indentation, rate = touched.normal, touched.indentation, touched.rate
-    if normal > report.peak_force:
-        report.peak_force = normal
-    if indentation > report.peak_indentation:
-        report.peak_indentation = indentation
+    indentation, rate = touched.indentation, touched.rate
+    watch_peaks(time, Largest(touched.normal, indentation, 0, 0), report, memory.peaks)
+    if indentation >= 0.0:
+        memory.touching = time
     if report.first_time >= 0.0:
-        if indentation < 0.0:
-            memory.left = 1.0
+        if time - memory.touching > PARTED:
+            memory.over = 1.0
         return
     if indentation >= 0.0:
         h = time - memory.time

@@ -25,7 +25,7 @@ from typing import NamedTuple
 from touchdown.bearings.contact.friction import coefficient
 from touchdown.bearings.contact.kick import damped_normal
 from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.variables import real
+from touchdown.modelkit.variables import integer, real
 
 REVERSAL = 0.05  # m/s; a ball's speed along the race around which rolling resistance changes its sign
 
@@ -81,6 +81,8 @@ class LoadedBalls:
     total: float = real(0.0, "N", "of all forces between the rings")
     indentation: float = real(0.0, "m", "largest")
     energy: float = real(0.0, "J", "stored in the contacts")
+    most_loaded: int = integer(0, "which ball bears the largest force")
+    deepest: int = integer(0, "at which ball the rings come closest")
 
 
 class Raceway(NamedTuple):
@@ -158,15 +160,15 @@ def between_races(gap, c, s, orbit, spin, rm, m):
 
 
 @kernel
-def note(s, ball):
-    """Count a loaded ball in `s` (LoadedBalls); ball: Pressed (N, m)."""
+def note(s, b, ball):
+    """Count the loaded ball number `b` in `s` (LoadedBalls); ball: Pressed (N, m)."""
     s.loaded += 1.0
     s.total += ball.force
     s.energy += 0.4 * ball.elastic * ball.indentation
     if ball.force > s.force:
-        s.force = ball.force
+        s.force, s.most_loaded = ball.force, b
     if ball.indentation > s.indentation:
-        s.indentation = ball.indentation
+        s.indentation, s.deepest = ball.indentation, b
 
 
 @kernel

@@ -323,13 +323,3 @@ def fastest(m):
     if s.ring.indentation > 0.0:
         below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
     return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * side / d.mass)), s.seat.fastest)
-
-
-@kernel
-def largest_pressed(m):
-    """(Largest force on one of a row (N), largest indentation (m)) of the balls between the rings."""
-    force, indentation = 0.0, 0.0
-    for b in range(m.p.balls.count):
-        force = max(force, m.s.inner.normal[b])
-        indentation = max(indentation, m.s.balls.indentation[b])
-    return force / m.p.balls.rows, indentation

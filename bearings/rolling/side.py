@@ -60,17 +60,6 @@ def note_apart(contacts, b):
 
 
 @kernel
-def largest(contacts, count, rows):
-    """(Normal force on one of `rows` (N), indentation (m), ball) of the most loaded of `count`; 0: none."""
-    force, indentation, ball = 0.0, 0.0, 0
-    for b in range(count):
-        if contacts.normal[b] > force:
-            force, ball = contacts.normal[b], b
-        indentation = max(indentation, contacts.indentation[b])
-    return force / rows, indentation, ball
-
-
-@kernel
 def stored(contacts, law, count):
     """Energy (J) of one kind of contact of `count` balls; law: a record."""
     energy = 0.0

@@ -35,7 +35,7 @@ class Outcome:
     zero: float = 0.0  # s, the scene's zero on the simulation's clock
     end: float = 0.0  # s, on the simulation's clock
     wall_time: float = 0.0  # s, stepping only
-    start_up: float = 0.0  # s, loading and initialising
+    start_up: float = 0.0  # s, loading, initialising, and compiling what is new in the first step
     residual: float = 0.0  # of the ledger, over its scale
     share: float = 0.0  # of the ledger's residual in turnover, of the worst connection
     worst: str = ""  # that connection
@@ -109,13 +109,13 @@ def simulate(
             told.append(Retirement(coupling, [ledger, *told]))
             told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
-            wall_time = _loop(_Steps(coupling, ledger, shortening), told, now, interrupted)
+            wall_time, compiling = _loop(_Steps(coupling, ledger, shortening), told, now, interrupted)
     return Outcome(
         steps=now.done,
         zero=zero,
         end=now.time,
         wall_time=wall_time,
-        start_up=start_up,
+        start_up=start_up + compiling,
         residual=ledger.residual,
         share=ledger.worst_share,
         worst=ledger.worst_title,
@@ -179,11 +179,17 @@ class _Steps:
             self._ledger.book(self._taken, part)
 
 
-def _loop(steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: threading.Event) -> float:
-    """Take macro steps until the end, or until the run is to end; returns the time it took (s)."""
+def _loop(
+    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
+) -> tuple[float, float]:
+    """Take macro steps until the end, or until the run is to end.
+
+    Returns the time that stepping took and what the first step took beyond the others' mean (s): kernels
+    are compiled in it.
+    """
     at_beats = [observer.stepped for observer in observers]
     at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
-    began = clock.perf_counter()
+    began = settled = clock.perf_counter()
     try:
         for number in range(now.steps):
             if interrupted.is_set():
@@ -193,11 +199,17 @@ def _loop(steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted
             now.move(number + 1, steps.length)
             for stepped in at_beats if now.beat else at_steps:
                 stepped(now)
+            if number == 0:
+                settled = clock.perf_counter()
             if now.ended is not None:
                 break
     except TouchdownError as error:
         now.fail(str(error))
-    return clock.perf_counter() - began
+    ended = clock.perf_counter()
+    if now.done < 2:
+        return ended - began, 0.0
+    each = (ended - settled) / (now.done - 1)
+    return now.done * each, settled - began - each
 
 
 @contextmanager

@@ -86,7 +86,7 @@ def test_order_of_the_leapfrog_steps(static: tuple[float, float], least: float) 
         ("friction", static[0], 0.1), ("race_friction", static[0], 0.1), ("ball_friction", static[1], 0.02)
     ):  # fmt: skip
         laws |= {f"{law}.static": peak, f"{law}.dynamic": rubs * plateau, f"{law}.g6": rubs * 1e-4}
-    exact = inside_at_end(touching(micro_step=0.0, **{"interface.tolerance": 1e-10}, **laws))
+    exact = inside_at_end(touching(micro_step=0.0, **{"interface.tolerance": 1e-11}, **laws))
     steps = 1.6e-7 / 2.0 ** np.arange(3)
     errors = [float(np.max(np.abs(inside_at_end(touching(micro_step=h, **laws)) - exact))) for h in steps]
     slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from touchdown.bearings.contact import profile as race_profile
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, damped
+from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.contact.profile import RaceProfile
 from touchdown.bearings.contact.search import SearchReport
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts
@@ -19,6 +19,7 @@ from touchdown.bearings.rolling.declarations import (
     RollingParameters,
     race_stiffness,
 )
+from touchdown.bearings.rolling.declarations import problem as rolling_problem
 from touchdown.bearings.rolling.micro_step import KickMemory, resolved_step
 from touchdown.bearings.rolling.side import SideContacts
 from touchdown.modelkit.variables import array, group, groups, integer, real
@@ -102,6 +103,9 @@ class BallBodiesMemory(RollingMemory, KickMemory):
     inner: Contacts = group(Contacts)
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)
+    inner_peaks: PeakMemory = group(PeakMemory)
+    outer_peaks: PeakMemory = group(PeakMemory)
+    side_peaks: PeakMemory = group(PeakMemory)
     cross: tuple = array(MOST_BALLS)  # of the directions along both races at a ball
     outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
     outer_moment: float = real(0.0, "N.m", "of the balls on the outer ring, about its centre")
@@ -143,14 +147,15 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
     }
 
 
-def problem(p: BallBodiesParameters) -> str | None:
-    """What is wrong between the parameters of balls and races, or None."""
+def problem(p: BallBodiesParameters, side: str) -> str | None:
+    """What is wrong between the parameters of journal, balls and races, or None.
+
+    side: name of the friction law of the balls' contacts with each other or the cage.
+    """
     b = p.balls
     inner, outer = b.inner_radius - 0.5 * b.play, b.outer_radius + 0.5 * b.play
     problems = (
-        b.problem(),
-        friction_problem(p.friction, "friction"),
-        friction_problem(p.race_friction, "race_friction"),
+        rolling_problem(p, "friction", "race_friction", side),
         race_profile.problem("inner_profile", p.inner_profile, inner, b.ball_radius, hollow=False),
         race_profile.problem("outer_profile", p.outer_profile, outer, b.ball_radius, hollow=True),
     )

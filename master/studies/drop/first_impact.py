@@ -21,9 +21,9 @@ from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.ports import PARTED
 
 AVERAGE = 50e-6  # s
-PARTED = 2e-4  # s
 ROUNDING = 1e-12  # s
 PEAKS = ("contact.peak_force", "contact.peak_indentation")  # of a touchdown bearing, since the start
 CONTACT = "force"  # of journal and ring, beside the parts of INSIDE
