@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from bearing_states import pressed, state_in_contact
+from bearing_states import instance_of, pressed, state_in_contact
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import COULOMB, MAKKAR, Curve, FrictionLaw, curve, prepared
@@ -325,3 +325,134 @@ def test_heat_is_what_a_kick_takes(name, h, seed):
     scale = abs(gained) + abs(handed) + abs(storing) + abs(loss)
     assert abs(loss) > 1e-3 * scale
     assert gained + storing + handed + loss == pytest.approx(0.0, abs=1e-6 * scale)
+
+
+def go_on(instance: Instance, words: np.ndarray, step: float, span: float) -> np.ndarray:
+    """State (n,) after `span` (s) in steps of `step` (s), 0: adaptive, from a memory of the instance."""
+    instance.words[:] = words
+    m = instance.record
+    m["d"]["micro_step"], m["s"]["kick"] = step, 0.5 * step
+    if span > 0.0:
+        instance.step(0.0, span)
+    return m["q"][: int(m["n"])].copy()
+
+
+@every_model
+def test_steps_are_of_second_order(name):
+    """A journal rolls in a preloaded bearing: nothing hits, all rubs. Half the step errs by a quarter."""
+    instance = instance_of(name)
+    m = instance.record
+    p, u = m["p"], m["u"]
+    p["gravity"], p["micro_step"], p["interface"]["tolerance"] = 0.0, 0.0, 1e-9
+    p["balls"]["play"] = -2e-6
+    if name == "detailed_caged":
+        p["cage"]["clearance"] = 1e-4
+    u["journal"]["x"], u["journal"]["y"], u["journal"]["omega"] = 0.5e-4, -3.06e-4, 942.0
+    u["journal"]["inv_m"], u["journal"]["inv_I"] = 1.0 / 1.65, 2000.0
+    u["housing"]["inv_m"], u["housing"]["k_over_m"], u["housing"]["c_over_m"] = 1.0 / 5.02, 4.98e7, 498.0
+    instance.start(0.0)
+    instance.step(0.0, 4e-4)
+    u["journal"]["omega"] = m["q"][seat.JW]
+    copies = ("journal", seat.JX), ("housing", seat.HX)
+    for part, first in copies:
+        for i, key in enumerate(("x", "y", "vx", "vy")):
+            u[part][key] = m["q"][first + i]
+    words, weight = instance.words.copy(), m["weight"][: int(m["n"])].copy()
+    weight[[ring.RANGLE, ring.LOSS]] = 0.0
+    exact = go_on(instance, words, 0.0, 5e-5)
+    count = int(p["balls"]["count"])
+    assert m["s"]["ring"]["normal"] > 10.0
+    assert np.all(m["s"]["inner"]["normal"][:count] > 0.0)
+    assert not np.any(m["s"]["side"]["indentation"] > 0.0)
+    errors = []
+    for step in (2e-6, 1e-6, 5e-7):
+        off = np.abs(go_on(instance, words, step, 5e-5) - exact) * weight
+        errors.append(float(np.max(off[seat.INSIDE :])))
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.05)
+    assert errors[0] < 0.05
+
+
+CAGELESS = ("detailed_cageless", "simplified_cageless")
+every_cageless = pytest.mark.parametrize("name", CAGELESS)
+KICK = 2.5e-6  # s
+VISCOUS_AS_SHIPPED = 250.0  # N s/m, in the contacts of neighbours
+
+
+def row_of_balls(name: str, spacing: float, speeds: np.ndarray) -> Instance:
+    """All balls in a row of a `spacing` over that of touching ones, nothing else in touch, no friction.
+
+    speeds: (17,) m/s along the pitch circle.
+    """
+    instance = instance_of(name)
+    p, d, q = (instance.record[part] for part in ("p", "d", "q"))
+    p["gravity"], p["balls"]["play"] = 0.0, 40e-6
+    p["ball_contact"]["viscous"] = VISCOUS_AS_SHIPPED
+    for law in ("friction", "race_friction", "ball_friction"):
+        p[law]["static"] = p[law]["dynamic"] = p[law]["g6"] = 0.0
+    instance.start(0.0)
+    radius = 0.5 * float(p["balls"]["pitch_diameter"])
+    angle = 1.0 + 2.0 * spacing * np.arcsin(d["ball_radius"] / radius) * np.arange(17)
+    along = np.stack([-np.sin(angle), np.cos(angle)])
+    if name == "simplified_cageless":
+        values = {row.ANGLE: angle, row.ORBIT: speeds / radius}
+    else:
+        values = {bodies.X: radius * along[1], bodies.Y: -radius * along[0]}
+        values |= {bodies.VX: speeds * along[0], bodies.VY: speeds * along[1]}
+    for component, value in values.items():
+        q[BALLS + component * 17 : BALLS + (component + 1) * 17] = value
+    return instance
+
+
+def energy(instance: Instance) -> float:
+    """Kinetic and stored energy (J) of the bearing."""
+    stated = instance.record["o"]["energy"]
+    return float(stated["kinetic"] + stated["potential"])
+
+
+def speeds_of(instance: Instance) -> np.ndarray:
+    """(17,) m/s along the pitch circle."""
+    q, radius = instance.record["q"], 0.5 * float(instance.record["p"]["balls"]["pitch_diameter"])
+    components = [q[BALLS + c * 17 : BALLS + (c + 1) * 17] for c in range(4)]
+    if instance.model.name == "simplified_cageless":
+        return radius * components[row.ORBIT]
+    x, y, vx, vy = components
+    return (x * vy - y * vx) / np.hypot(x, y)
+
+
+TO_AND_FRO = (-1.0) ** np.arange(17)
+START = {"to and fro": 0.02 * TO_AND_FRO, "random": 0.1 * np.random.default_rng(0).normal(size=17)}  # m/s
+
+
+@every_cageless
+@pytest.mark.parametrize("speeds", START.values(), ids=START)
+def test_a_row_under_heavy_damping_does_not_swing(name, speeds):
+    """Pressed together, balls lose energy with every kick; of moving to and fro a tenth is left after one.
+
+    Each run is one kick longer than the one before.
+    """
+    instance = row_of_balls(name, 0.999, speeds)
+    words, energies, swinging = instance.words.copy(), [], []
+    for kicks in range(1, 60):
+        go_on(instance, words, KICK, kicks * KICK)
+        energies.append(energy(instance))
+        swinging.append(abs(float(np.mean(TO_AND_FRO * speeds_of(instance)))))
+    assert np.all(np.diff(energies) < 0.0)
+    before = abs(float(np.mean(TO_AND_FRO * speeds)))
+    if speeds is START["to and fro"]:
+        assert swinging[0] < 0.1 * before
+    assert max(swinging[2:]) < 0.1 * before + 1e-3
+
+
+@every_cageless
+def test_balls_that_knock_under_heavy_damping_end_as_they_should(name):
+    """A row that just touches knocks itself apart; after 0.1 ms it has the energy of adaptive steps."""
+    instance = row_of_balls(name, 1.0, START["random"])
+    words = instance.words.copy()
+    instance.record["p"]["interface"]["tolerance"] = 1e-7
+    go_on(instance, words, 0.0, 1e-4)
+    exact = energy(instance)
+    go_on(instance, words, KICK, 1e-4)
+    assert energy(instance) == pytest.approx(exact, rel=0.04)
+    go_on(instance, words, 0.5 * KICK, 1e-4)
+    assert energy(instance) == pytest.approx(exact, rel=0.015)
