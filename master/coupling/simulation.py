@@ -7,7 +7,7 @@ import threading
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -110,12 +110,22 @@ def simulate(
             told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
             wall_time, compiling = _loop(_Steps(coupling, ledger, shortening), told, now, interrupted)
-    return Outcome(
+    return replace(
+        _heard(ledger, judge, shortening),
         steps=now.done,
         zero=zero,
         end=now.time,
         wall_time=wall_time,
         start_up=start_up + compiling,
+        ended=now.ended or Ended.COMPLETED,
+        reason=now.reason,
+        coupling=coupling.figures,
+    )
+
+
+def _heard(ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
+    """What the ledger heard, and what came of it."""
+    return Outcome(
         residual=ledger.residual,
         share=ledger.worst_share,
         worst=ledger.worst_title,
@@ -125,9 +135,6 @@ def simulate(
         warned_at=judge.warned_at,
         warning=judge.warning,
         shorter_steps=shortening.times,
-        ended=now.ended or Ended.COMPLETED,
-        reason=now.reason,
-        coupling=coupling.figures,
     )
 
 
