@@ -134,7 +134,7 @@ def _rubbing(dq, m):
     """Heat (W) between neighbours over the kick whose accelerations are in dq."""
     loss, count = 0.0, m.p.balls.count
     for b in range(count):
-        if m.s.side.normal[b] > 0.0:
+        if m.s.side.indentation[b] > 0.0:
             k = b + 1 if b + 1 < count else 0
             this, following = ball_motion(dq, b, m), ball_motion(dq, k, m)
             loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)

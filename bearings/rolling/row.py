@@ -215,7 +215,7 @@ def rubbing(dq, m):
     """Heat (W) between neighbours over the kick whose accelerations are in dq."""
     loss, count = 0.0, m.p.balls.count
     for b in range(count):
-        if m.s.side.normal[b] > 0.0:
+        if m.s.side.indentation[b] > 0.0:
             k, lever = b + 1 if b + 1 < count else 0, m.s.lever[b]
             following, this = _along_chord(dq, k, lever, m), _along_chord(dq, b, lever, m)
             loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)

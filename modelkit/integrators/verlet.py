@@ -26,7 +26,7 @@ SLIVER = 1e-6  # of a step; what is left of a span by rounding
 def step_length(frequency, left, longest):
     """The next step (s) for contacts up to `frequency` (rad/s): even ones over what is `left` (s)."""
     h = longest if frequency * longest <= RESOLUTION else RESOLUTION / frequency
-    return left / math.ceil(left / h - 1e-6) if h < left else left
+    return left if h >= left else left / math.ceil(left / h - 1e-6) if h > 0.0 else 0.0
 
 
 @inlined
@@ -75,4 +75,6 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
             f[i] = f_new[i]
         observe(t, q, m)
         h = following
+        if following > 0.0:  # a hit found only now may need a shorter one than its kick was for
+            h = min(following, step_length(fastest(m), span - t, longest))
     return status, steps

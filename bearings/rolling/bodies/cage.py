@@ -115,7 +115,7 @@ def rubbing(q, dq, m):
     c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
     loss = 0.0
     for b in range(m.p.balls.count):
-        if m.s.side.normal[b] > 0.0:
+        if m.s.side.indentation[b] > 0.0:
             rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
             loss += heat_of(m.s.side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
     return loss

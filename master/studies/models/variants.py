@@ -21,6 +21,7 @@ OTHER = {
     "simplified_cageless": ("detailed_cageless", "detailed bearings"),
 }
 PLAIN = "bushing"
+COULOMB = 0  # of friction.kind
 STEPPING = ("interface.", "micro_step")
 LOOSER = 100.0  # times the tolerance inside a bearing
 OFFSETS = ("x0", "y0")  # of a housing out of line
@@ -114,7 +115,17 @@ def _friction(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Va
     present = {system.value(f"{name}.friction.kind") for name in has}
     for value in range(int(kind.minimum or 0), int(kind.maximum or 0) + 1):
         if present != {value}:
-            yield Variant(f"friction: {_law(kind, value)}", _all(scene, has, {"friction.kind": value}))
+            yield Variant(f"friction: {_law(kind, value)}", _with_law(scene, system, has, value))
+
+
+def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> Scene:
+    """Scene with that friction law; Coulomb's has one coefficient only, the dynamic one."""
+    for name in seats:
+        changes: dict[str, object] = {f"{name}.friction.kind": kind}
+        if kind == COULOMB:
+            changes[f"{name}.friction.static"] = system.value(f"{name}.friction.dynamic")
+        scene = scene.set(changes)
+    return scene
 
 
 def _law(kind: Variable, value: int) -> str:

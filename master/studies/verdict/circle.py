@@ -41,8 +41,8 @@ class Circle:
         return any(m.ended is Ended.INTERRUPTED for m in self.members.values())
 
     def over_the_limit(self, limit: float) -> int:
-        """How many runs have an energy ledger beyond `limit` of the energy lost by falling."""
-        residuals = (m.summary.get("energy_residual_relative") for m in self.members.values())
+        """How many runs have a ledger whose residual is beyond `limit` of what a connection turned over."""
+        residuals = (m.summary.get("energy_residual_of_turnover") for m in self.members.values())
         return sum(isinstance(r, float) and r > limit for r in residuals)
 
     def largest_force(self) -> float | None:

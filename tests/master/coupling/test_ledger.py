@@ -171,7 +171,7 @@ def test_the_remedy_names_what_is_to_blame() -> None:
             step: remedy(scene.set({"run.macro_step": step}).run, system, account, 0.1)
             for step in (1e-5, 5e-3)
         }
-    assert said[1e-5].endswith("try --set bearing.micro_step=1e-06")
+    assert said[1e-5].endswith("try --set bearing.micro_step=1.25e-06")
     assert "is too long" in said[5e-3]
     assert said[5e-3].rpartition(" ")[2] == "0.002"
 
