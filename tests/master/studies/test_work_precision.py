@@ -29,7 +29,9 @@ STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
     asked = Asked(("hold", "acceleration", "interface"), STEPS, repeat=1, in_process=True)
-    scene = shortened(load_scene(SCENE))
+    # holding the motion makes 1.4 % of the turnover at 10 us, 17 % at 80 us
+    limits = {"run.warn_residual": 0.005, "run.stop_residual": 0.06}
+    scene = shortened(load_scene(SCENE)).set(limits)
     begun: list[str] = []
     found = compare_schemes(scene, asked, begun.append)
     assert len(begun) == pieces(scene, asked)
