@@ -99,9 +99,8 @@ def simulate(
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)
-        scale = energy_scale(scene, system)
         with (
-            _kept(Ledger(coupling, scale, scale or fall_energy(system))) as ledger,
+            _kept(scene, system, coupling) as ledger,
             _recording(scene, now, record_to) as recording,
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
@@ -220,8 +219,10 @@ def _loop(
 
 
 @contextmanager
-def _kept(ledger: Ledger) -> Generator[Ledger]:
-    """The ledger, closed at the end."""
+def _kept(scene: Scene, system: System, coupling: Stepper) -> Generator[Ledger]:
+    """The ledger of the run, closed at the end."""
+    scale = energy_scale(scene, system)
+    ledger = Ledger(coupling, scale, scale or fall_energy(system))
     try:
         yield ledger
     finally:
