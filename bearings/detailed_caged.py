@@ -176,7 +176,7 @@ def derive(p: Parameters) -> Derived:
         cage_contact=damped(side, min(b.ball_mass, p.cage.mass)),
         cage_friction=prepared(p.cage_friction),
         cage_inertia=inertia,
-        cage_grip=of_cage,
+        cage_answer=of_cage,
         size=Coordinates(
             coordinates=9 + 3 * b.count,
             constraints=1,

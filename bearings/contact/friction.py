@@ -96,6 +96,7 @@ def saturation(x):
 def follow(speed, law):
     """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
 
+    The derivative leaves out that of the fading in Stribeck's law, which only falls.
     tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|). What a law does not have is not computed.
     """
     v = abs(speed)

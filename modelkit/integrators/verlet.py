@@ -19,6 +19,7 @@ from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 RESOLUTION = 0.8
+OVERRUN = 1.25  # of the resolution, up to which a step keeps the length that its kick was for
 SLIVER = 1e-6  # of a step; what is left of a span by rounding
 
 
@@ -75,6 +76,6 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
             f[i] = f_new[i]
         observe(t, q, m)
         h = following
-        if following > 0.0:  # a hit found only now may need a shorter one than its kick was for
+        if fastest(m) * following > OVERRUN * RESOLUTION:  # a hit found only now needs a shorter one
             h = min(following, step_length(fastest(m), span - t, longest))
     return status, steps

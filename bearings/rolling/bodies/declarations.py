@@ -91,7 +91,7 @@ class BallBodiesDerived(RollingDerived):
     outer_radius: float = real(0.0, "m", "outer race")
     micro_step: float = real(0.0, "s", "longest step inside")
     searched: int = integer(0, "1: contacts with races are searched for")
-    cage_grip: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
+    cage_answer: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
     x: tuple = array(MOST_BALLS)  # where the balls start, from the middle
     y: tuple = array(MOST_BALLS)
 

@@ -86,7 +86,7 @@ def fastest(m):
     if s.ring.indentation > 0.0:
         below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
-    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_grip)), m.s.seat.fastest)
+    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 
 
 def ring_weights(p: BallBodiesParameters) -> list[float]:

@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Mapping, Sequence
 
 SEATS = ("A", "B")
-NO_LIMIT = {"run.stop_residual": 1000.0}  # of a whirl, which moves joules where falling gives less
+NO_LIMIT = {"run.stop_residual": 1000.0}  # of what is turned over: never, so that every drop counts
 PHASE = "rotor.unbalance_angle"
 
 
