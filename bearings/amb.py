@@ -48,7 +48,7 @@ class Parameters:
         0, "where position is measured: 0 at the journal, 1 at the sensor", minimum=0, maximum=1
     )
     force_limit: float = real(1000.0, "N", "largest force in each direction", above=0.0)
-    shutdown_time: float = real(0.005, "s", "time of the shutdown")
+    shutdown_time: float = real(0.005, "s", "time of the shutdown", minimum=0.0)
     interface: Interface = group(Interface)
 
 

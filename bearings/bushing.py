@@ -23,6 +23,7 @@ from touchdown.bearings.contact.journal import (
     watch_contact,
 )
 from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_energy
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
 from touchdown.modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
@@ -145,7 +146,12 @@ def check(p: Parameters) -> str | None:
             f"contact.damping_ratio = {p.contact.damping_ratio:g} needs contact.mass above 0 kg; "
             "a bushing does not know the mass of its journal"
         )
-    return problem(p.friction, "friction")
+    journal = "journal_radius", p.journal_radius
+    return (
+        out_of_proportion("clearance", p.clearance, *journal)
+        or out_of_proportion("contact.expected_indentation", p.contact.expected_indentation, *journal)
+        or problem(p, "friction")
+    )
 
 
 def weights(p: Parameters) -> np.ndarray:

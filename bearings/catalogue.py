@@ -4,14 +4,16 @@ Filled in, because the source does not give them: masses and inertias of the inn
 outer rings (catalogue mass less the other parts), static load ratings of the small bearings, the cage
 as heavy as two balls. Corrected: the pitch diameter of the 6904, printed as 26.1 mm, which cannot hold
 17 balls of 4.8 mm; 28.5 mm is the mean of bore and outside diameter. Read: the 5 um of Table 1 as radial
-play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on diameter.
+play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on diameter. Stiffness of
+the races is the source's, with its fits for the elliptic integrals.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
-from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.balls import PRINTED, BallSet
 from touchdown.bearings.rolling.ring import Ring
 
 
@@ -40,6 +42,7 @@ class Bearing:
             "balls.pitch_diameter": b.pitch_diameter,
             "balls.play": b.play,
             "balls.conformity": b.conformity,
+            "balls.hertz": b.hertz,
             "ring.mass": self.ring.mass,
             "ring.inertia": self.ring.inertia,
             "cage.mass": 2.0 * b.ball_mass,
@@ -47,6 +50,8 @@ class Bearing:
             "damping": self.damping,
         }
 
+
+_balls = partial(BallSet, hertz=PRINTED)
 
 CATALOGUE = {
     bearing.designation: bearing
@@ -56,7 +61,7 @@ CATALOGUE = {
             bore=20e-3,
             outside=42e-3,
             width=12e-3,
-            balls=BallSet(count=9, diameter=6.4e-3, pitch_diameter=31e-3, play=5e-6),
+            balls=_balls(count=9, diameter=6.4e-3, pitch_diameter=31e-3, play=5e-6),
             ring=Ring(mass=0.015, inertia=1.9e-6),
             caged=True,
             outer_ring=0.042,
@@ -67,7 +72,7 @@ CATALOGUE = {
             bore=20e-3,
             outside=37e-3,
             width=9e-3,
-            balls=BallSet(count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0),
+            balls=_balls(count=17, diameter=4.8e-3, pitch_diameter=28.5e-3, play=0.0),
             ring=Ring(mass=0.0095, inertia=1.08e-6),
             caged=False,
             outer_ring=0.020,
@@ -78,7 +83,7 @@ CATALOGUE = {
             bore=70e-3,
             outside=110e-3,
             width=20e-3,
-            balls=BallSet(count=11, diameter=12e-3, pitch_diameter=90e-3, play=7.5e-6),
+            balls=_balls(count=11, diameter=12e-3, pitch_diameter=90e-3, play=7.5e-6),
             ring=Ring(mass=0.376, inertia=5.2e-4),  # with the bronze ring
             caged=True,
             outer_ring=0.30,
@@ -90,7 +95,7 @@ CATALOGUE = {
             bore=70e-3,
             outside=100e-3,
             width=16e-3,
-            balls=BallSet(count=11, diameter=11.7e-3, pitch_diameter=85e-3, play=4.5e-6),
+            balls=_balls(count=11, diameter=11.7e-3, pitch_diameter=85e-3, play=4.5e-6),
             ring=Ring(mass=0.2265, inertia=3.05e-4),
             caged=True,
             outer_ring=0.18,
@@ -102,7 +107,7 @@ CATALOGUE = {
             bore=70e-3,
             outside=100e-3,
             width=32e-3,
-            balls=BallSet(count=11, rows=2, diameter=11.7e-3, pitch_diameter=85e-3, play=4.5e-6),
+            balls=_balls(count=11, rows=2, diameter=11.7e-3, pitch_diameter=85e-3, play=4.5e-6),
             ring=Ring(mass=0.453, inertia=6.1e-4),
             caged=True,
             outer_ring=0.36,

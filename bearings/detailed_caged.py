@@ -15,9 +15,10 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, Coordinates
 from touchdown.bearings.rolling.bodies import cage, outputs
 from touchdown.bearings.rolling.bodies.declarations import (
@@ -28,9 +29,8 @@ from touchdown.bearings.rolling.bodies.declarations import (
     derived,
     problem,
 )
-from touchdown.bearings.rolling.bodies.races import race_contacts
+from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import (
-    MOST_STATES,
     ball_weights,
     drift,
     fastest,
@@ -38,7 +38,8 @@ from touchdown.bearings.rolling.bodies.state import (
     ring_weights,
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
-from touchdown.bearings.rolling.micro_step import leapfrog
+from touchdown.bearings.rolling.micro_step import book, leapfrog
+from touchdown.bearings.rolling.side import stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -91,25 +92,27 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
-    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
-    inner, outer = race_contacts(q, dq, m)
-    rubbing = cage.pocket_contacts(q, dq, m)
+    press_races(q, dq, m)
+    cage.pocket_contacts(q, dq, m)
+    j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + cage.rubbing(q, dq, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m, m.o.pockets)
+    outputs.watch(m.time + t, m, m.o.pockets)
 
 
 @kernel
@@ -118,10 +121,10 @@ def report(q, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=False)
-    outputs.state_contacts(o.pockets, m.s.side, p.balls)
+    outputs.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
-    stored = outputs.stored(m.s.side, m.d.cage_contact, count)
-    ring.report_energy(q, m, kinetic + of_cage, potential + weight + stored, p.ring.inertia)
+    in_sides = stored(m.s.side, m.d.cage_contact, count)
+    ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
 
 
 @kernel
@@ -132,7 +135,7 @@ def start(words):
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
     cage.place(m.q, m)
-    m.s.step = m.d.micro_step
+    m.s.kick = 0.5 * m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
@@ -148,7 +151,7 @@ def integrate(m, work, span):
 @kernel
 def instant(t, q, dq, m):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
-    m.s.step = 0.0
+    m.s.kick = 0.0
     seat.instant(react, t, q, dq, m)
 
 
@@ -165,7 +168,6 @@ def derive(p: Parameters) -> Derived:
     b = p.balls
     unused = [0.0] * (MOST_BALLS - b.count)
     inertia = p.cage.inertia or p.cage.mass * b.pitch_radius**2
-    of_ball = 1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia
     of_cage = 1.0 / p.cage.mass + b.pitch_radius**2 / inertia
     side = abreast(p.cage_contact, b.rows)
     fields = derived(p, side, min(b.ball_mass, p.cage.mass))
@@ -174,8 +176,7 @@ def derive(p: Parameters) -> Derived:
         cage_contact=damped(side, min(b.ball_mass, p.cage.mass)),
         cage_friction=prepared(p.cage_friction),
         cage_inertia=inertia,
-        side_grip=2.0 * of_ball + 0.5 * b.count * of_cage,
-        cage_grip=of_cage,
+        cage_answer=of_cage,
         size=Coordinates(
             coordinates=9 + 3 * b.count,
             constraints=1,
@@ -196,7 +197,10 @@ def check(p: Parameters) -> str | None:
             f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
             f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
         )
-    return problem(p) or friction_problem(p.cage_friction, "cage_friction")
+    pocket = out_of_proportion(
+        "cage.clearance", p.cage.clearance, "half of balls.diameter", p.balls.ball_radius
+    )
+    return pocket or problem(p, "cage_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

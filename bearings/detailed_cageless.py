@@ -17,11 +17,10 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
-from touchdown.bearings.contact.pair import OUTSIDE, Place, press
+from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import part
+from touchdown.bearings.rolling.ball_state import MOST_STATES, part
 from touchdown.bearings.rolling.balls import BallContacts, Coordinates, FreeBallSet
 from touchdown.bearings.rolling.bodies import outputs
 from touchdown.bearings.rolling.bodies.declarations import (
@@ -32,10 +31,8 @@ from touchdown.bearings.rolling.bodies.declarations import (
     derived,
     problem,
 )
-from touchdown.bearings.rolling.bodies.races import race_contacts
-from touchdown.bearings.rolling.bodies.side import note, note_apart
+from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import (
-    MOST_STATES,
     X,
     Y,
     ball_motion,
@@ -47,7 +44,8 @@ from touchdown.bearings.rolling.bodies.state import (
     ring_weights,
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
-from touchdown.bearings.rolling.micro_step import leapfrog
+from touchdown.bearings.rolling.micro_step import book, leapfrog
+from touchdown.bearings.rolling.side import heat_of, note, note_apart, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -95,11 +93,9 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 
 @kernel
 def _neighbour_contacts(q, dq, m):
-    """Each ball in q against the next; adds to the balls' derivatives in dq, returns the heat (W)."""
+    """Each ball in q against the next; adds to the balls' derivatives in dq."""
     p, d = m.p, m.d
     count, apart = p.balls.count, 2.0 * d.ball_radius
-    grip = m.s.step * d.side_grip
-    loss = 0.0
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):
         k = b + 1 if b + 1 < count else 0
@@ -112,36 +108,63 @@ def _neighbour_contacts(q, dq, m):
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
         this, following = ball_motion(q, b, m), ball_motion(q, k, m)
-        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, grip)
-        note(m.s.side, b, c, at.indentation, d.ball_contact)
+        kick = _kick(b, k, at, m)
+        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, kick)
+        note(m.s.side, b, c, at, d.ball_contact)
         push(dq, k, c.fx, c.fy, c.first_moment, m)
         push(dq, b, -c.fx, -c.fy, c.second_moment, m)
-        loss += c.loss
+
+
+@kernel
+def _kick(b, k, place, m):
+    """The `Kick` of balls `b` and `k`, the next.
+
+    The answer along n is doubled: the neighbours on either side push as they did in the kick before, and a
+    row of balls under much damping would else swing from kick to kick.
+    """
+    d, before, side = m.d, m.s.before, m.s.side
+    answers = 2.0 / d.mass + 2.0 * place.second * place.second / d.inertia, 4.0 / d.mass
+    first, second = ball_motion(before, k, m), ball_motion(before, b, m)
+    last = side.tangential[b], side.normal[b]
+    return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+
+
+@kernel
+def _rubbing(dq, m):
+    """Heat (W) between neighbours over the kick whose accelerations are in dq."""
+    loss, count = 0.0, m.p.balls.count
+    for b in range(count):
+        if m.s.side.indentation[b] > 0.0:
+            k = b + 1 if b + 1 < count else 0
+            this, following = ball_motion(dq, b, m), ball_motion(dq, k, m)
+            loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
     return loss
 
 
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
-    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
-    inner, outer = race_contacts(q, dq, m)
-    rubbing = _neighbour_contacts(q, dq, m)
+    press_races(q, dq, m)
+    _neighbour_contacts(q, dq, m)
+    j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + rubbing
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + _rubbing(dq, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m, m.o.neighbours)
+    outputs.watch(m.time + t, m, m.o.neighbours)
 
 
 @kernel
@@ -150,9 +173,9 @@ def report(q, m):
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
     kinetic, potential = outputs.report(q, m, neighbours=True)
-    outputs.state_contacts(o.neighbours, m.s.side, p.balls)
-    stored = outputs.stored(m.s.side, m.d.ball_contact, count)
-    ring.report_energy(q, m, kinetic, potential + stored, p.ring.inertia)
+    outputs.state_contacts(o.neighbours, m.s.side, m)
+    in_sides = stored(m.s.side, m.d.ball_contact, count)
+    ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
 
 
 @kernel
@@ -162,7 +185,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
-    m.s.step = m.d.micro_step
+    m.s.kick = 0.5 * m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
@@ -178,7 +201,7 @@ def integrate(m, work, span):
 @kernel
 def instant(t, q, dq, m):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
-    m.s.step = 0.0
+    m.s.kick = 0.0
     seat.instant(react, t, q, dq, m)
 
 
@@ -199,7 +222,6 @@ def derive(p: Parameters) -> Derived:
         **fields,  # type: ignore[arg-type]
         ball_contact=damped(side, b.ball_mass),
         ball_friction=prepared(p.ball_friction),
-        side_grip=4.0 * (1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia),
         size=Coordinates(
             coordinates=6 + 3 * b.count,
             constraints=1,
@@ -212,7 +234,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return problem(p) or friction_problem(p.ball_friction, "ball_friction")
+    return problem(p, "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

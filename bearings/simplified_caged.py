@@ -24,8 +24,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_force
+from touchdown.bearings.contact.peaks import Largest
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import MOST_BALLS, Coordinates, Total, watch_balls
 from touchdown.bearings.rolling.declarations import (
@@ -33,6 +33,7 @@ from touchdown.bearings.rolling.declarations import (
     RollingMemory,
     RollingOutputs,
     RollingParameters,
+    problem,
     race_stiffness,
     starts_from,
     state_constants,
@@ -158,7 +159,7 @@ def _springs(gap, cage_angle, m):
         # the ball moves along t = (-ny, nx) into the narrowing gap, which the source leaves out
         moment -= elastic * (gap.ey * nx - gap.ex * ny)
         heat += (force - elastic) * rate
-        note(m.s.balls, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
+        note(m.s.balls, b, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
     return Total(fx, fy, moment, heat)
 
 
@@ -200,7 +201,7 @@ def _slipping(q, dq, gap, m):
         c, s = ca * c0 - sa * s0, sa * c0 + ca * s0
         ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, m)
         if ball.indentation > 0.0:
-            note(m.s.balls, ball)
+            note(m.s.balls, b, ball)
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
@@ -238,7 +239,9 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    watch_balls(m.s.balls.force / m.p.balls.rows, m.s.balls.indentation, m)
+    s = m.s.balls
+    now = Largest(s.force / m.p.balls.rows, s.indentation, s.most_loaded, s.deepest)
+    watch_balls(m.time + t, now, m)
 
 
 @kernel
@@ -325,11 +328,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    return (
-        p.balls.problem()
-        or friction_problem(p.friction, "friction")
-        or friction_problem(p.race_friction, "race_friction")
-    )
+    return problem(p, "friction", "race_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

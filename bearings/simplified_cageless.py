@@ -26,8 +26,9 @@ Deviations from the source, each named where it acts:
 
 The balls' angles, orbits and spins lie in the state vector one after another, so that loops over the
 balls become vector code. Friction on a ball of half a gram is stiff (1e7 per second under load),
-everything else is not. The default are leapfrog steps within which friction may stop the sliding; with
-`micro_step = 0` a linearly implicit method whose matrix holds the slopes of friction is the reference.
+everything else is not. The default are leapfrog steps that take friction implicitly
+(`bearings.rolling.rubbing`); with `micro_step = 0` a linearly implicit method whose matrix holds the slopes
+of friction is the reference.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact.peaks import PeakMemory, watch_peaks
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import part
 from touchdown.bearings.rolling.balls import (
@@ -47,34 +48,37 @@ from touchdown.bearings.rolling.balls import (
     BallContacts,
     Coordinates,
     FreeBallSet,
+    largest,
     watch_balls,
-    watch_contacts,
 )
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
     RollingParameters,
+    problem,
     race_stiffness,
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.micro_step import leapfrog, resolved_step
+from touchdown.bearings.rolling.micro_step import KickMemory, book, leapfrog, resolved_step
 from touchdown.bearings.rolling.pitch_circle import RollingResistance
 from touchdown.bearings.rolling.row import (
     MOST_STATES,
     ORBIT,
     SPIN,
-    PushedBalls,
     RaceBalls,
     drift,
     fastest,
-    largest,
     neighbour_forces,
     place,
-    race_forces,
+    press_balls,
+    rub_balls,
+    rubbing,
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
+from touchdown.bearings.rolling.rubbing import RubbedRace
+from touchdown.bearings.rolling.side import SideContacts, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -93,7 +97,7 @@ class Parameters(RollingParameters):
 
     interface: Interface = group(Interface, tolerance=2e-5)
     micro_step: float = real(
-        2e-6,
+        2.5e-6,
         "s",
         "longest step inside, of the velocity Verlet method; 0: adaptive linearly implicit steps of the "
         "error interface.tolerance",
@@ -150,19 +154,19 @@ class Derived(RollingDerived):
     run_radius: float = real(0.0, "m", "where ball centres run, unloaded: as (5.1) corrects it")
     run_share: float = real(0.0, "1", "of the rings' approach by which that radius grows")
     micro_step: float = real(0.0, "s", "longest step inside")
-    bore_grip: float = real(0.0, "1/kg", "answer of the sliding speed to a force: journal on ring")
-    race_grip: float = real(0.0, "1/kg", "ball on race, with all that hangs together")
-    side_grip: float = real(0.0, "1/kg", "ball on ball")
     angles: tuple = array(MOST_BALLS)
 
 
 @dataclass(frozen=True)
-class Hidden(RollingMemory):
+class Hidden(RollingMemory, KickMemory):
     """Memory between evaluations and steps."""
 
     balls: RaceBalls = group(RaceBalls)
-    pushed: PushedBalls = group(PushedBalls)
-    step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
+    inner: RubbedRace = group(RubbedRace)
+    outer: RubbedRace = group(RubbedRace)
+    side: SideContacts = group(SideContacts)
+    side_peaks: PeakMemory = group(PeakMemory)
+    lever: tuple = array(MOST_BALLS)  # m, of the chord between neighbours that touch, about the middle
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Hidden)
@@ -172,27 +176,30 @@ SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
-    j = ring.journal_on_ring(q, m, m.s.step * m.d.bore_grip)
-    balls = race_forces(q, dq, m)
-    heat = balls.loss + neighbour_forces(q, dq, m)
+    press_balls(q, dq, m)
+    neighbour_forces(q, dq, m)
+    j, balls = rub_balls(q, dq, m)
     ring.accelerate(q, dq, m, j, balls)
-    dq[ring.LOSS] = j.loss + heat
+    dq[ring.LOSS] = j.loss + balls.loss + rubbing(dq, m)
     return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy)
 
 
 @kernel
 def rhs(t, q, dq, m):
     """Derivative dq (m.n,) of everything the bearing integrates, t (s) into the macro step."""
-    seat.copy_rates(t, q, dq, m, m.half, react(t, q, dq, m))
+    load = react(t, q, dq, m)
+    seat.copy_rates(t, q, dq, m, m.half, load)
+    book(dq, load, m)
 
 
 @kernel
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    force, indentation = largest(m)
-    watch_balls(force, indentation, m)
-    watch_contacts(m.s.pushed.force / m.p.balls.rows, m.s.pushed.overlap, m.o.neighbours)
+    time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
+    watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
+    push = largest(s.side.normal, s.side.indentation, count, rows)
+    watch_peaks(time, push, m.o.neighbours, s.side_peaks)
 
 
 @kernel
@@ -201,12 +208,13 @@ def report(q, m):
     p, d, o, s = m.p, m.d, m.o, m.s.balls
     count = p.balls.count
     ring.report(q, m, d.inner_radius)
-    o.balls.force, o.balls.indentation = largest(m)
-    o.neighbours.force = m.s.pushed.force / p.balls.rows
-    o.neighbours.indentation = m.s.pushed.overlap
+    now = largest(m.s.inner.normal, s.indentation, count, p.balls.rows)
+    o.balls.force, o.balls.indentation = now.force, now.indentation
+    now = largest(m.s.side.normal, m.s.side.indentation, count, p.balls.rows)
+    o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
     moving = d.mass * d.pitch_radius**2
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
-    kinetic, height, stored, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    kinetic, height, pressed, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for b in range(count):
         kinetic += 0.5 * moving * angular[b] ** 2 + 0.5 * d.inertia * turning[b] ** 2
         height += d.pitch_radius * s.sine[b]
@@ -214,12 +222,12 @@ def report(q, m):
         spin += abs(turning[b])
         if s.indentation[b] > 0.0:
             loaded += 1
-            stored += 0.4 * s.elastic[b] * s.indentation[b]
+            pressed += 0.4 * s.elastic[b] * s.indentation[b]
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count * d.pitch_radius
     o.speed.ball = spin / count * d.ball_radius
-    height *= p.gravity * d.mass
-    ring.report_energy(q, m, kinetic, stored + m.s.pushed.energy + height, p.ring.inertia)
+    potential = pressed + stored(m.s.side, d.ball_contact, count) + p.gravity * d.mass * height
+    ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
 
 
 @kernel
@@ -229,7 +237,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m.p.balls.count, m.d.angles)
-    m.s.step = m.d.micro_step
+    m.s.kick = 0.5 * m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
 
@@ -248,7 +256,7 @@ def integrate(m, work, span):
 @kernel
 def instant(t, q, dq, m):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
-    m.s.step = 0.0
+    m.s.kick = 0.0
     seat.instant(react, t, q, dq, m)
 
 
@@ -266,9 +274,6 @@ def derive(p: Parameters) -> Derived:
     rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
     race, touching = b.race_law(b.series_stiffness()), damped(abreast(p.ball_contact, b.rows), b.ball_mass)
     hit = [(p.contact, p.ring.mass), (race, p.ring.mass), (touching, 0.5 * b.ball_mass)]
-    spun = b.ball_radius**2 / b.ball_inertia
-    bore = p.journal_radius + p.clearance
-    of_ring = 1.0 / p.ring.mass + b.inner_radius**2 / p.ring.inertia
     run_radius, run_share = {
         NOMINAL: (b.pitch_radius, 0.0),
         CORRECTED: (b.pitch_radius + 0.5 * b.play, b.outer_share),
@@ -292,10 +297,6 @@ def derive(p: Parameters) -> Derived:
         run_radius=run_radius,
         run_share=run_share,
         micro_step=resolved_step(p.micro_step, hit),
-        bore_grip=1.0 / p.ring.mass + bore**2 / p.ring.inertia,
-        # both races of a ball: its orbit and its spin answer one each at most; half of the balls are loaded
-        race_grip=2.0 * max(1.0 / b.ball_mass, spun) + 0.5 * b.count * of_ring,
-        side_grip=4.0 * spun,
         rest_x=rest_x,
         rest_y=rest_y,
         angles=tuple(b.angles() + [0.0] * (MOST_BALLS - b.count)),
@@ -304,13 +305,7 @@ def derive(p: Parameters) -> Derived:
 
 def check(p: Parameters) -> str | None:
     """What is wrong between the parameters."""
-    laws = {
-        "friction": p.friction,
-        "race_friction": p.race_friction,
-        "ball_friction": p.ball_friction,
-    }
-    problems = [p.balls.problem(), *(friction_problem(law, name) for name, law in laws.items())]
-    return next((text for text in problems if text), None)
+    return problem(p, "friction", "race_friction", "ball_friction")
 
 
 def weights(p: Parameters) -> np.ndarray:

@@ -29,17 +29,18 @@ def make(module: ModuleType) -> dict[str, Callable]:
 
 
 def _plain_leapfrog(module: ModuleType) -> Callable:
-    """Velocity Verlet with friction that may overshoot."""
+    """Velocity Verlet with friction and damping as they are before the kick, which may overshoot."""
     rhs, observe = module.rhs, module.observe
 
     @numba.njit(error_model="numpy")
-    def unlimited(trial, dq, h, m):
-        forecast(trial, dq, h, m)
-        m.s.step = 0.0
+    def unaware(trial, dq, h, kick, m):
+        forecast(trial, dq, h, 0.0, m)
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        return verlet.integrate(rhs, drift, unlimited, fastest, observe, m, m.q, m.n, rows, span, step)[1]
+        m.s.kick = 0.0
+        rhs(0.0, m.q, rows[0], m)
+        return 1 + verlet.integrate(rhs, drift, unaware, fastest, observe, m, m.q, m.n, rows, span, step)[1]
 
     return tried
 
@@ -49,7 +50,7 @@ def _dormand_prince(module: ModuleType) -> Callable:
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        m.s.step = 0.0
+        m.s.kick = 0.0
         return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
 
     return tried
@@ -60,7 +61,7 @@ def _bogacki_shampine(module: ModuleType) -> Callable:
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        m.s.step = 0.0
+        m.s.kick = 0.0
         q, n, weight = m.q, m.n, m.weight
         a, b, c, d, w = rows[0], rows[1], rows[2], rows[3], rows[4]
         t, h, evaluations = 0.0, 1e-7, 1
@@ -119,7 +120,7 @@ def _implicit_spin(module: ModuleType) -> Callable:
 
     @numba.njit(error_model="numpy")
     def tried(m, rows, span, step, tolerance):
-        m.s.step = 0.0
+        m.s.kick = 0.0
         return rosenbrock.integrate(
             rhs, linearise, solve, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance
         )[2]

@@ -142,7 +142,7 @@ def advance(words, work, time, step):
     take_mode_loads(m.q, m)
     publish(m.q, m)
     if m.p.stress.active:
-        stress_report.report(m.q, m, time + step)
+        stress_report.report(m.q, m, work)
     told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
     return OK if finite(m) and math.isfinite(told) else BAD_LOAD
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 from scipy.optimize import brentq, minimize_scalar
 
@@ -96,22 +96,26 @@ def saturation(x):
 def follow(speed, law):
     """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
 
+    The derivative leaves out that of the fading in Stribeck's law, which only falls.
     tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|). What a law does not have is not computed.
     """
     v = abs(speed)
     last = saturation(2.0 * law.slope * v)
-    plateau = last / (2.0 - last)
     level = law.dynamic
     if law.extra != 0.0:
         level += law.extra * (1.0 - saturation(law.faded * v * v))
-    value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
-    if law.g1 != 0.0:
+    if law.g1 == 0.0:
+        plateau = last / (2.0 - last)
+        value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
+    else:
         flat = saturation(2.0 * law.g3 * v)
-        steep = last
+        both = 1.0 / ((2.0 - last) * (2.0 - flat))
+        plateau, fall = last * (2.0 - flat) * both, flat * (2.0 - last) * both
+        rise = plateau
         if law.g2 != law.slope:
             steep = saturation(2.0 * law.g2 * v)
-        both = 1.0 / ((2.0 - steep) * (2.0 - flat))
-        rise, fall = steep * (2.0 - flat) * both, flat * (2.0 - steep) * both
+            rise = steep / (2.0 - steep)
+        value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
         value += law.g1 * (rise - fall)
         slope += law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
     value += law.g6 * v
@@ -159,13 +163,26 @@ def makkar_amplitude(static: float, dynamic: float, g2: float, g3: float, slope:
     return float(cast(float, root))
 
 
-def problem(law: FrictionLaw, name: str) -> str | None:
-    """Why the law of parameter group `name` has no curve, or None."""
-    if law.kind == MAKKAR and law.g2 <= law.g3:
-        return (
-            f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
-            "the difference of their curves is what rises to the static coefficient"
-        )
+def problem(parameters: Any, *names: str) -> str | None:
+    """Why a law in one of these groups of a model's parameters has no curve, or not the one set; or None.
+
+    Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else;
+    as it stands by default it was not.
+    """
+    usual = type(parameters)()
+    for name in names:
+        law = getattr(parameters, name)
+        if law.kind == MAKKAR and law.g2 <= law.g3:
+            return (
+                f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
+                "the difference of their curves is what rises to the static coefficient"
+            )
+        if law.kind == COULOMB and law.static not in (law.dynamic, getattr(usual, name).static):
+            return (
+                f"{name}.static = {law.static:g} does nothing with {name}.kind = 0 (Coulomb), whose "
+                f"coefficient is {name}.dynamic = {law.dynamic:g}; leave it out, or take {name}.kind = 1 "
+                "(Stribeck) or 2 (Makkar)"
+            )
     return None
 
 

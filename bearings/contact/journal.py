@@ -11,9 +11,12 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.bearings.contact.kick import STILL
+from touchdown.bearings.contact.pair import INSIDE, Place, heat, press, slip
+from touchdown.bearings.contact.peaks import Largest, PeakMemory, watch_peaks
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import real
+from touchdown.modelkit.ports import PARTED
+from touchdown.modelkit.variables import group, real
 
 
 class Touch(NamedTuple):
@@ -30,26 +33,38 @@ class Touch(NamedTuple):
 
 
 @kernel
-def touch(journal, ring, journal_radius, clearance, law, friction, grip=0.0):
+def place_in_bore(journal, ring, journal_radius, clearance):
+    """`Place` (m) of a journal of `journal_radius` in the bore of `ring` (Motion), wider by `clearance`.
+
+    In the very middle it has no direction, and n is zero.
+    """
+    ex, ey = journal.x - ring.x, journal.y - ring.y
+    distance = math.sqrt(ex * ex + ey * ey)
+    inverse = 1.0 / distance if distance > 0.0 else 0.0
+    reach = distance + journal_radius
+    return Place(ex * inverse, ey * inverse, distance - clearance, journal_radius, reach, 0.0)
+
+
+@kernel
+def touch_of(press, indentation, loss):
+    """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m); loss: W."""
+    c = press
+    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, loss)
+
+
+@kernel
+def touch(journal, ring, journal_radius, clearance, law, friction):
     """Contact of a journal of `journal_radius` (m) with the bore of `ring`, wider by `clearance` (m).
 
-    journal, ring: Motion (m, m/s, rad/s); law, friction: records; grip (s/kg) as in `pair.press`. Returns a
-    `Touch` (N, N m, m, W); the force on the ring is the opposite one.
+    journal, ring: Motion (m, m/s, rad/s); law, friction: records. Returns a `Touch` (N, N m, m, W); the
+    force on the ring is the opposite one.
     """
-    ex = journal.x - ring.x
-    ey = journal.y - ring.y
-    distance = math.sqrt(ex * ex + ey * ey)
-    indentation = distance - clearance
-    if distance == 0.0:
-        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, 0.0, 0.0)
-    nx = ex / distance
-    ny = ey / distance
-    if indentation <= 0.0:
-        rate = (journal.vx - ring.vx) * nx + (journal.vy - ring.vy) * ny
-        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, indentation, rate, 0.0)
-    place = Place(nx, ny, indentation, journal_radius, distance + journal_radius, 0.0)
-    c = press(journal, ring, place, INSIDE, law, friction, grip)
-    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, c.loss)
+    place = place_in_bore(journal, ring, journal_radius, clearance)
+    if place.indentation <= 0.0:
+        _, rate = slip(journal, ring, place, INSIDE)
+        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
+    pressed = press(journal, ring, place, INSIDE, law, friction, STILL)
+    return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -90,7 +105,7 @@ def note(touched, contact):
 
 @dataclass(frozen=True)
 class ContactMemory:
-    """Last accepted micro-step before the first contact, to locate it in time."""
+    """Last accepted micro-step before the first contact, to locate it in time; then what follows it."""
 
     time: float = real(0.0, "s", "time")
     gap: float = real(0.0, "m", "gap")
@@ -99,7 +114,9 @@ class ContactMemory:
     y: float = real(0.0, "m", "journal")
     vx: float = real(0.0, "m/s", "journal")
     vy: float = real(0.0, "m/s", "journal")
-    left: float = real(0.0, "1", "1: the journal has left the ring after its first contact")
+    touching: float = real(0.0, "s", "last micro-step in contact")
+    over: float = real(0.0, "1", "1: the first impact is over, the journal free for longer than a rattle")
+    peaks: PeakMemory = group(PeakMemory)
 
 
 RATE_FROM = ("contact.stiffness", "contact.exponent", "contact.expected_indentation", "journal.inv_m")
@@ -137,19 +154,18 @@ def _crossing(f0, d0, f1, d1, h):
 
 @kernel
 def watch_contact(time, journal, touched, report, memory):
-    """Keep the peaks and the first contact; called after each accepted micro-step.
+    """Keep the peaks, the first contact and the first impact's end; called after each accepted micro-step.
 
     time: s; journal: Motion (m, m/s) at that time; touched, report, memory: records of `Touched`,
     `ContactReport` and `ContactMemory`.
     """
-    normal, indentation, rate = touched.normal, touched.indentation, touched.rate
-    if normal > report.peak_force:
-        report.peak_force = normal
-    if indentation > report.peak_indentation:
-        report.peak_indentation = indentation
+    indentation, rate = touched.indentation, touched.rate
+    watch_peaks(time, Largest(touched.normal, indentation, 0, 0), report, memory.peaks)
+    if indentation >= 0.0:
+        memory.touching = time
     if report.first_time >= 0.0:
-        if indentation < 0.0:
-            memory.left = 1.0
+        if time - memory.touching > PARTED:
+            memory.over = 1.0
         return
     if indentation >= 0.0:
         h = time - memory.time

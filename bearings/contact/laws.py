@@ -70,15 +70,14 @@ def power(x, exponent):
 
 
 @woven
-def hertz(indentation, rate, stiffness, damping):
-    """(Normal force (N), its elastic part, stiffness at this load (N/m)) of (2.1) and (2.38), zero apart.
+def hertz(indentation, stiffness, damping):
+    """(Elastic force (N), damping (N s/m), stiffness at this load (N/m)) of (2.1) and (2.38), zero apart.
 
-    indentation: m; rate: m/s; stiffness: N/m^1.5; damping: N s/m2.
+    indentation: m; stiffness: N/m^1.5; damping: N s/m2.
     """
     depth = max(indentation, 0.0)
     root = math.sqrt(depth)
-    elastic = stiffness * depth * root
-    return max(elastic + damping * depth * rate, 0.0), elastic, 1.5 * stiffness * root
+    return stiffness * depth * root, damping * depth, 1.5 * stiffness * root
 
 
 @kernel
@@ -96,16 +95,16 @@ def elastic_energy(indentation, law):
 
 
 @kernel
-def normal_and_elastic(indentation, rate, law):
-    """(Force pressing the bodies apart, its elastic part) in N at an `indentation` (m) of `rate` (m/s)."""
+def elastic_and_damping(indentation, law):
+    """(Elastic force (N), damping (N s/m)) at an `indentation` (m), zero where bodies are apart."""
     if indentation <= 0.0:
         return 0.0, 0.0
     elastic = law.stiffness * power(indentation, law.exponent)
-    damping = law.dissipation * elastic + law.damping * indentation + law.viscous
-    return max(elastic + damping * rate, 0.0), elastic
+    return elastic, law.dissipation * elastic + law.damping * indentation + law.viscous
 
 
 @kernel
 def normal_force(indentation, rate, law):
     """Force pressing the bodies apart (N) at an `indentation` (m) of `rate` (m/s); law: a record."""
-    return normal_and_elastic(indentation, rate, law)[0]
+    elastic, damping = elastic_and_damping(indentation, law)
+    return max(elastic + damping * rate, 0.0)

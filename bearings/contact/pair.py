@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from touchdown.bearings.contact.friction import coefficient
-from touchdown.bearings.contact.laws import normal_and_elastic
+from touchdown.bearings.contact.friction import curve
+from touchdown.bearings.contact.kick import Kick, damped_normal, force_on, friction_line
+from touchdown.bearings.contact.laws import elastic_and_damping
 from touchdown.modelkit.kernel import kernel, woven
 
 INSIDE = 1.0  # the first body lies in a hollow of the second: it presses outwards
@@ -42,8 +43,9 @@ class Press(NamedTuple):
     second_moment: float
     normal: float  # N
     tangential: float  # N, on the first body along t
-    rate: float  # m/s, of the indentation
-    loss: float  # W, heat
+    sliding: float  # m/s, of the first body over the second along t, before the kick
+    rate: float  # m/s, of the indentation, before the kick
+    damped: float  # N, what of the normal force is damping
 
 
 @woven
@@ -57,36 +59,70 @@ def slip(first, second, place, side):
     return sliding, side * (ux * place.nx + uy * place.ny + second.spin * place.across)
 
 
-@woven
-def friction_force(sliding, mu, normal, grip):
-    """Friction (N) along t: the law's, -mu N (2.39), but no more than stops the sliding within a step.
+@kernel
+def kick_of(h, answers, first, second, place, side, last):
+    """The `Kick` of h (s) at `place`, for bodies whose accelerations are about those of the kick before.
 
-    A contact whose sliding speed v answers a tangential force with the acceleration w (1/kg) is stopped
-    in h seconds by |v|/(h w); `grip` is h w (s/kg). What an explicit step would take past zero sticks
-    instead, however steep the law; where the step resolves it, the law holds. With grip = 0 it always does.
+    answers: of the sliding speed and of the approach (1/kg) to the contact's own forces; first, second:
+    Motion with accelerations (m/s2, rad/s2) for velocities; last: (friction, normal force) (N) of the kick
+    before.
     """
-    force = -mu * normal
-    return force if grip * abs(force) <= abs(sliding) else -sliding / grip
+    across, along = h * answers[0], h * answers[1]
+    sliding, rate = slip(first, second, place, side)
+    return Kick(across, along, h * sliding - across * last[0], h * rate + along * last[1])
+
+
+class Squeeze(NamedTuple):
+    """Two bodies pressed together at a place, before friction."""
+
+    sliding: float  # m/s, of the first body over the second along t, before the kick
+    rate: float  # m/s, of the indentation, before the kick
+    normal: float  # N
+    damped: float  # N, what of it is damping
 
 
 @kernel
-def press(first, second, place, side, law, friction, grip):
-    """Contact of two bodies (Motion) at `place`, for an indentation above zero.
-
-    side: INSIDE or OUTSIDE; law, friction: records; grip (s/kg): as for `friction_force`. Returns a `Press`
-    (N, N m, m/s, W).
-    """
+def squeeze(first, second, place, side, law, kick):
+    """`Squeeze` of two bodies (Motion) at `place`; law: a record; kick: a `Kick`."""
     sliding, rate = slip(first, second, place, side)
-    normal, elastic = normal_and_elastic(place.indentation, rate, law)
-    tangential = friction_force(sliding, coefficient(sliding, friction), normal, grip)
-    along = -side * normal
+    elastic, damping = elastic_and_damping(place.indentation, law)
+    normal = damped_normal(elastic, damping, rate, kick.along, kick.rate)
+    return Squeeze(sliding, rate, normal, normal - elastic)
+
+
+@kernel
+def rubbed(place, side, squeezed, tangential):
+    """The `Press` of bodies that are `squeezed` and rub with a force `tangential` (N)."""
+    along = -side * squeezed.normal
     return Press(
         along * place.nx - tangential * place.ny,
         along * place.ny + tangential * place.nx,
         place.first * tangential,
         place.across * along - place.second * tangential,
-        normal,
+        squeezed.normal,
         tangential,
-        rate,
-        (normal - elastic) * rate - tangential * sliding,
+        squeezed.sliding,
+        squeezed.rate,
+        squeezed.damped,
     )
+
+
+@woven
+def heat(press, sliding, rate):
+    """Heat (W) of a `Press` over a kick that changes its sliding speed and its rate by so much (m/s).
+
+    The mean force does its work at the mean speed: to the kinetic energy of the bodies this is exact.
+    """
+    return press.damped * (press.rate + 0.5 * rate) - press.tangential * (press.sliding + 0.5 * sliding)
+
+
+@kernel
+def press(first, second, place, side, law, friction, kick):
+    """Contact of two bodies (Motion) at `place`, for an indentation above zero, over a `Kick`.
+
+    side: INSIDE or OUTSIDE; law, friction: records. Friction is the law's, -mu N (2.39). Returns a `Press`
+    (N, N m, m/s).
+    """
+    s = squeeze(first, second, place, side, law, kick)
+    line = friction_line(s.sliding, s.sliding + kick.sliding, kick.across, s.normal, curve(friction))
+    return rubbed(place, side, s, force_on(line, kick))

@@ -1,14 +1,60 @@
 """Contact stiffness from geometry (2.43-2.46), as corrected, and damping from a ratio (2.47).
 
-The source prints (2.44) upside down (its 2.45 would take the root of a negative number) and names the
-two elliptic integrals of (2.46) the wrong way round. Here, after Brewe and Hamrock (1977), the ratio is
-that of the curvatures across to those along the shaft (about 22-33 for a deep groove ball bearing),
-1.0003 + 0.5968/ratio is the second kind and 1.5277 + 0.6023 ln(ratio) the first.
+A ball and its race touch in an ellipse, whose axes are as kappa to 1. With K and E, the complete elliptic
+integrals of the first and second kind of the parameter 1 - 1/kappa^2, Hertz's theory asks for
+
+    (kappa^2 E - K)/(K - E) = ratio
+
+of the curvatures across to those along the shaft (about 22-33 for a deep groove ball bearing). The source
+fits powers and logarithms of the ratio instead, after Brewe and Hamrock (1977); with them an inner race is
+1.4-1.7 % too stiff, an outer race 0.6-0.7 %. It prints (2.44) upside down (its 2.45 would take the root of
+a negative number) and names the two integrals of (2.46) the wrong way round: 1.0003 + 0.5968/ratio is the
+second kind and 1.5277 + 0.6023 ln(ratio) the first.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache
+from typing import NamedTuple, cast
+
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipkm1
+
+CIRCLE = 1e-6  # of a ratio above 1; closer to it the ellipse is a circle, and K - E cancels
+
+
+class Ellipse(NamedTuple):
+    """The ellipse of a contact."""
+
+    ellipticity: float  # kappa, its longer axis over the shorter
+    first_kind: float  # complete elliptic integrals
+    second_kind: float
+
+
+@cache
+def exact_ellipse(ratio: float) -> Ellipse:
+    """By Hertz's theory, for curvatures of `ratio` (at least 1)."""
+    if ratio < 1.0 + CIRCLE:
+        return Ellipse(1.0, 0.5 * math.pi, 0.5 * math.pi)
+
+    def of(kappa: float) -> Ellipse:
+        complement = kappa**-2.0
+        return Ellipse(kappa, float(ellipkm1(complement)), float(ellipe(1.0 - complement)))
+
+    def mismatch(kappa: float) -> float:
+        _, first, second = of(kappa)
+        return (kappa**2 * second - first) / (first - second) - ratio
+
+    # kappa is below its ratio, and about the ratio to the power of 2/3 near a circle
+    kappa = brentq(mismatch, 1.0 + 0.5 * (ratio - 1.0) / ratio, ratio, xtol=1e-14)
+    return of(cast(float, kappa))
+
+
+def printed_ellipse(ratio: float) -> Ellipse:
+    """By the fits that the source prints (2.46), for curvatures of `ratio`."""
+    return Ellipse(1.0339 * ratio**0.636, 1.5277 + 0.6023 * math.log(ratio), 1.0003 + 0.5968 / ratio)
 
 
 def effective_modulus(modulus: float, poisson: float) -> float:
@@ -22,12 +68,14 @@ def race_contact_stiffness(
     conformity: float,
     modulus: float,
     poisson: float,
+    ellipse: Callable[[float], Ellipse] = exact_ellipse,
 ) -> float:
     """Hertz stiffness of a ball on its race (N/m^1.5).
 
     ball_diameter, race_radius in m; race_radius is positive for the inner race (convex) and negative
-    for the outer one (concave). `conformity` is the groove radius over the ball radius. (2.45) reads
-    lengths in mm and gives N/mm^1.5; in SI it needs no factor.
+    for the outer one (concave). `conformity` is the groove radius over the ball radius; `ellipse` gives the
+    contact's for a ratio of curvatures. (2.45) reads lengths in mm and gives N/mm^1.5; in SI it needs no
+    factor. Raises ValueError where ball and race do not touch in a point.
     """
     ball_radius = ball_diameter / 2.0
     across = 1.0 / ball_radius + 1.0 / race_radius
@@ -37,10 +85,7 @@ def race_contact_stiffness(
             f"no point contact: ball diameter {ball_diameter:g} m, race radius {race_radius:g} m, "
             f"conformity {conformity:g}; a conformity above 1 and a race wider than the ball are needed"
         )
-    ratio = across / along
-    second_kind = 1.0003 + 0.5968 / ratio
-    first_kind = 1.5277 + 0.6023 * math.log(ratio)
-    ellipticity = 1.0339 * ratio**0.636
+    ellipticity, first_kind, second_kind = ellipse(across / along)
     curvature_sum = 1.0 / (across + along)
     root = math.sqrt(2.0 * curvature_sum * second_kind / first_kind**3)
     return math.pi / 3.0 * root * ellipticity * effective_modulus(modulus, poisson)

@@ -8,11 +8,13 @@ may run past the last ball (`rounded`); what lies there does not matter, but the
 from __future__ import annotations
 
 from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.balls import MOST_BALLS
 from touchdown.modelkit.kernel import kernel
 
 BALLS = ring.NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
 SPARE = 2  # balls left over that are quicker alone than with company
+MOST_STATES = BALLS + 6 * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
 
 
 @kernel

@@ -10,11 +10,19 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
-from touchdown.bearings.contact.stiffness import in_series, race_contact_stiffness
+from touchdown.bearings.contact.peaks import Largest, watch_peaks
+from touchdown.bearings.contact.proportion import out_of_proportion
+from touchdown.bearings.contact.stiffness import (
+    exact_ellipse,
+    in_series,
+    printed_ellipse,
+    race_contact_stiffness,
+)
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import integer, real
 
 MOST_BALLS = 32  # room in the state vector
+EXACT, PRINTED = range(2)  # values of `BallSet.hertz`
 
 
 @dataclass(frozen=True)
@@ -32,6 +40,15 @@ class BallSet:
     pitch_diameter: float = real(31e-3, "m", "pitch diameter", above=0.0)
     play: float = real(5e-6, "m", "radial play between balls and races; negative: preload")
     conformity: float = real(1.04, "1", "groove radius over ball radius", above=1.0, maximum=2.0)
+    outer_conformity: float = real(
+        0.0, "1", "the same of the outer race; 0: as of the inner one", minimum=0.0, maximum=2.0
+    )
+    hertz: int = integer(
+        EXACT,
+        "elliptic integrals of the race contacts: 0 exact, 1 as the source prints them (2.46)",
+        minimum=0,
+        maximum=1,
+    )
     modulus: float = real(207e9, "Pa", "modulus of elasticity of balls and rings", above=0.0)
     poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
     density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
@@ -50,6 +67,11 @@ class BallSet:
     def spread(self) -> float:
         """Spacing of the balls at the start over even spacing."""
         return 1.0
+
+    @property
+    def may_overlap(self) -> bool:
+        """Whether more balls are admitted than fit."""
+        return False
 
     @property
     def ball_radius(self) -> float:
@@ -88,14 +110,17 @@ class BallSet:
 
     def inner_stiffness(self) -> float:
         """Ball on inner race (2.45), N/m^1.5."""
-        return race_contact_stiffness(
-            self.diameter, self.inner_radius, self.conformity, self.modulus, self.poisson
-        )
+        return self._race_stiffness(self.inner_radius, self.conformity)
 
     def outer_stiffness(self) -> float:
         """Ball on outer race (2.45), N/m^1.5."""
+        return self._race_stiffness(-self.outer_radius, self.outer_conformity or self.conformity)
+
+    def _race_stiffness(self, race_radius: float, conformity: float) -> float:
+        """Ball on a race of `race_radius` (m, negative for the outer one), N/m^1.5."""
+        ellipse = printed_ellipse if self.hertz == PRINTED else exact_ellipse
         return race_contact_stiffness(
-            self.diameter, -self.outer_radius, self.conformity, self.modulus, self.poisson
+            self.diameter, race_radius, conformity, self.modulus, self.poisson, ellipse
         )
 
     def series_stiffness(self) -> float:
@@ -183,19 +208,25 @@ class BallSet:
                 f"balls.diameter = {self.diameter:g} m does not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be smaller"
             )
-        if self.count * self.touch_angle > 2.0 * math.pi * (1.0 + 1e-12):
+        too_many = self.count * self.touch_angle > 2.0 * math.pi * (1.0 + 1e-12)
+        if too_many and not self.may_overlap:
             # rounded up, so that the remedy is one
             needed = math.ceil(1e6 * self.diameter / math.sin(math.pi / self.count)) / 1e6
             return (
                 f"balls.count = {self.count} balls of {self.diameter:g} m do not fit "
                 f"balls.pitch_diameter = {self.pitch_diameter:g} m; it must be at least {needed:.6g} m"
             )
-        if -self.play >= self.diameter:
+        if 0.0 < self.outer_conformity <= 1.0:
             return (
-                f"balls.play = {self.play:g} m presses the balls flat; "
-                f"it must be above {-self.diameter:g} m"
+                f"balls.outer_conformity = {self.outer_conformity:g} must be above 1, "
+                "or 0 for a groove like the inner race's"
             )
-        return None
+        lengths = {"play": self.play, "expected_indentation": self.expected_indentation}
+        problems = (
+            out_of_proportion(f"balls.{name}", length, "half of balls.diameter", self.ball_radius)
+            for name, length in lengths.items()
+        )
+        return next(filter(None, problems), None)
 
 
 @dataclass(frozen=True)
@@ -215,11 +246,23 @@ class FreeBallSet(BallSet):
         minimum=0.0,
         maximum=1.0,
     )
+    crowded: int = integer(
+        0,
+        "1: more balls are admitted than fit, evenly pressed into each other at the start, as the source's "
+        "Table 1 has them",
+        minimum=0,
+        maximum=1,
+    )
+
+    @property
+    def may_overlap(self) -> bool:
+        """Whether more balls are admitted than fit."""
+        return self.crowded == 1
 
     @property
     def spread(self) -> float:
         """Spacing of the balls at the start over even spacing."""
-        touching = self.count * self.touch_angle / (2.0 * math.pi)
+        touching = min(1.0, self.count * self.touch_angle / (2.0 * math.pi))
         return 1.0 + self.bunching * (touching - 1.0)
 
 
@@ -243,7 +286,7 @@ class BallReport:
         0.0, "N", "largest force between a ball and a race since the start", local=True
     )
     first_impact_force: float = real(
-        0.0, "N", "largest force between a ball and a race during the journal's first contact", local=True
+        0.0, "N", "largest force between a ball and a race in the journal's first impact", local=True
     )
     peak_indentation: float = real(
         0.0, "m", "largest approach of the rings at a ball since the start", local=True
@@ -276,24 +319,29 @@ class BallContacts:
 
 
 @kernel
-def watch_balls(force, indentation, m):
-    """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step."""
-    o = m.o.balls
-    if force > o.peak_force:
-        o.peak_force = force
-    if indentation > o.peak_indentation:
-        o.peak_indentation = indentation
-    if force > o.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.left == 0.0:
-        o.first_impact_force = force
+def largest(force, indentation, count, rows):
+    """`Largest` (N on one of those side by side, m) of the contacts of `count` balls in `rows`.
+
+    force, indentation: of each ball, or of those side by side (N, m).
+    """
+    most, depth, loaded, deepest = 0.0, 0.0, 0, 0
+    for b in range(count):
+        if force[b] > most:
+            most, loaded = force[b], b
+        if indentation[b] > depth:
+            depth, deepest = indentation[b], b
+    return Largest(most / rows, depth, loaded, deepest)
 
 
 @kernel
-def watch_contacts(force, indentation, report):
-    """Keep the peaks of force (N) and indentation (m) in `report` (`BallContacts`), after a micro-step."""
-    if force > report.peak_force:
-        report.peak_force = force
-    if indentation > report.peak_indentation:
-        report.peak_indentation = indentation
+def watch_balls(time, now, m):
+    """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step.
+
+    now: `Largest`, at `time` (s).
+    """
+    force = watch_peaks(time, now, m.o.balls, m.s.ball_peaks)
+    if force > m.o.balls.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.over == 0.0:
+        m.o.balls.first_impact_force = force
 
 
 @dataclass(frozen=True)

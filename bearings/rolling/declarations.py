@@ -6,8 +6,11 @@ from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.bearings.contact.peaks import PeakMemory
+from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness
 from touchdown.modelkit.kernel import kernel
@@ -27,6 +30,20 @@ class RollingParameters:
     friction: FrictionLaw = group(FrictionLaw)
     balls: BallSet = group(BallSet)
     ring: ring.Ring = group(ring.Ring)
+
+
+def problem(p: RollingParameters, *frictions: str) -> str | None:
+    """What is wrong between the parameters that all rolling bearings share, or None.
+
+    frictions: names of the parameter groups that are friction laws.
+    """
+    journal = "journal_radius", p.journal_radius
+    return (
+        p.balls.problem()
+        or out_of_proportion("clearance", p.clearance, *journal)
+        or out_of_proportion("contact.expected_indentation", p.contact.expected_indentation, *journal)
+        or friction_problem(p, *frictions)
+    )
 
 
 @dataclass(frozen=True)
@@ -73,14 +90,16 @@ def race_stiffness(b: BallSet) -> RaceStiffness:
     return RaceStiffness(b.inner_stiffness(), b.outer_stiffness(), b.series_stiffness())
 
 
-GEOMETRY = ("balls.diameter", "balls.pitch_diameter", "balls.conformity", "balls.modulus", "balls.poisson")
+GEOMETRY = (
+    *("balls.diameter", "balls.pitch_diameter", "balls.conformity"),
+    *("balls.modulus", "balls.poisson", "balls.hertz"),
+)
 
 
 def starts_from(*counted: str) -> dict[str, tuple[str, ...]]:
     """Initial dependencies of a rolling bearing's outputs; `counted`: what of `Coordinates` it counts."""
-    known: dict[str, tuple[str, ...]] = {
-        f"stiffness.{name}": GEOMETRY for name in ("inner", "outer", "series")
-    }
+    outer = (*GEOMETRY, "balls.outer_conformity")
+    known = {"stiffness.inner": GEOMETRY, "stiffness.outer": outer, "stiffness.series": outer}
     known["contact.rate"] = RATE_FROM
     return known | {f"size.{name}": ("balls.count",) for name in counted}
 
@@ -92,3 +111,4 @@ class RollingMemory:
     seat: seat.SeatMemory = group(seat.SeatMemory)
     ring: Touched = group(Touched)
     contact: ContactMemory = group(ContactMemory)
+    ball_peaks: PeakMemory = group(PeakMemory)

@@ -1,29 +1,76 @@
 """How a bearing steps whose light bodies hit stiff contacts: leapfrog, resolving every hit.
 
-Within a step friction may stop the sliding, but not reverse it (`bearings.contact.pair.friction_force`);
-m.s.step is the length of that step, and zero where friction acts as it stands.
+What depends on velocity acts over the kick that follows an evaluation, implicitly
+(`bearings.contact.kick`): m.s.kick is its length, zero where the laws are to act as they stand, and
+m.s.before the accelerations of the kick before.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.modelkit.integrators import verlet
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.variables import array, group, real
 
+COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
 STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step
 
 
-@kernel
-def forecast(trial, dq, h, m):
-    """Velocities of the copies in `trial` at the end of a micro-step of h (s), which is noted in m.s.step.
+@dataclass(frozen=True)
+class Brake:
+    """What makes heat of the load on the copies, in the kick at hand."""
+
+    jx: float = real(0.0, "N", "on the journal")
+    jy: float = real(0.0, "N", "on the journal")
+    jm: float = real(0.0, "N.m", "on the journal")
+    hx: float = real(0.0, "N", "on the housing: friction of the balls")
+    hy: float = real(0.0, "N", "on the housing: friction of the balls")
+
+
+@dataclass(frozen=True)
+class KickMemory:
+    """What a kick starts from."""
+
+    kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
+    rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
+    before: tuple = array(MOST_STATES)  # derivative of the state then
+    brake: Brake = group(Brake)
+    ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
+
+
+@woven
+def forecast(trial, dq, h, kick, m):
+    """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s).
 
     dq: derivative of the state at its beginning.
     """
     seat.forecast(trial, dq, h)
-    m.s.step = h
+    for k, i in enumerate(COPIES):
+        m.s.ahead[k] = 0.5 * h * dq[i]
+    m.s.kick = kick
+    n = m.s.seat.inside
+    m.s.before[:n] = dq[:n]
+
+
+@kernel
+def book(dq, load, m):
+    """Have the copies' work and heat in dq (W) be that of the middle of the kick.
+
+    load: `Load` (N, N m). dq was found with velocities of the copies that were forecast by m.s.ahead; the
+    middle of the kick lies half a kick under the accelerations now known from its beginning.
+    """
+    b, h, ahead = m.s.brake, 0.5 * m.s.kick, m.s.ahead
+    jx, jy, jw = h * dq[seat.JVX] - ahead[0], h * dq[seat.JVY] - ahead[1], h * dq[seat.JW] - ahead[2]
+    hx, hy = h * dq[seat.HVX] - ahead[3], h * dq[seat.HVY] - ahead[4]
+    dq[seat.JE] += load.jx * jx + load.jy * jy + load.jm * jw
+    dq[seat.HE] += load.hx * hx + load.hy * hy
+    dq[ring.LOSS] -= b.jx * jx + b.jy * jy + b.jm * jw + b.hx * hx + b.hy * hy
 
 
 @inlined
@@ -33,6 +80,8 @@ def leapfrog(rhs, drift, fastest, observe, m, work, span):
     The kernels are those of `verlet.integrate`; work: rows of scratch as long as the state. Returns
     (micro-step to try next (s), status, evaluations).
     """
+    m.s.ahead[:] = 0.0
+    book(work[0], seat.last_load(m), m)
     status, evaluations = verlet.integrate(
         rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, m.d.micro_step
     )

@@ -23,9 +23,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings.contact.friction import coefficient
-from touchdown.bearings.contact.pair import friction_force
+from touchdown.bearings.contact.kick import damped_normal
 from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.variables import real
+from touchdown.modelkit.variables import integer, real
 
 REVERSAL = 0.05  # m/s; a ball's speed along the race around which rolling resistance changes its sign
 
@@ -47,6 +47,16 @@ class Gap(NamedTuple):
     ux: float
     uy: float
     spin: float
+
+
+class Squeezed(NamedTuple):
+    """What happens at one ball but for friction, in N."""
+
+    force: float  # between the rings
+    elastic: float
+    outer: float  # on the outer race, with what the ball's orbit adds
+    held: float  # of the narrowing gap and of rolling resistance on the ball, against t
+    drag: float  # the latter alone
 
 
 class Pressed(NamedTuple):
@@ -71,6 +81,8 @@ class LoadedBalls:
     total: float = real(0.0, "N", "of all forces between the rings")
     indentation: float = real(0.0, "m", "largest")
     energy: float = real(0.0, "J", "stored in the contacts")
+    most_loaded: int = integer(0, "which ball bears the largest force")
+    deepest: int = integer(0, "at which ball the rings come closest")
 
 
 class Raceway(NamedTuple):
@@ -84,7 +96,6 @@ class Raceway(NamedTuple):
     inner_radius: float  # m
     ball_radius: float  # m
     mass: float  # kg, of a ball
-    grip: float  # s/kg, as for `bearings.contact.pair.friction_force`
     resistance: float  # of rolling, force over force
 
 
@@ -117,22 +128,19 @@ def rolling_drag(speed):
 
 
 @woven
-def press_ball(at, gap, c, s, orbit, friction, way):
-    """`Pressed` (N, m, W) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
+def squeeze_ball(at, gap, c, s, orbit, way, along, others):
+    """`Squeezed` (N) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
 
-    friction: coefficients at the inner and the outer race.
+    along (s/kg), others (m/s): as for `bearings.contact.kick.damped_normal`.
     """
     depth = max(at.indentation, 0.0)
     elastic = way.stiffness * (depth * math.sqrt(depth))
-    force = max(elastic + way.damping * depth * at.rate, 0.0)
-    inner = -friction_force(at.inner, friction[0], force, way.grip)
-    pressed = force + at.radius * way.mass * orbit * orbit
-    outer = -friction_force(at.outer, friction[1], pressed, way.grip)
+    force = damped_normal(elastic, way.damping * depth, at.rate, along, others)
+    outer = force + at.radius * way.mass * orbit * orbit
     v = at.radius * orbit
-    drag = way.resistance * (force + pressed) * rolling_drag(v)
+    drag = way.resistance * (force + outer) * rolling_drag(v)
     held = elastic * (gap.ey * c - gap.ex * s) / at.radius + drag
-    heat = inner * at.inner + (force - elastic) * at.rate + outer * at.outer + drag * v
-    return Pressed(force, elastic, at.indentation, inner, outer, held, at.lever, heat)
+    return Squeezed(force, elastic, outer, held, drag)
 
 
 @kernel
@@ -140,23 +148,27 @@ def between_races(gap, c, s, orbit, spin, rm, m):
     """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
-    resistance = m.p.rolling.resistance
-    way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, 0.0, resistance)
+    way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
     at = meet(gap, c, s, orbit, spin, way)
-    friction = coefficient(at.inner, d.race_friction), coefficient(at.outer, d.race_friction)
-    return press_ball(at, gap, c, s, orbit, friction, way)
+    ball = squeeze_ball(at, gap, c, s, orbit, way, 0.0, 0.0)
+    inner = coefficient(at.inner, d.race_friction) * ball.force
+    outer = coefficient(at.outer, d.race_friction) * ball.outer
+    heat = (
+        (ball.force - ball.elastic) * at.rate + inner * at.inner + outer * at.outer + ball.drag * rm * orbit
+    )
+    return Pressed(ball.force, ball.elastic, at.indentation, inner, outer, ball.held, at.lever, heat)
 
 
 @kernel
-def note(s, ball):
-    """Count a loaded ball in `s` (LoadedBalls); ball: Pressed (N, m)."""
+def note(s, b, ball):
+    """Count the loaded ball number `b` in `s` (LoadedBalls); ball: Pressed (N, m)."""
     s.loaded += 1.0
     s.total += ball.force
     s.energy += 0.4 * ball.elastic * ball.indentation
     if ball.force > s.force:
-        s.force = ball.force
+        s.force, s.most_loaded = ball.force, b
     if ball.indentation > s.indentation:
-        s.indentation = ball.indentation
+        s.indentation, s.deepest = ball.indentation, b
 
 
 @kernel

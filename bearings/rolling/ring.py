@@ -9,10 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.journal import note, touch, watch_contact
+from touchdown.bearings.contact.friction import curve
+from touchdown.bearings.contact.journal import note, place_in_bore, touch, touch_of, watch_contact
+from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.contact.laws import elastic_energy
+from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
 from touchdown.bearings.rolling.pitch_circle import Gap
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.bearings.rolling.rubbing import Bore, Moved, Push, over_ring
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
 
@@ -61,11 +65,67 @@ def ring_motion(q):
 
 
 @kernel
-def journal_on_ring(q, m, grip=0.0):
-    """The journal's `Touch` with the ring (N, N m, m), remembered for `watch`; grip: s/kg."""
+def journal_on_ring(q, m):
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`."""
     p, journal = m.p, seat.journal_motion(q)
-    t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction, grip)
+    t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction)
     note(m.s.ring, t)
+    return t
+
+
+@woven
+def moved_before(m):
+    """`Moved` (m/s, rad/s): what a kick as long as this one does to the ring at its last acceleration."""
+    h, a = m.s.kick, m.s.before
+    return Moved(h * a[RVX], h * a[RVY], h * a[RW])
+
+
+@woven
+def meet_journal(q, m):
+    """(`Place` of the journal in the bore (m), its `Kick`, the ring answering alone, its `Squeeze`).
+
+    The journal keeps its velocity, that of the middle of the kick.
+    """
+    p, s, journal, body = m.p, m.s, seat.journal_motion(q), ring_motion(q)
+    at = place_in_bore(journal, body, p.journal_radius, p.clearance)
+    along = 1.0 / p.ring.mass
+    answers = along + at.second * at.second / p.ring.inertia, along
+    kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
+    kick = kick_of(s.kick, answers, kept, ring_motion(s.before), at, INSIDE, last)
+    return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick)
+
+
+@woven
+def bore_line(at, kick, squeezed, m):
+    """`Bore`: the journal's friction `at` a place of the bore over a `kick`, if `squeezed`."""
+    if squeezed.normal <= 0.0:
+        return Bore(at.nx, at.ny, at.second, 0.0, 0.0)
+    expected = squeezed.sliding + kick.sliding
+    line = friction_line(squeezed.sliding, expected, kick.across, squeezed.normal, curve(m.d.friction))
+    return Bore(at.nx, at.ny, at.second, line.start / line.base, line.slope / line.base)
+
+
+@woven
+def push_on(at, squeezed, balls, m):
+    """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
+    p, n = m.p, squeezed.normal
+    fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * p.gravity
+    return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
+
+
+@woven
+def rub_journal(at, squeezed, friction, moved, m):
+    """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
+
+    friction: N, along t; moved: what the kick does to the ring (`Moved`).
+    """
+    s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
+    ahead = over_ring(at.nx, at.ny, at.second, moved)
+    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -(moved.x * at.nx + moved.y * at.ny)))
+    note(s.ring, t)
+    s.rubbed = friction
+    elastic = squeezed.normal - squeezed.damped
+    s.brake.jx, s.brake.jy, s.brake.jm = t.fx + elastic * at.nx, t.fy + elastic * at.ny, t.journal_moment
     return t
 
 
@@ -99,7 +159,7 @@ def accelerate(q, dq, m, journal, balls):
     dq[RW] = (journal.ring_moment + balls.moment) / m.p.ring.inertia
 
 
-@kernel
+@woven
 def drift(trial, q, mid, h):
     """The ring's position in the state `trial`: that in q and h (s) times its velocity in `mid`."""
     trial[RX] = q[RX] + h * mid[RVX]

@@ -11,16 +11,18 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import coefficient, curve, follow
-from touchdown.bearings.contact.laws import elastic_energy, normal_and_elastic
-from touchdown.bearings.contact.pair import friction_force
+from touchdown.bearings.contact.friction import curve
+from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
-from touchdown.bearings.rolling.pitch_circle import Raceway, meet, press_ball
+from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
+from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
+from touchdown.bearings.rolling.side import heat_of, note, note_apart
 from touchdown.modelkit.angles import cosine_and_sine
-from touchdown.modelkit.kernel import inlined, kernel
-from touchdown.modelkit.variables import array, real
+from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.ports import Motion
+from touchdown.modelkit.variables import array
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
 MOST_STATES = BALLS + 3 * MOST_BALLS + LANES  # and room to run past the last ball
@@ -32,25 +34,15 @@ class RaceBalls:
 
     cosine: tuple = array(MOST_BALLS)
     sine: tuple = array(MOST_BALLS)
-    force: tuple = array(MOST_BALLS)  # between the rings
-    elastic: tuple = array(MOST_BALLS)
+    elastic: tuple = array(MOST_BALLS)  # N, between the rings
     indentation: tuple = array(MOST_BALLS)
-    fx: tuple = array(MOST_BALLS)  # on the ring
-    fy: tuple = array(MOST_BALLS)
-    moment: tuple = array(MOST_BALLS)
-    along: tuple = array(MOST_BALLS)  # angular acceleration along the race
-    turning: tuple = array(MOST_BALLS)  # and of the spin
-    heat: tuple = array(MOST_BALLS)
-
-
-@dataclass(frozen=True)
-class PushedBalls:
-    """Balls that push each other, at the last evaluation."""
-
-    force: float = real(0.0, "N", "largest")
-    overlap: float = real(0.0, "m", "largest")
-    energy: float = real(0.0, "J", "stored in the contacts")
-    stiffness: float = real(0.0, "N/m", "largest")
+    lever: tuple = array(MOST_BALLS)  # m, of the inner contact from the ring's centre
+    cross: tuple = array(MOST_BALLS)  # of the directions along both races: they are one
+    radius: tuple = array(MOST_BALLS)  # m, on which the ball's centre runs
+    along: tuple = array(MOST_BALLS)  # m/s2, along the race, but for friction and neighbours
+    rate: tuple = array(MOST_BALLS)  # m/s, at which the rings approach, before the kick
+    damped: tuple = array(MOST_BALLS)  # N, what of the force between the rings is damping
+    drag: tuple = array(MOST_BALLS)  # N, rolling resistance
 
 
 class Course(NamedTuple):
@@ -62,26 +54,26 @@ class Course(NamedTuple):
     sine: object
 
 
-class Weight(NamedTuple):
-    """What pulls and turns a ball, beside its contacts."""
+class Before(NamedTuple):
+    """The ring's change of velocity in the kick before, and what it answers to a force over a kick."""
 
-    weight: float  # N
-    inertia: float  # kg m2
-    printed: float  # 1 for (2.10) as printed, else 0
+    x: float  # m/s
+    y: float
+    answer: float  # s/kg
 
 
 class Loads(NamedTuple):
     """What happens between the races at all balls, an array each, as in `RaceBalls`."""
 
-    force: object  # N
     elastic: object  # N
     indentation: object  # m
-    fx: object  # N
-    fy: object
-    moment: object  # N m
-    along: object  # rad/s2
-    turning: object  # rad/s2
-    heat: object  # W
+    lever: object  # m
+    cross: object
+    radius: object  # m
+    along: object  # m/s2
+    rate: object  # m/s
+    damped: object  # N
+    drag: object  # N
 
 
 @kernel
@@ -92,7 +84,7 @@ def place(q, count, angles):
         q[BALLS + b + count], q[BALLS + b + 2 * count] = 0.0, 0.0
 
 
-@kernel
+@woven
 def drift(trial, q, mid, h, m):
     """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     seat.drift(trial, q, mid, h, m)
@@ -103,139 +95,231 @@ def drift(trial, q, mid, h, m):
 
 
 @inlined
-def raceway(m, grip, resistance):
-    """The `Raceway` of all balls; grip (s/kg) and rolling resistance (1) as they are to act."""
+def raceway(m):
+    """The `Raceway` of all balls."""
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     return Raceway(
-        m.p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, grip, resistance
+        m.p.balls.play, d.run_radius, d.run_share, law.stiffness, law.damping, *size, m.p.rolling.resistance
     )
 
 
 @inlined
 def _loads_of(s, n):
     """`Loads` (n,) as views of `s` (RaceBalls)."""
-    loads = s.fx[:n], s.fy[:n], s.moment[:n], s.along[:n], s.turning[:n], s.heat[:n]
-    return Loads(s.force[:n], s.elastic[:n], s.indentation[:n], *loads)
+    ways = s.lever[:n], s.cross[:n], s.radius[:n]
+    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.along[:n], s.rate[:n], s.damped[:n], s.drag[:n])
 
 
-@kernel
+@woven
 def _directions(angle, cosine, sine):
     """Set (n,) cosines and sines of the attitude angles (rad)."""
     for b in range(len(cosine)):
         cosine[b], sine[b] = cosine_and_sine(angle[b])
 
 
-@kernel
-def _press_all(gap, way, friction, own, course, loads):
-    """Set the `loads` (n,) of all balls on their `course` (n,).
+@woven
+def _press_all(gap, way, before, gravity, course, loads, inner, outer):
+    """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
 
-    gap: `Gap`; way: `Raceway`; friction: a `Curve`; own: `Weight`.
+    gap: `Gap`; way: `Raceway`; before: `Before`; gravity: m/s2.
     """
-    spun = way.ball_radius / own.inertia
+    by_mass = 1.0 / way.mass
     for b in range(len(course.cosine)):
         c, s = course.cosine[b], course.sine[b]
         at = meet(gap, c, s, course.orbit[b], course.spin[b], way)
-        mu_inner, _ = follow(at.inner, friction)
-        mu_outer, _ = follow(at.outer, friction)
-        ball = press_ball(at, gap, c, s, course.orbit[b], (mu_inner, mu_outer), way)
-        loads.force[b] = ball.force
+        others = before.x * c + before.y * s + before.answer * inner.normal[b]
+        ball = squeeze_ball(at, gap, c, s, course.orbit[b], way, before.answer, others)
         loads.elastic[b] = ball.elastic
-        loads.indentation[b] = ball.indentation
-        loads.fx[b] = ball.inner * s - ball.force * c
-        loads.fy[b] = -(ball.force * s + ball.inner * c)
-        loads.moment[b] = -ball.inner * ball.lever
-        push = ball.inner + ball.outer - ball.held - own.weight * c
-        push += own.printed * (ball.outer - ball.inner) * way.ball_radius / at.radius
-        loads.along[b] = push / (at.radius * way.mass)
-        loads.turning[b] = spun * (ball.outer - ball.inner)
-        loads.heat[b] = ball.heat
+        loads.indentation[b] = at.indentation
+        loads.lever[b] = at.lever
+        loads.cross[b] = 1.0
+        loads.radius[b] = at.radius
+        loads.along[b] = -ball.held * by_mass - gravity * c
+        inner.normal[b], outer.normal[b] = ball.force, ball.outer
+        inner.sliding[b], outer.sliding[b] = -at.inner, -at.outer
+        loads.rate[b], loads.damped[b], loads.drag[b] = at.rate, ball.force - ball.elastic, ball.drag
 
 
-@kernel
-def race_forces(q, dq, m):
-    """Ring against balls against housing, in the state q: `Total` (N, N m, W) on the ring.
-
-    Sets the derivatives dq of the balls' angles, orbits and spins as far as races and gravity go.
-    """
-    p, d, s = m.p, m.d, m.s.balls
-    count = p.balls.count
+@woven
+def press_balls(q, dq, m):
+    """Both races press all balls in the state q; sets the balls' derivatives in dq, gravity included."""
+    s, at, count = m.s, m.s.balls, m.p.balls.count
     n = rounded(count)
-    gap, way = ring.gap(q), raceway(m, m.s.step * d.race_grip, p.rolling.resistance)
     angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
-    _directions(angle, s.cosine[:n], s.sine[:n])
-    course = Course(orbit, spin, s.cosine[:n], s.sine[:n])
-    own = Weight(p.gravity * d.mass, d.inertia, 1.0 if p.as_printed == 1 else 0.0)
-    _press_all(gap, way, curve(d.race_friction), own, course, _loads_of(s, n))
-    fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
+    _directions(angle, at.cosine[:n], at.sine[:n])
+    moved = ring.moved_before(m)
+    before = Before(moved.x, moved.y, s.kick / m.p.ring.mass)
+    course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
+    inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
+    _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, _loads_of(at, n), inner, outer)
+    turned, faster, turning = part(dq, ANGLE, m), part(dq, ORBIT, m), part(dq, SPIN, m)
     for b in range(count):
-        i = BALLS + b
-        dq[i] = orbit[b]
-        dq[i + count] = s.along[b]
-        dq[i + 2 * count] = s.turning[b]
-        fx += s.fx[b]
-        fy += s.fy[b]
-        moment += s.moment[b]
-        heat += s.heat[b]
-    return Total(fx, fy, moment, heat)
+        turned[b] = orbit[b]
+        faster[b] = at.along[b] / at.radius[b]
+        turning[b] = 0.0
 
 
 @kernel
 def neighbour_forces(q, dq, m):
-    """Each ball in the state q against the next one; adds to the derivatives dq, returns the heat (W)."""
-    p, d, s, at = m.p, m.d, m.s.pushed, m.s.balls
+    """Each ball in the state q against the next one; adds to the derivatives dq."""
+    p, d, at = m.p, m.d, m.s.balls
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
-    angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
-    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
-    heat = 0.0
-    s.force, s.overlap, s.energy, s.stiffness = 0.0, 0.0, 0.0, 0.0
+    angle, faster, turning = part(q, ANGLE, m), part(dq, ORBIT, m), part(dq, SPIN, m)
     for b in range(count):
         k = b + 1 if b + 1 < count else 0
         between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
         if between >= d.touch_angle:
+            note_apart(m.s.side, b)
             continue
         ex, ey = at.cosine[k] - at.cosine[b], at.sine[k] - at.sine[b]
         square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
-        overlap = 2.0 * (rb - rm * math.sqrt(square))
         lever = rm * math.sqrt(1.0 - square)
-        rate = lever * (orbit[b] - orbit[k])
-        force, elastic = normal_and_elastic(overlap, rate, d.ball_contact)
-        sliding = rb * (spin[b] + spin[k])
-        mu = coefficient(sliding, d.ball_friction)
-        rub = -friction_force(sliding, mu, force, m.s.step * d.side_grip)
-        push = force * lever / (rm * rm * d.mass)
+        # the bodies that touch: along the chord, and by their spins
+        following, this = _along_chord(q, k, lever, m), _along_chord(q, b, lever, m)
+        place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
+        c = press(
+            following, this, place, OUTSIDE, d.ball_contact, d.ball_friction, _kick(b, k, place, lever, m)
+        )
+        note(m.s.side, b, c, place, d.ball_contact)
+        m.s.lever[b] = lever
+        push = c.normal * lever / (rm * rm * d.mass)
         faster[b] -= push
         faster[k] += push
-        turning[b] -= rb * rub / d.inertia
-        turning[k] -= rb * rub / d.inertia
-        heat += rub * sliding + (force - elastic) * rate
-        s.energy += elastic_energy(overlap, d.ball_contact)
-        s.force = max(s.force, force)
-        s.overlap = max(s.overlap, overlap)
-        s.stiffness = max(s.stiffness, d.ball_contact.exponent * force / overlap)
-    return heat
+        turning[b] += c.second_moment / d.inertia
+        turning[k] += c.first_moment / d.inertia
 
 
 @kernel
+def _kick(b, k, place, lever, m):
+    """The `Kick` of balls `b` and `k`, the next, whose chord has a `lever` (m) about the middle.
+
+    The answer along the chord is doubled: the neighbours on either side push as they did in the kick
+    before, and a row of balls under much damping would else swing from kick to kick.
+    """
+    d, side, before = m.d, m.s.side, m.s.before
+    answers = 2.0 * d.ball_radius * d.ball_radius / d.inertia, 4.0 / d.mass
+    first, second = _along_chord(before, k, lever, m), _along_chord(before, b, lever, m)
+    last = side.tangential[b], side.normal[b]
+    return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+
+
+@kernel
+def _along_chord(q, b, lever, m):
+    """Motion of ball `b` in the state q along a chord of a `lever` (m) about the middle, and its spin."""
+    return Motion(0.0, 0.0, lever * part(q, ORBIT, m)[b], 0.0, part(q, SPIN, m)[b])
+
+
+@kernel
+def rubbing(dq, m):
+    """Heat (W) between neighbours over the kick whose accelerations are in dq."""
+    loss, count = 0.0, m.p.balls.count
+    for b in range(count):
+        if m.s.side.indentation[b] > 0.0:
+            k, lever = b + 1 if b + 1 < count else 0, m.s.lever[b]
+            following, this = _along_chord(dq, k, lever, m), _along_chord(dq, b, lever, m)
+            loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
+    return loss
+
+
+@woven
+def rub_balls(q, dq, m):
+    """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
+
+    Returns the journal's `Touch` and the `Total` (N, N m, W) on the ring.
+    """
+    d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
+    n = rounded(count)
+    share = m.p.as_printed * d.ball_radius / d.pitch_radius  # of (2.10) as printed
+    _drive(dq, m)
+    at, kick, squeezed = ring.meet_journal(q, m)
+    pressed = _pressing(m)
+    answers = Answers(
+        h * (1.0 + share) / d.mass,
+        h * (1.0 - share) / d.mass,
+        h * d.ball_radius * d.ball_radius / d.inertia,
+    )
+    around = Around(
+        ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
+    )
+    inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
+    friction, moved = rub(
+        h,
+        count,
+        curve(d.race_friction),
+        answers,
+        around,
+        inner,
+        rubbed_of(s.outer, n),
+        rubbed_of(s.inner, n),
+    )
+    _rub(q, dq, share, moved, m)
+    balls = _with_friction(pressed, m)
+    s.brake.hx, s.brake.hy = pressed.fx - balls.fx, pressed.fy - balls.fy
+    return ring.rub_journal(at, squeezed, friction, moved, m), balls
+
+
+@woven
+def _drive(dq, m):
+    """How all but friction at races, in dq, changes the sliding speeds over the kick."""
+    s, rb, h = m.s, m.d.ball_radius, m.s.kick
+    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
+    for b in range(len(faster)):
+        along, around = s.balls.radius[b] * faster[b], rb * turning[b]
+        s.outer.driven[b] = h * (along + around)
+        s.inner.driven[b] = h * (along - around)
+
+
+@woven
+def _rub(q, dq, share, moved, m):
+    """Add friction at both races to the balls' derivatives dq, and all other heat to that of friction.
+
+    share: of friction's moment, as printed; moved: what the kick does to the ring (`Moved`).
+    """
+    s, at, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
+    orbit, faster, turning = part(q, ORBIT, m), part(dq, ORBIT, m), part(dq, SPIN, m)
+    for b in range(len(faster)):
+        f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
+        faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
+        turning[b] += spun * (f_o - f_i)
+        middle = at.rate[b] + 0.5 * (moved.x * at.cosine[b] + moved.y * at.sine[b])
+        along = at.radius[b] * (orbit[b] + half * faster[b])
+        s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
+
+
+@woven
+def _pressing(m):
+    """`Total` (N, N m) of the forces of all balls on the ring but for friction."""
+    fx, fy, at = 0.0, 0.0, m.s.balls
+    for b in range(m.p.balls.count):
+        fx -= m.s.inner.normal[b] * at.cosine[b]
+        fy -= m.s.inner.normal[b] * at.sine[b]
+    return Total(fx, fy, 0.0, 0.0)
+
+
+@woven
+def _with_friction(pressed, m):
+    """`Total` (N, N m, W) on the ring that is `pressed` (Total) and rubbed."""
+    fx, fy, moment, heat, at, s = pressed.fx, pressed.fy, 0.0, 0.0, m.s.balls, m.s
+    for b in range(m.p.balls.count):
+        rub = s.inner.tangential[b]
+        fx += rub * at.sine[b]
+        fy -= rub * at.cosine[b]
+        moment -= rub * at.lever[b]
+        heat += s.inner.loss[b] + s.outer.loss[b]
+    return Total(fx, fy, moment, heat)
+
+
+@woven
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s
-    below = 0.0
+    below, side = 0.0, 0.0
     for b in range(m.p.balls.count):
         if s.balls.indentation[b] > 0.0:
             below += s.balls.elastic[b] / s.balls.indentation[b]
+        side = max(side, s.side.stiffness[b])
     below *= d.race.exponent
     if s.ring.indentation > 0.0:
         below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
-    return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * s.pushed.stiffness / d.mass)), s.seat.fastest)
-
-
-@kernel
-def largest(m):
-    """(Largest force on one of a row (N), largest indentation (m)) of the balls between the rings."""
-    s = m.s.balls
-    force, indentation = 0.0, 0.0
-    for b in range(m.p.balls.count):
-        force = max(force, s.force[b])
-        indentation = max(indentation, s.indentation[b])
-    return force / m.p.balls.rows, indentation
+    return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * side / d.mass)), s.seat.fastest)

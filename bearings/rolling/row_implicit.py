@@ -47,13 +47,13 @@ def linearise(q, stiff, m):
     ring's spin, what the journal makes of it (1/s).
     """
     p, d, s = m.p, m.d, m.s.balls
-    count, gap, way = p.balls.count, ring.gap(q), raceway(m, 0.0, 0.0)
+    count, gap, way = p.balls.count, ring.gap(q), raceway(m)
     for b in range(count):
         i = BALLS + b
         orbit = q[i + count]
         at = meet(gap, s.cosine[b], s.sine[b], orbit, q[i + 2 * count], way)
-        pressed = s.force[b] + at.radius * d.mass * orbit * orbit
-        stiff[i] = slope(at.inner, d.race_friction) * s.force[b] if s.force[b] > 0.0 else 0.0
+        pressed = m.s.inner.normal[b] + at.radius * d.mass * orbit * orbit
+        stiff[i] = slope(at.inner, d.race_friction) * m.s.inner.normal[b]
         stiff[i + count] = slope(at.outer, d.race_friction) * pressed
         stiff[i + 2 * count] = at.lever
     bore = p.journal_radius + p.clearance

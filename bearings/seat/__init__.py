@@ -34,11 +34,13 @@ from touchdown.bearings.seat.copies import (
     take_inputs,
 )
 from touchdown.bearings.seat.layout import (
+    HE,
     HVX,
     HVY,
     HX,
     HY,
     INSIDE,
+    JE,
     JVX,
     JVY,
     JW,
@@ -53,14 +55,17 @@ from touchdown.bearings.seat.layout import (
     bearing_memory,
     weights,
 )
+from touchdown.bearings.seat.load import last_load
 from touchdown.bearings.seat.step import advance, advance_timed, begin, instant, integrate
 
 __all__ = [
+    "HE",
     "HVX",
     "HVY",
     "HX",
     "HY",
     "INSIDE",
+    "JE",
     "JVX",
     "JVY",
     "JW",
@@ -83,6 +88,7 @@ __all__ = [
     "instant",
     "integrate",
     "journal_motion",
+    "last_load",
     "take_inputs",
     "weights",
 ]

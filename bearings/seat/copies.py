@@ -44,7 +44,7 @@ from touchdown.bearings.seat.layout import (
     ZX,
     ZY,
 )
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import ACCELERATION, MODEL, MODES, VELOCITY, Load, Motion
 
 
@@ -173,7 +173,7 @@ def _mode_rates(q, dq, m, load):
     return back_x, back_y
 
 
-@kernel
+@woven
 def drift(trial, q, mid, h, m):
     """The copies' positions in the state `trial`: those in q and h (s) times the velocities in `mid`."""
     moves = 1.0 if m.p.interface.order >= VELOCITY else 0.0  # a held copy stays
@@ -186,7 +186,7 @@ def drift(trial, q, mid, h, m):
     _drift_modes(trial, q, mid, h, m)
 
 
-@kernel
+@woven
 def _drift_modes(trial, q, mid, h, m):
     """`drift` of the elastic modes, in the states `trial`, q and `mid` (m.n,)."""
     for n in range(m.s.seat.modes):
@@ -197,7 +197,7 @@ def _drift_modes(trial, q, mid, h, m):
         trial[i + QY] = q[i + QY] + h * mid[i + PY]
 
 
-@kernel
+@woven
 def forecast(trial, dq, h):
     """Take the copies' velocities in `trial` from the middle of a micro-step of h (s) to its end.
 

@@ -36,6 +36,7 @@ from touchdown.bearings.seat.layout import (
 )
 from touchdown.modelkit import oscillator
 from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.ports import Load
 
 STIFFEST = 3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load
 OF_BODIES = 10  # numbers of the load on journal and housing; each mode has four more
@@ -125,6 +126,13 @@ def account_jump(m, load, djx, djy, dhx, dhy):
     s = m.s.seat
     m.o.journal.jump += 0.5 * ((s.jx + load.jx) * djx + (s.jy + load.jy) * djy)
     m.o.housing.jump += 0.5 * ((s.hx + load.hx) * dhx + (s.hy + load.hy) * dhy)
+
+
+@kernel
+def last_load(m):
+    """The last known `Load` (N, N m)."""
+    s = m.s.seat
+    return Load(s.jx, s.jy, s.jm, s.hx, s.hy)
 
 
 @kernel

@@ -3,7 +3,8 @@
 A bearing brings four kernels, which are compiled into the functions below:
 
     react(t, q, dq, m)          the `Load` (N, N m) at t (s), and in dq the derivative of what is inside
-    integrate(m, work, span)    advances m.q by span (s): (micro-step to try next (s), status, evaluations)
+    integrate(m, work, span)    advances m.q by span (s): (micro-step to try next (s), status, evaluations);
+                                the first row of work holds the state's derivative at the start
     observe(t, q, m)            keeps peaks and events, after each accepted micro-step
     report(q, m)                fills the outputs that are wanted once per macro step
 """
@@ -14,7 +15,7 @@ import math
 
 import numpy as np
 
-from touchdown.bearings.seat.copies import clear, take_inputs, take_modes
+from touchdown.bearings.seat.copies import clear, copy_rates, take_inputs, take_modes
 from touchdown.bearings.seat.layout import HX, HY, IMPULSE_SCALE, JPX, JPY, JX, JY
 from touchdown.bearings.seat.load import (
     account_jump,
@@ -122,6 +123,7 @@ def advance_timed(ready, react, integrate, report, words, m, work, time, step):
         before = react(0.0, q, work[0], m)
         account_jump(m, before, q[JX] - jx, q[JY] - jy, q[HX] - hx, q[HY] - hy)
         remember(m, before)
+        copy_rates(0.0, q, work[0], m, m.half, before)
         m.h, status, evaluations = integrate(m, work, step)
         m.evaluations += evaluations
         hand_over(q, m, step)
@@ -132,6 +134,7 @@ def advance_timed(ready, react, integrate, report, words, m, work, time, step):
             m.time = time + step
             ready(m, step)
             clear(q, m)
+            copy_rates(0.0, q, work[0], m, m.half, react(0.0, q, work[0], m))
             _, status, evaluations = integrate(m, work, step)
             hand_over(q, m, step)
             ahead = handed_over(m)

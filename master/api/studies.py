@@ -1,7 +1,8 @@
-"""Many runs: a sweep over settings, a comparison of schemes."""
+"""Many runs: a sweep over settings, verdicts over phases of the unbalance, a comparison of schemes."""
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
@@ -10,7 +11,7 @@ from typing import TypeVar
 
 from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.progress import bar_over, named_progress
+from touchdown.master.common.progress import bar_over, growing_bar, named_progress
 from touchdown.master.common.several import several
 from touchdown.master.common.units import plain
 from touchdown.master.scene.scene import Scene
@@ -22,6 +23,8 @@ from touchdown.master.studies.schemes.compare import STEPS, Asked, Comparison, p
 from touchdown.master.studies.sweep import sweep as sweep_study
 from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Execution
+from touchdown.master.studies.verdict.report import write_report
+from touchdown.master.studies.verdict.study import Plan, Running, Study, study_verdict
 
 Item = TypeVar("Item")
 
@@ -56,6 +59,40 @@ def sweep(
         return sweep_study.sweep(
             as_scene(scene), values, Path(where), jobs, Execution(in_process), bar.update
         )
+
+
+def verdict(
+    scene: PathLike | Scene,
+    folder: PathLike | None = None,
+    *,
+    grid: float | str = "12 deg",
+    jobs: int = 2,
+    in_process: bool = False,
+    progress: bool = False,
+) -> Study:
+    """Which phases of its rotor's unbalance a scene whirls at, and where the edges are.
+
+    Runs the scene round the circle of phases, `grid` (rad) apart, and three times as close where the
+    verdicts of neighbours differ; windows narrower than the grid may be missed. `circles[0]` of what it
+    returns has the runs and their `verdicts` by phase (deg). `folder` gets phases.csv, verdict.json,
+    verdict.png and the summary of each run; without one nothing is left on disk. `jobs` run at a time, in
+    processes of their own: a script needs `if __name__ == "__main__":` around it. After Ctrl-C the study
+    has what is there, and is `interrupted`. Raises TouchdownError where the scene has no unbalance.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
+    >>> eccentric = scene.set({"rotor.eccentricity": "5 um"})
+    >>> study = touchdown.verdict(eccentric, grid="180 deg", in_process=True)
+    >>> dict(study.circles[0].verdicts)  # how each phase (deg) whirls, if it does
+    {0.0: '', 180.0: ''}
+    """
+    spacing = math.degrees(above_zero(grid, "rad", "grid"))
+    plan, running = Plan(spacing, spacing / 3.0), Running(jobs, in_process)
+    kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
+    with kept as where, growing_bar("runs", not progress) as growing:
+        study = study_verdict(as_scene(scene), plan, Path(where), running, growing)
+        if folder is not None:
+            write_report(study, Path(where))
+    return study
 
 
 def compare(

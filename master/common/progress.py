@@ -4,10 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 if TYPE_CHECKING:
     from tqdm import tqdm
+
+
+class Progress(NamedTuple):
+    """What work whose pieces become known on the way tells of itself."""
+
+    planned: Callable[[int], object]  # so many pieces more are to be done
+    done: Callable[[], object]  # one of them is
+
+
+def _nothing(*_: object) -> None:
+    pass
+
+
+UNSEEN = Progress(_nothing, _nothing)
 
 
 def bar_over(total: int, what: str, quiet: bool) -> tqdm[NoReturn]:
@@ -15,6 +29,30 @@ def bar_over(total: int, what: str, quiet: bool) -> tqdm[NoReturn]:
     from tqdm.auto import tqdm
 
     return tqdm(total=total, desc=what, disable=quiet, leave=False)
+
+
+@contextmanager
+def growing_bar(what: str, quiet: bool) -> Generator[Progress]:
+    """A bar over pieces of work, all of them `what`, that grows when more of them are planned."""
+    bar: tqdm[NoReturn] | None = None
+
+    def plan(more: int) -> None:
+        nonlocal bar
+        if bar is None:  # none is shown before it is known that there is work
+            bar = bar_over(more, what, quiet)
+        else:
+            bar.total += more
+            bar.refresh()
+
+    def done() -> None:
+        if bar is not None:
+            bar.update()
+
+    try:
+        yield Progress(plan, done)
+    finally:
+        if bar is not None:
+            bar.close()
 
 
 @contextmanager

@@ -103,6 +103,13 @@ class Component(ABC):
         """What the component itself calls the variable `name`."""
         return self._own.get(name, name)
 
+    def second(self) -> Component:
+        """Another instance of the same, with the same names, not initialised.
+
+        Raises TouchdownError where there can be none.
+        """
+        raise TouchdownError(f"there can be no second instance of {self.origin}")
+
     @abstractmethod
     def set(self, values: Mapping[str, float]) -> None:
         """Set parameters or inputs before initialisation; values are in SI units and within bounds."""
@@ -164,8 +171,8 @@ def check_value(component: Component, variable: Variable, value: float) -> None:
     unit = f" {variable.unit}" if variable.unit not in (None, "1") else ""
     what = f"{component.name}.{variable.name} = {value:g}{unit}"
     if variable.minimum is not None and value < variable.minimum:
-        raise TouchdownError(f"{what} must be at least {variable.minimum:g}")
+        raise TouchdownError(f"{what} must be at least {variable.minimum:g}{unit}")
     if variable.maximum is not None and value > variable.maximum:
-        raise TouchdownError(f"{what} must be at most {variable.maximum:g}")
+        raise TouchdownError(f"{what} must be at most {variable.maximum:g}{unit}")
     if variable.kind is not Kind.REAL and value != round(value):
         raise TouchdownError(f"{what} must be a whole number")

@@ -38,5 +38,6 @@ WORK, JUMP = _declared(ports.Account)  # what each side states of the energy tha
 UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.SeatLoad)
 
 POSITION = ("x", "y")
+GAINS = ("inv_m", "inv_I", "k_over_m", "c_over_m")  # what a bearing carries a body by
 FORCE = ("fx", "fy")
 NEEDED = POSITION + FORCE  # no port works without them

@@ -152,7 +152,8 @@ class FmuComponent(Component):
         description = describe(path, folder)
         super().__init__(name, origin or str(path), variables_of(description))
         self.can_save = bool(description.coSimulation.canGetAndSetFMUstate)
-        self.path = path
+        self._only_once = bool(description.coSimulation.canBeInstantiatedOnlyOncePerProcess)
+        self.path, self._cache = path, cache
         self.units = units_of(description)
         self._messages: list[str] = []
         self._open = False
@@ -174,6 +175,13 @@ class FmuComponent(Component):
         self._bind_functions()
         self._in: tuple[int, int, int] = (0, 0, 0)
         self._out: tuple[int, int, int] = (0, 0, 0)
+
+    def second(self) -> FmuComponent:
+        if self._only_once:
+            raise TouchdownError("its FMU can be loaded only once in a process")
+        second = FmuComponent(f"{self.name} (witness)", self.path, self._cache, self.origin)
+        second.rename(self._own)
+        return second
 
     def _instantiate(self, resources: str) -> None:
         self._fmu.component = self._fmu.fmi2Instantiate(

@@ -54,6 +54,11 @@ class TwinComponent(Component):
         self._initialising = False
         self._start_time = 0.0
 
+    def second(self) -> TwinComponent:
+        second = TwinComponent(f"{self.name} (witness)", self.instance.model)
+        second.rename(self._own)
+        return second
+
     def set(self, values: Mapping[str, float]) -> None:
         for name, value in values.items():
             v = self.variable(name)

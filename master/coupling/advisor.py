@@ -11,14 +11,12 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
-from touchdown.master.coupling.system import System
+from touchdown.master.coupling.system import fastest_contact
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import Scheme, scheme
 from touchdown.master.scene.step_sizes import tidy
 
-RATE = "contact.rate"
 LONGEST = 1e-4  # s; what happens within a longer macro step is lost to recording and ledger
 
 
@@ -28,26 +26,6 @@ class Advice:
 
     macro_step: float  # s
     reason: str
-
-
-def fastest_contact(system: System) -> tuple[str, float]:
-    """The bearing whose contact asks for the shortest macro step, and its rate (rad/s).
-
-    A bearing that takes several macro steps in one counts as that much faster.
-
-    Raises TouchdownError where no bearing states one.
-    """
-    rates = {
-        name: system.every[name] * system.value(f"{name}.{RATE}")
-        for name in dict.fromkeys(a.bearing for a in system.attachments)
-        if RATE in system.components[name].variables
-    }
-    if not any(rates.values()):
-        raise TouchdownError(
-            f"no bearing says how fast its contact is (output {RATE}), so no macro step can be advised; "
-            "give one"
-        )
-    return max(rates.items(), key=lambda item: item[1])
 
 
 def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice]:

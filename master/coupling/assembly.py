@@ -44,6 +44,7 @@ def assemble(scene: Scene, load: Callable[[str, str], Component]) -> System:
 
 def _wired(scene: Scene, components: dict[str, Component]) -> System:
     scheme = scene.run.scheme
+    _check_zero(scene, components)
     settings: dict[tuple[str, str], float] = {}
     for name, component in components.items():
         values = _settings(component, scene.components[name], scheme)
@@ -55,6 +56,16 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
     return System(components, attachments, connections, settings, every)
+
+
+def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
+    """See that what times count from is a time, where it says so."""
+    head, _, tail = (scene.zero or "").partition(".")
+    unit = components[head].variable(tail).unit if head in components else None
+    if unit not in (None, "", "s"):
+        raise TouchdownError(
+            f"zero = {scene.zero} is measured in {unit}; it must be a time, such as amb.shutdown_time"
+        )
 
 
 def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Component]) -> list[Connection]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from typing import Protocol
 
 import numpy as np
 
@@ -15,13 +16,21 @@ from touchdown.modelkit.variables import Causality
 ACTIVE = "active"  # an output; 0: the component does nothing any more but for the load it still gives
 
 
+class Follower(Protocol):
+    """What reads the signals."""
+
+    def retired(self, names: Sequence[str]) -> None:
+        """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""
+        ...
+
+
 class Retirement(Observer):
-    """Takes idle components out of the exchange, and tells stepper and observers."""
+    """Takes idle components out of the exchange, and tells stepper and followers."""
 
     at_beats_only = True
 
-    def __init__(self, stepper: Stepper, observers: Iterable[Observer]) -> None:
-        self._stepper, self._observers = stepper, list(observers)
+    def __init__(self, stepper: Stepper, followers: Iterable[Follower]) -> None:
+        self._stepper, self._followers = stepper, list(followers)
         components = stepper.system.components
         self._signs = {name: _signs_of_work(c) for name, c in components.items() if _can_rest(c)}
 
@@ -31,8 +40,8 @@ class Retirement(Observer):
             return
         now.system.retire(idle)
         self._stepper.follow()
-        for observer in self._observers:
-            observer.retired(idle)
+        for follower in self._followers:
+            follower.retired(idle)
         for name in idle:
             del self._signs[name]
 

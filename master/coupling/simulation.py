@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import threading
 import time as clock
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -17,7 +17,7 @@ from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import load_component
 from touchdown.master.coupling.assembly import assemble
-from touchdown.master.coupling.ledger import Judge, Ledger
+from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.retirement import Retirement
@@ -35,9 +35,16 @@ class Outcome:
     zero: float = 0.0  # s, the scene's zero on the simulation's clock
     end: float = 0.0  # s, on the simulation's clock
     wall_time: float = 0.0  # s, stepping only
-    start_up: float = 0.0  # s, loading and initialising
+    start_up: float = 0.0  # s, loading, initialising, and compiling what is new in the first step
     residual: float = 0.0  # of the ledger, over its scale
+    share: float = 0.0  # of the ledger's residual in turnover, of the worst connection
+    worst: str = ""  # that connection
+    made: float = 0.0  # J, energy made by the coupling, less what it lost
+    turnover: float = 0.0  # J, energy that the motion turned over at all connections
+    unaudited: tuple[str, ...] = ()  # connections without an account, each with why
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
+    warning: str = ""  # what it said there
+    shorter_steps: Mapping[float, float] = field(default_factory=dict[float, float])  # s each, for how long
     ended: Ended = Ended.COMPLETED
     reason: str = ""  # why, where it did not complete
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
@@ -77,14 +84,14 @@ def simulate(
     scene: Scene,
     system: System,
     record_to: Path | None = None,
-    progress: Callable[[float, float], object] = lambda time, residual: None,
+    progress: Callable[[float, float], object] = lambda time, share: None,
     observers: Iterable[Observer] = (),
 ) -> Outcome:
     """Initialise `system` and run it to the scene's end, or until an observer ends it.
 
-    progress(time from zero in s, ledger residual) is called now and then; `observers` are told of every
-    macro step. Whatever ends the run, its recording is complete up to there; where that is not an error
-    of an observer's own, the outcome says how it ended, and why.
+    progress(time from zero in s, residual over turnover) is called now and then; `observers` are told of
+    every macro step. Whatever ends the run, its recording is complete up to there; where that is not an
+    error of an observer's own, the outcome says how it ended, and why.
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
@@ -92,25 +99,41 @@ def simulate(
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)
-        ledger = Ledger(system, energy_scale(scene, system))
-        judge = Judge(ledger, scene.run)
-        with _recording(scene, now, record_to) as recording:
-            told = [ledger, judge, *observers, *recording]
-            told.append(Retirement(coupling, told))
-            told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.residual)))
+        with (
+            _kept(scene, system, coupling) as ledger,
+            _recording(scene, now, record_to) as recording,
+        ):
+            judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
+            told = [judge, shortening, *observers, *recording]
+            told.append(Retirement(coupling, [ledger, *told]))
+            told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
-            wall_time = _loop(coupling, told, now, interrupted)
-    return Outcome(
+            wall_time, compiling = _loop(_Steps(coupling, ledger, shortening), told, now, interrupted)
+    return replace(
+        _heard(ledger, judge, shortening),
         steps=now.done,
         zero=zero,
         end=now.time,
         wall_time=wall_time,
-        start_up=start_up,
-        residual=ledger.residual,
-        warned_at=judge.warned_at,
+        start_up=start_up + compiling,
         ended=now.ended or Ended.COMPLETED,
         reason=now.reason,
         coupling=coupling.figures,
+    )
+
+
+def _heard(ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
+    """What the ledger heard, and what came of it."""
+    return Outcome(
+        residual=ledger.residual,
+        share=ledger.worst_share,
+        worst=ledger.worst_title,
+        made=ledger.made,
+        turnover=ledger.turnover,
+        unaudited=ledger.unaudited,
+        warned_at=judge.warned_at,
+        warning=judge.warning,
+        shorter_steps=shortening.times,
     )
 
 
@@ -134,28 +157,76 @@ def energy_scale(scene: Scene, system: Values) -> float:
     return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
 
 
+def fall_energy(system: System) -> float:
+    """Energy that a rotor loses by falling through a bearing's clearance (J); 0 where none declares it."""
+    energies = [0.0]
+    for a in system.attachments:
+        declared = (f"{a.body}.mass", f"{a.body}.gravity", f"{a.bearing}.clearance")
+        if a.motion("omega") in system and all(name in system for name in declared):
+            energies.append(math.prod(map(system.value, declared)))
+    return max(energies)
+
+
+class _Steps:
+    """Macro steps, whole or divided, each part of them booked."""
+
+    def __init__(self, coupling: Stepper, ledger: Ledger, shortening: Shortening) -> None:
+        self._coupling, self._ledger, self._shortening = coupling, ledger, shortening
+        self.length = coupling.run.macro_step  # s
+        self._taken = 0  # with the parts of those divided
+
+    def take(self, number: int) -> None:
+        """Take macro step `number` (from 0)."""
+        parts = 2**self._shortening.halvings
+        part = self.length / parts
+        for k in range(parts):
+            self._coupling.step(number * parts + k, number * self.length + k * part, part)
+            self._taken += 1
+            self._ledger.book(self._taken, part)
+
+
 def _loop(
-    coupling: Stepper, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
-) -> float:
-    """Take macro steps until the end, or until the run is to end; returns the time it took (s)."""
-    step = coupling.run.macro_step
+    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
+) -> tuple[float, float]:
+    """Take macro steps until the end, or until the run is to end.
+
+    Returns the time that stepping took and what the first step took beyond the others' mean (s): kernels
+    are compiled in it.
+    """
     at_beats = [observer.stepped for observer in observers]
     at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
-    began = clock.perf_counter()
+    began = settled = clock.perf_counter()
     try:
         for number in range(now.steps):
             if interrupted.is_set():
                 now.stop(Ended.INTERRUPTED.value, Ended.INTERRUPTED)
                 break
-            coupling.step(number, number * step, step)
-            now.move(number + 1, step)
+            steps.take(number)
+            now.move(number + 1, steps.length)
             for stepped in at_beats if now.beat else at_steps:
                 stepped(now)
+            if number == 0:
+                settled = clock.perf_counter()
             if now.ended is not None:
                 break
     except TouchdownError as error:
         now.fail(str(error))
-    return clock.perf_counter() - began
+    ended = clock.perf_counter()
+    if now.done < 2:
+        return ended - began, 0.0
+    each = (ended - settled) / (now.done - 1)
+    return now.done * each, settled - began - each
+
+
+@contextmanager
+def _kept(scene: Scene, system: System, coupling: Stepper) -> Generator[Ledger]:
+    """The ledger of the run, closed at the end."""
+    scale = energy_scale(scene, system)
+    ledger = Ledger(coupling, scale, scale or fall_energy(system))
+    try:
+        yield ledger
+    finally:
+        ledger.close()
 
 
 class _Recording(Observer):

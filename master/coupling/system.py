@@ -7,10 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import scaled
 from touchdown.master.components.component import Component
 from touchdown.master.coupling.connections import Attachment, Connection, split, used_modes
 from touchdown.master.coupling.layout import Intake, lay_out
+
+RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
 
 
 @dataclass
@@ -123,3 +126,23 @@ class System:
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
         layout = lay_out(self.components, self._live(), attachments)
         self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
+
+
+def fastest_contact(system: System) -> tuple[str, float]:
+    """The bearing whose contact asks for the shortest macro step, and its rate (rad/s).
+
+    A bearing that takes several macro steps in one counts as that much faster.
+
+    Raises TouchdownError where no bearing states one.
+    """
+    rates = {
+        name: system.every[name] * system.value(f"{name}.{RATE}")
+        for name in dict.fromkeys(a.bearing for a in system.attachments)
+        if RATE in system.components[name].variables
+    }
+    if not any(rates.values()):
+        raise TouchdownError(
+            f"no bearing says how fast its contact is (output {RATE}), so no macro step can be advised; "
+            "give one"
+        )
+    return max(rates.items(), key=lambda item: item[1])

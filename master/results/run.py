@@ -55,7 +55,7 @@ def run_scene(
             ) from None
         finally:
             system.close()
-    warnings = _warnings(scene, outcome)
+    warnings = _warnings(outcome)
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 
@@ -67,14 +67,12 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
         raise TouchdownError(outcome.reason or str(error)) from None
 
 
-def _warnings(scene: Scene, outcome: Outcome) -> list[str]:
-    """What is to be said of a run that went to its end."""
-    if outcome.warned_at is None or outcome.ended is not Ended.COMPLETED:
-        return []
-    return [
-        f"the energy ledger passed {scene.run.warn_residual:g} of the energy lost by falling at "
-        f"t = {outcome.warned_at:.6g} s; a smaller --macro-step or another --scheme is more accurate"
-    ]
+def _warnings(outcome: Outcome) -> list[str]:
+    """What is to be said of a run beside its figures."""
+    said = [f"not audited: {connection}" for connection in outcome.unaudited]
+    if outcome.warning and outcome.ended is Ended.COMPLETED:
+        said.append(outcome.warning)
+    return said
 
 
 def _write_results(
@@ -103,7 +101,7 @@ def make_writable(folder: Path) -> None:
 
 
 class _Bar:
-    """Progress over simulated time, with the run's speed and the ledger's residual."""
+    """Progress over simulated time, with the run's speed and the ledger's residual over turnover."""
 
     def __init__(self, scene: Scene, shown: bool) -> None:
         self._bar = tqdm(
@@ -118,12 +116,12 @@ class _Bar:
 
     def __enter__(self) -> Callable[[float, float], None]:
         if self._bar.disable:
-            return lambda time, residual: None
+            return lambda time, share: None
 
         self._bar.set_postfix_str("compiling what is new")
         begun: float | None = None  # s, simulated, from which the speed counts
 
-        def show(time: float, residual: float) -> None:
+        def show(time: float, share: float) -> None:
             nonlocal begun
             if begun is None or time <= 0.0:  # what is compiled is so in the first steps
                 begun = max(time, 0.0)
@@ -131,7 +129,7 @@ class _Bar:
                 self._bar.n = self._bar.initial = begun
                 return
             speed = self._bar.format_dict["elapsed"] / (time - begun)
-            text = f"{speed:.2f} s per simulated s, ledger {residual:.1e}"
+            text = f"{speed:.2f} s per simulated s, ledger {share:.1e}"
             self._bar.set_postfix_str(text, refresh=False)
             self._bar.update(min(time, self._bar.total) - self._bar.n)
 

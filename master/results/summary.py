@@ -15,6 +15,8 @@ from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
 from touchdown.master.results.stresses import stress_figures
+from touchdown.master.results.whirl.contacts import Orbit
+from touchdown.master.results.whirl.drive import force_phase
 from touchdown.master.results.whirl.verdict import Episode, Whirl, classify
 from touchdown.master.scene.scene import Scene
 
@@ -157,18 +159,28 @@ def whirl_at(system: Readable, a: Attachment, recording: Recording) -> Whirl | N
     if "clearance" not in system.components[a.bearing].variables:
         return None
     clearance = system.value(f"{a.bearing}.clearance")
-    spin = float(np.median(recording[a.motion("omega")]))
     orbit = relative_orbit(system, a, recording)
-    return classify(recording.time, *orbit, clearance, spin, _force_on_journal(a, orbit, recording))
+    force = _force_on_journal(a, orbit, recording)
+    return classify(recording.time, *orbit, clearance, _spin(a, recording), force)
+
+
+def _spin(a: Attachment, recording: Recording) -> float:
+    """Of the journal (rad/s), in the middle of what it is over the run."""
+    return float(np.median(recording[a.motion("omega")]))
+
+
+def _whole_force(a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:
+    """The bearing's force on the journal (N), x and y; None where it was not recorded."""
+    x, y = (a.load(f"f{axis}") for axis in "xy")
+    return (recording[x], recording[y]) if x in recording and y in recording else None
 
 
 def _force_on_journal(
     a: Attachment, orbit: tuple[np.ndarray, np.ndarray], recording: Recording
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """The bearing's force on the journal (N), x and y, or its normal part alone; None where unknown."""
-    x, y = (a.load(f"f{axis}") for axis in "xy")
-    if x in recording and y in recording:
-        return recording[x], recording[y]
+    if (whole := _whole_force(a, recording)) is not None:
+        return whole
     normal = f"{a.bearing}.contact.force"
     if normal not in recording:
         return None
@@ -179,18 +191,27 @@ def _force_on_journal(
 def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
     key = f"whirl_{seat}"
-    tails = ("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N", "_episodes")
+    tails = (
+        *("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N", "_force_phase_deg"),
+        *("_most_turns_one_way", "_episodes"),
+    )
     whirl = whirl_at(system, a, recording)
     if whirl is None:
         return {f"{key}{tail}": None for tail in tails}
     radius = None if whirl.radius is None else 1e6 * whirl.radius
     force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
-    episodes = [_episode_figures(a, episode, recording) for episode in whirl.episodes]
-    values = (whirl.words, whirl.revolutions, radius, whirl.frequency, force, episodes)
+    phase = _force_phase(system, a, whirl.decisive, recording) if whirl.decisive else None
+    episodes = [_episode_figures(system, a, episode, recording) for episode in whirl.episodes]
+    values = (
+        *(whirl.words, whirl.revolutions, radius, whirl.frequency, force, phase),
+        *(whirl.marched, episodes),
+    )
     return {f"{key}{tail}": value for tail, value in zip(tails, values, strict=True)}
 
 
-def _episode_figures(a: Attachment, episode: Episode, recording: Recording) -> dict[str, object]:
+def _episode_figures(
+    system: Readable, a: Attachment, episode: Episode, recording: Recording
+) -> dict[str, object]:
     return {
         "direction": episode.direction.value,
         "from_s": episode.start,
@@ -199,6 +220,7 @@ def _episode_figures(a: Attachment, episode: Episode, recording: Recording) -> d
         "frequency_Hz": episode.frequency,
         "radius_um": 1e6 * episode.radius,
         "largest_force_N": _largest_force(a, episode, recording),
+        "force_phase_deg": _force_phase(system, a, episode, recording),
         "goes_on": episode.goes_on,
     }
 
@@ -214,6 +236,17 @@ def _largest_force(a: Attachment, episode: Episode, recording: Recording) -> flo
     part = (recording.time >= episode.start) & (recording.time <= episode.end)
     peaks = recording[peak][part]
     return float(peaks[-1] if peaks[-1] > peaks[0] else np.max(recording[now][part]))
+
+
+def _force_phase(system: Readable, a: Attachment, episode: Episode, recording: Recording) -> float | None:
+    """By how much (degrees) the force drives a whirl; None where it was not recorded with its friction."""
+    force = _whole_force(a, recording)
+    if force is None:
+        return None
+    clearance = system.value(f"{a.bearing}.clearance")
+    orbit = Orbit(recording.time, *relative_orbit(system, a, recording), clearance)
+    phase = force_phase(orbit, force, episode, _spin(a, recording))
+    return None if phase is None else math.degrees(phase)
 
 
 def dominant_frequency(
@@ -272,6 +305,13 @@ def _run_figures(
     simulated = outcome.end
     return {
         "energy_residual_relative": outcome.residual if scale > 0.0 else None,
+        "energy_residual_of_turnover": outcome.share,
+        "energy_residual_worst_connection": outcome.worst,
+        "energy_made_relative": outcome.made / scale if scale > 0.0 else None,
+        "energy_made_of_turnover": outcome.made / outcome.turnover if outcome.turnover > 0.0 else None,
+        "energy_made_J": outcome.made,
+        "energy_turnover_J": outcome.turnover,
+        "not_audited": "; ".join(outcome.unaudited) or None,
         "energy_balance_relative": balance,
         "energy_scale_J": scale if scale > 0.0 else None,
         "wall_time_s": outcome.wall_time,
@@ -281,6 +321,7 @@ def _run_figures(
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
+        **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
 
 

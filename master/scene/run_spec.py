@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
 from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
 
@@ -22,8 +23,9 @@ class RunSpec:
     record_every: int = 5  # macro steps
     record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
-    warn_residual: float = 1e-3  # ledger over energy scale: say so
-    stop_residual: float = 0.1  # ledger over energy scale: stop
+    warn_residual: float = 0.02  # ledger's residual over the turnover of a connection: say so
+    stop_residual: float = 0.2  # the same: stop
+    whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
 
 
 def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
@@ -53,6 +55,13 @@ def _steps_above_zero(value: object, name: str) -> int:
     return whole(value, name)
 
 
+def _count(value: object, name: str) -> int:
+    number = to_si(value, "1", name)
+    if not 0.0 <= number <= 20.0 or number != int(number):
+        raise TouchdownError(f"{name} = {value} must be a whole number from 0 to 20")
+    return int(number)
+
+
 READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
     "scheme": _scheme,
     "record": beginnings,
@@ -63,4 +72,5 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "record_every": _steps_above_zero,
     "warn_residual": _above_zero("1"),
     "stop_residual": _above_zero("1"),
+    "whirl_halvings": _count,
 }

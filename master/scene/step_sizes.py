@@ -7,13 +7,12 @@ import math
 from touchdown.master.scene.run_spec import RunSpec
 
 
-def shorter_step(run: RunSpec, residual: float) -> float:
-    """A macro step (s) with which the ledger should hold, after `residual` was too much.
+def shorter_step(run: RunSpec, share: float) -> float:
+    """A macro step (s) with which the ledger should hold, after `share` of the turnover was too much.
 
-    From the order at which the scheme's residual falls with the step, to a twentieth of the threshold,
-    since it grows with every impact.
+    From the order at which the scheme's residual falls with the step, to half of what is warned of.
     """
-    wanted = 0.05 * run.stop_residual / residual if math.isfinite(residual) else 0.0
+    wanted = 0.5 * run.warn_residual / share if math.isfinite(share) else 0.0
     step = run.macro_step * max(wanted, 1e-9) ** (1.0 / run.scheme.error_order)
     return tidy(min(step, 0.5 * run.macro_step))
 

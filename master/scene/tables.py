@@ -10,6 +10,7 @@ from typing import Any, cast
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import to_si
+from touchdown.modelkit.units import NUMBER
 
 
 def entries(value: object) -> Mapping[str, Any] | None:
@@ -73,8 +74,19 @@ def _pair(value: object) -> tuple[str, str] | None:
     return names[0], names[1]
 
 
+def _is_value(value: object) -> bool:
+    """Whether it is a number, or text like "20 ms"."""
+    match = NUMBER.match(str(value).strip())
+    return match is not None and "." not in str(value).strip()[match.end() :]
+
+
 def reference(value: object, where: str) -> str:
     """COMPONENT.VARIABLE."""
+    if _is_value(value):
+        raise TouchdownError(
+            f"{where} = {value!r} is a value; it must name a variable that has one, such as "
+            '"amb.shutdown_time"'
+        )
     if not isinstance(value, str) or not all(value.partition(".")):
         raise TouchdownError(f'{where} = {value!r} must name a variable, such as "amb.shutdown_time"')
     return value

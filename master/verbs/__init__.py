@@ -13,6 +13,7 @@ from touchdown.master.verbs.studies import (
     rotor,
     stability,
     sweep,
+    verdict,
 )
 from touchdown.master.verbs.verb import Verb
 
@@ -21,6 +22,7 @@ ALL: tuple[Verb, ...] = (
     run.VERB,
     advise.VERB,
     sweep.VERB,
+    verdict.VERB,
     rotor.VERB,
     compare.VERB,
     compare_bearings.VERB,

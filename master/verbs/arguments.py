@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,6 +65,23 @@ def add_output(verb: argparse.ArgumentParser, default: str | Path, what: str = "
 def add_jobs(verb: argparse.ArgumentParser) -> None:
     """Add --jobs; `count` reads it."""
     verb.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
+
+
+def add_phases(verb: argparse.ArgumentParser) -> None:
+    """Add --grid and --resolution; `angle` reads them."""
+    verb.add_argument(
+        "--grid",
+        default="12 deg",
+        metavar="ANGLE",
+        help="between the phases of the unbalance that are run first; narrower windows may be missed "
+        "(default: 12 deg)",
+    )
+    verb.add_argument(
+        "--resolution",
+        default="4 deg",
+        metavar="ANGLE",
+        help="between phases of different verdicts, at last (default: 4 deg)",
+    )
 
 
 def add_quiet(verb: argparse.ArgumentParser) -> None:
@@ -129,6 +147,24 @@ def above_zero(text: str | None, unit: str, option: str) -> float | None:
     if not 0.0 < value < float("inf"):
         raise TouchdownError(f"{option} {text} must be above 0")
     return value
+
+
+def several_above_zero(text: str | None, unit: str, option: str) -> tuple[float, ...]:
+    """Numbers above 0 in the SI unit, ascending, with commas between them; none where not given.
+
+    A unit at the end is everyone's. Raises TouchdownError.
+    """
+    from touchdown.master.studies.sweep.variation import listed
+
+    if text is None:
+        return ()
+    given = [above_zero(item, unit, option) for item in listed(text, f"{option} {text}")]
+    return tuple(sorted({value for value in given if value is not None}))
+
+
+def angle(text: str, option: str) -> float:
+    """An angle in degrees; text without a unit is in rad. Raises TouchdownError."""
+    return math.degrees(to_si(text, "rad", option))
 
 
 def results_folder(options: argparse.Namespace, default: str | None = None) -> Path:

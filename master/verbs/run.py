@@ -32,6 +32,7 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.common.ended import Ended
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
+    from touchdown.master.results.whirl.evidence import evidence, hint
 
     chosen = chosen_scene(options)
     result = run_scene(
@@ -42,8 +43,8 @@ def execute(options: argparse.Namespace) -> int:
         pictures=not options.no_pictures,
         progress=not options.quiet,
     )
-    print(table(result.summary))
-    print(f"results in {result.folder}")
+    print("\n".join([table(result.summary), *evidence(result.summary)]))
+    print("\n".join([*hint(options.scene, result.ending, result.summary), f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")

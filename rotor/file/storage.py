@@ -50,7 +50,7 @@ def save(shaft: Shaft, path: str | Path) -> None:
 def text_of(path: Path) -> str:
     """The text of a rotor file. Raises RotorFileError."""
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")  # some editors begin files with a mark
     except OSError as error:
         raise RotorFileError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:

@@ -46,10 +46,10 @@ class StressRows:
 
     ends: int = integer(0, "of the elements, two each")
     node: np.ndarray = array(MOST_ENDS)  # (R,), counted from 1
-    bending: np.ndarray = array(MOST_ENDS, MOST_MODES)  # (R, n), Pa per modal coordinate
-    shear: np.ndarray = array(MOST_ENDS, MOST_MODES)  # (R, n)
-    bending_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # (R, S), Pa/N, of the modes left out
-    shear_load: np.ndarray = array(MOST_ENDS, MOST_STATIONS)  # (R, S)
+    bending: np.ndarray = array(MOST_MODES, MOST_ENDS)  # (n, R), Pa per modal coordinate
+    shear: np.ndarray = array(MOST_MODES, MOST_ENDS)  # (n, R)
+    bending_load: np.ndarray = array(MOST_STATIONS, MOST_ENDS)  # (S, R), Pa/N, of the modes left out
+    shear_load: np.ndarray = array(MOST_STATIONS, MOST_ENDS)  # (S, R)
 
 
 @dataclass(frozen=True)
@@ -179,10 +179,10 @@ def _stress_rows(shaft: Shaft, kept: Basis, per_load: float) -> StressRows:
     return StressRows(
         ends=len(stresses.node),
         node=_room(stresses.node, MOST_ENDS),
-        bending=_room(stresses.bending, MOST_ENDS, MOST_MODES),
-        shear=_room(stresses.shear, MOST_ENDS, MOST_MODES),
-        bending_load=_room(per_load * stresses.bending_load, MOST_ENDS, MOST_STATIONS),
-        shear_load=_room(per_load * stresses.shear_load, MOST_ENDS, MOST_STATIONS),
+        bending=_room(stresses.bending.T, MOST_MODES, MOST_ENDS),
+        shear=_room(stresses.shear.T, MOST_MODES, MOST_ENDS),
+        bending_load=_room(per_load * stresses.bending_load.T, MOST_STATIONS, MOST_ENDS),
+        shear_load=_room(per_load * stresses.shear_load.T, MOST_STATIONS, MOST_ENDS),
     )
 
 

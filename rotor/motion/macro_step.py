@@ -12,6 +12,7 @@ import math
 
 from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.rotor.drag import drag
+from touchdown.rotor.motion import stress_report
 from touchdown.rotor.motion.equations import accelerate
 from touchdown.rotor.motion.exchange import account
 from touchdown.rotor.motion.gyroscopics import add_spin_up, turn_velocities
@@ -25,7 +26,8 @@ from touchdown.rotor.motion.unbalance import spin_momentum
 def advance(q, m, step, longest, work):
     """Advance the state q (N,) in place by a macro step of `step` (s), in strides of at most `longest` (s).
 
-    work: scratch, at least five rows of N.
+    work: scratch, at least seven rows of N. Stresses are looked at after every stride but the last, whose
+    end the loads may yet correct.
     """
     now, tail = modal(q, m), rest(q, m)
     strides = max(1, math.ceil(step / longest - 1e-9))
@@ -48,6 +50,8 @@ def advance(q, m, step, longest, work):
         since_middle = (i + 0.5) * h - 0.5 * step
         turned, reaction = _stride(q, m, since_middle, h, load, reaction, area, spare)
         swept += since_middle * turned
+        if m.p.stress.active and i + 1 < strides:
+            stress_report.look(q, m, since_middle + 0.5 * h, work[5:7])
     account(q, m, step, start, area, tail[ANGLE] - angle, swept)
 
 

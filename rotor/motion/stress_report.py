@@ -1,5 +1,7 @@
 """Stresses along a rotor: now, at their peak, and node by node when they peaked.
 
+They are looked at after every stride of the rotor, since a macro step may be longer than a mode's swing.
+
 sigma = r E Y'' (3.20, 3.21) and tau = 4/3 V/A (3.22, 3.23; solid sections) at both ends of every element,
 from the modal coordinates, and from the loads by what the modes left out would add (mode acceleration).
 A node's stress is the larger of its elements'. R: ends of the elements, two each.
@@ -10,6 +12,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
+
+import numpy as np
 
 from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.variables import integer, real
@@ -60,6 +64,14 @@ class NodeStress:
     position: float = real(0.0, "m", "along the axis, from node 1", constant=True)
 
 
+class Along(NamedTuple):
+    """One kind of stress at the ends of the elements, (R,) each, Pa."""
+
+    x: np.ndarray
+    y: np.ndarray
+    both: np.ndarray  # resultant of both planes
+
+
 class Peak(NamedTuple):
     """The largest stress (Pa) and its node, from 1."""
 
@@ -68,77 +80,108 @@ class Peak(NamedTuple):
 
 
 @kernel
-def report(q, m, time):
-    """Stresses in state q (N,) at the end of a macro step, `time` (s), and their peaks, into m.o (Pa)."""
-    o = m.o.stress
-    worst_bending, worst_shear, watched = _largest(q, m)
-    o.bending, o.shear = worst_bending.stress, worst_shear.stress
-    if o.bending > o.peak_bending:
-        o.peak_bending, o.peak_bending_time, o.peak_bending_node = o.bending, time, worst_bending.node
-    if o.shear > o.peak_shear:
-        o.peak_shear, o.peak_shear_time, o.peak_shear_node = o.shear, time, worst_shear.node
+def report(q, m, work):
+    """Stresses in the state q (N,) at the end of a macro step, and what is kept of them, in m.o (Pa).
+
+    work: scratch, as in `look`.
+    """
+    m.o.stress.bending, m.o.stress.shear = look(q, m, m.half, work)
+
+
+@kernel
+def look(q, m, since_middle, work):
+    """Keep in m.o what is largest of the stresses of q (N,), at a time within the macro step.
+
+    since_middle: s after its middle; work: scratch, two rows of 3 R or more. Returns the largest bending
+    and the largest shear stress now (Pa).
+    """
+    bending, shear = _along(work[0], m), _along(work[1], m)
+    rows = m.d.stress
+    _recover(rows.bending, rows.bending_load, q, m, since_middle, bending)
+    _recover(rows.shear, rows.shear_load, q, m, since_middle, shear)
+    worst_bending, worst_shear, watched = _largest(bending, shear, m)
+    o, time = m.o.stress, m.time + m.half + since_middle
+    if worst_bending.stress > o.peak_bending:
+        o.peak_bending, o.peak_bending_node = worst_bending.stress, worst_bending.node
+        o.peak_bending_time = time
+    if worst_shear.stress > o.peak_shear:
+        o.peak_shear, o.peak_shear_node = worst_shear.stress, worst_shear.node
+        o.peak_shear_time = time
     if watched > m.s.watched:
         m.s.watched = watched
         o.kept_time = time
-        keep(q, m)
+        _keep(bending, shear, m)
+    return worst_bending.stress, worst_shear.stress
+
+
+@kernel
+def _along(row, m):
+    """`Along` as views of a row of scratch."""
+    n = m.d.stress.ends
+    return Along(row[:n], row[n : 2 * n], row[2 * n : 3 * n])
+
+
+@kernel
+def _recover(per_mode, per_load, q, m, since_middle, stress):
+    """Set one kind of `stress` (Along) of q (N,) under the loads `since_middle` (s) after the middle.
+
+    per_mode (n, R), per_load (S, R): stress per modal coordinate and per force.
+    """
+    px, py, _, _ = modal(q, m)
+    for i in range(len(stress.x)):
+        stress.x[i], stress.y[i] = 0.0, 0.0
+    for k in range(m.d.modes):
+        _add(per_mode[k], px[k], py[k], stress)
+    for j in range(m.d.stations):
+        load = m.u.station[j]
+        fx, fy = load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle
+        if fx != 0.0 or fy != 0.0:
+            _add(per_load[j], fx, fy, stress)
+    for i in range(len(stress.x)):
+        stress.both[i] = math.sqrt(stress.x[i] * stress.x[i] + stress.y[i] * stress.y[i])
+
+
+@kernel
+def _add(row, x, y, stress):
+    """Add `row` (R,) times x and y to the two planes of `stress` (Along); becomes vector code."""
+    for i in range(len(stress.x)):
+        stress.x[i] += row[i] * x
+        stress.y[i] += row[i] * y
 
 
 @inlined
-def _largest(q, m):
+def _largest(bending, shear, m):
     """Largest bending and shear along the rotor (`Peak` each), and the stress that decides what is kept.
 
-    Updates the nodes' own peaks.
+    Updates the nodes' own peaks. bending, shear: `Along`.
     """
     rows, decisive = m.d.stress, m.p.stress.node
     most_bending, most_shear, watched = Peak(0.0, 0), Peak(0.0, 0), 0.0
-    for row in range(rows.ends):
-        node = int(rows.node[row])
-        bending_x, bending_y = _at_end(row, rows.bending, rows.bending_load, q, m)
-        shear_x, shear_y = _at_end(row, rows.shear, rows.shear_load, q, m)
-        bending = math.sqrt(bending_x * bending_x + bending_y * bending_y)
-        shear = math.sqrt(shear_x * shear_x + shear_y * shear_y)
+    for i in range(rows.ends):
+        node = int(rows.node[i])
         own = m.o.node[node - 1]
-        own.peak_bending, own.peak_shear = max(own.peak_bending, bending), max(own.peak_shear, shear)
-        if bending > most_bending.stress:
-            most_bending = Peak(bending, node)
-        if shear > most_shear.stress:
-            most_shear = Peak(shear, node)
+        own.peak_bending = max(own.peak_bending, bending.both[i])
+        own.peak_shear = max(own.peak_shear, shear.both[i])
+        if bending.both[i] > most_bending.stress:
+            most_bending = Peak(bending.both[i], node)
+        if shear.both[i] > most_shear.stress:
+            most_shear = Peak(shear.both[i], node)
         if node == decisive:
-            watched = max(watched, abs(bending_y))
+            watched = max(watched, abs(bending.y[i]))
     return most_bending, most_shear, watched if decisive else most_bending.stress
 
 
 @kernel
-def _at_end(row, per_mode, per_load, q, m):
-    """Stresses (x, y), Pa, at one end of an element under the loads at the end of the macro step.
-
-    per_mode (R, n) and per_load (R, S): stress per modal coordinate and per force; `row` of R.
-    """
-    px, py, _, _ = modal(q, m)
-    sx, sy = 0.0, 0.0
-    for k in range(m.d.modes):
-        sx += per_mode[row, k] * px[k]
-        sy += per_mode[row, k] * py[k]
-    for j in range(m.d.stations):
-        load = m.u.station[j]
-        sx += per_load[row, j] * (load.fx + load.dfx * m.half)
-        sy += per_load[row, j] * (load.fy + load.dfy * m.half)
-    return sx, sy
-
-
-@kernel
-def keep(q, m):
-    """Keep the stresses along the rotor in state q (N,), in m.o.node (Pa)."""
+def _keep(bending, shear, m):
+    """Keep bending and shear (`Along` each) in m.o.node (Pa)."""
     rows = m.d.stress
     for i in range(m.d.nodes):
         o = m.o.node[i]
         o.bending_x, o.bending_y, o.shear_x, o.shear_y = 0.0, 0.0, 0.0, 0.0
-    for row in range(rows.ends):
-        o = m.o.node[int(rows.node[row]) - 1]
-        bending_x, bending_y = _at_end(row, rows.bending, rows.bending_load, q, m)
-        shear_x, shear_y = _at_end(row, rows.shear, rows.shear_load, q, m)
-        o.bending_x, o.bending_y = _larger(o.bending_x, bending_x), _larger(o.bending_y, bending_y)
-        o.shear_x, o.shear_y = _larger(o.shear_x, shear_x), _larger(o.shear_y, shear_y)
+    for i in range(rows.ends):
+        o = m.o.node[int(rows.node[i]) - 1]
+        o.bending_x, o.bending_y = _larger(o.bending_x, bending.x[i]), _larger(o.bending_y, bending.y[i])
+        o.shear_x, o.shear_y = _larger(o.shear_x, shear.x[i]), _larger(o.shear_y, shear.y[i])
 
 
 @inlined

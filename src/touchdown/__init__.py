@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
-    from touchdown.master.api.studies import compare, sweep
+    from touchdown.master.api.studies import compare, sweep, verdict
     from touchdown.master.common.ended import Ended
     from touchdown.master.common.errors import TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
@@ -49,6 +49,7 @@ __all__ = [
     "run",
     "scenes",
     "sweep",
+    "verdict",
 ]
 
 _HOMES = {
@@ -61,6 +62,7 @@ _HOMES = {
     "register_scheme": "master.api.schemes",
     "compare": "master.api.studies",
     "sweep": "master.api.studies",
+    "verdict": "master.api.studies",
     "Ended": "master.common.ended",
     "TouchdownError": "master.common.errors",
     "Stepper": "master.coupling.steppers.stepper",

@@ -169,24 +169,33 @@ def inside_at_end(scene: Scene) -> np.ndarray:
     return q[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, len(q))]]
 
 
+LEVEL, FALLING = (0.1, 0.02), (0.15, 0.03)  # static coefficients: the curve's plateau, or a peak over it
+FRICTION = {"none": ((0.0, 0.0), 2.0), "level": (LEVEL, 2.0), "falling": (FALLING, 1.0)}
+
+
 @every_model
-@pytest.mark.parametrize(("friction", "order"), [(0.0, 2.0), (1.0, 1.0)], ids=["smooth", "sticking"])
-def test_order_of_the_leapfrog_steps(name: str, friction: float, order: float) -> None:
-    """Second order without friction and damping; first where the step softens friction that sticks."""
+@pytest.mark.parametrize(("static", "least"), FRICTION.values(), ids=FRICTION)
+def test_order_of_the_leapfrog_steps(name: str, static: tuple[float, float], least: float) -> None:
+    """Second order through an impact that sets balls rolling.
+
+    First at least where friction falls with speed: steps leave the slope out there.
+    """
     side = "ball" if name == "detailed_cageless" else "cage"
-    laws: dict[str, object] = {"contact.damping": friction * 1e7}
-    for law, static, dynamic in (
-        ("friction", 0.15, 0.1), ("race_friction", 0.15, 0.1), (f"{side}_friction", 0.03, 0.02),
-    ):  # fmt: skip
-        laws |= {f"{law}.static": friction * static, f"{law}.dynamic": friction * dynamic}
-        laws |= {f"{law}.g6": friction * 1e-4}
+    rubs = static != (0.0, 0.0)
+    laws: dict[str, object] = {"contact.damping": 1e7 if rubs else 0.0}
+    for law, peak, plateau in (
+        ("friction", static[0], 0.1),
+        ("race_friction", static[0], 0.1),
+        (f"{side}_friction", static[1], 0.02),
+    ):
+        laws |= {f"{law}.static": peak, f"{law}.dynamic": rubs * plateau, f"{law}.g6": rubs * 1e-4}
     exact = inside_at_end(touching(name, micro_step=0.0, **{"interface.tolerance": 1e-11}, **laws))
-    steps = 4e-8 / 2.0 ** np.arange(3)
+    steps = 1.6e-7 / 2.0 ** np.arange(3)
     errors = [
         float(np.max(np.abs(inside_at_end(touching(name, micro_step=h, **laws)) - exact))) for h in steps
     ]
     slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
-    assert slope == pytest.approx(order, abs=0.15)
+    assert least - 0.15 < slope < 2.15
 
 
 # the source's Table 7, um, and the tolerance that a surrogate of its data deserves

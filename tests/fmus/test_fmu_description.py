@@ -192,7 +192,9 @@ def draw(slot: Slot, default: float, chance: random.Random) -> float:
     size = abs(default) or SIZES.get(spec.unit, 1.0)
     value = default + size * chance.uniform(0.02, 0.2)
     if slot.variable.name == "shutdown_time":  # only whether it is over matters at the start
-        return chance.choice((value, -value))
+        return chance.choice((value, 0.0))
+    if slot.variable.name == "balls.outer_conformity":  # 0, or that of a groove wider than the ball
+        return 1.0 + abs(value)
     return default - (value - default) if spec.maximum is not None and value > spec.maximum else value
 
 

@@ -11,13 +11,13 @@ from touchdown.modelkit.integrators import verlet
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import STEP_UNDERFLOW
 
-STIFFNESS, FRICTION, GRIP, FASTEST = range(4)
+STIFFNESS, FRICTION, KICK, FASTEST, LATER, KICKS = range(6)
 
 
 @kernel
 def rhs(t, q, dq, m):
-    """Mass 1 kg on a spring, braked by no more than stops it in a step; q[2] is a quadrature."""
-    braking = m[FRICTION] if m[GRIP] * m[FRICTION] <= 1.0 else 1.0 / m[GRIP]
+    """Mass 1 kg on a spring, braked by no more than stops it in a kick; q[2] is a quadrature."""
+    braking = m[FRICTION] if m[KICK] * m[FRICTION] <= 1.0 else 1.0 / m[KICK]
     dq[0] = q[1]
     dq[1] = -m[STIFFNESS] * q[0] - braking * q[1]
     dq[2] = -m[STIFFNESS] * q[0] * q[1]
@@ -29,8 +29,9 @@ def drift(trial, q, v, h, m):
 
 
 @kernel
-def forecast(trial, dq, h, m):
-    m[GRIP] = h
+def forecast(trial, dq, h, kick, m):
+    m[KICK] = kick
+    m[KICKS] += kick
 
 
 @kernel
@@ -40,18 +41,26 @@ def fastest(m):
 
 @kernel
 def observe(t, q, m):
-    pass
+    """From 0.5 s on the contact is another one."""
+    if t >= 0.5:
+        m[FASTEST] = m[LATER]
 
 
 @kernel
 def run(q, m, work, span, longest):
+    rhs(0.0, q, work[0], m)
     return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, longest)
+
+
+def parameters(stiffness: float, friction: float, fastest: float) -> np.ndarray:
+    """What the kernels above go by."""
+    return np.array([stiffness, friction, 0.0, fastest, fastest, 0.0])
 
 
 def advanced(span: float, step: float, stiffness: float, friction: float = 0.0, fastest: float = 0.0):
     """(State after `span`, evaluations) from x = 1 m at rest."""
     q = np.array([1.0, 0.0, 0.0])
-    m = np.array([stiffness, friction, 0.0, fastest])
+    m = parameters(stiffness, friction, fastest)
     status, evaluations = run(q, m, np.zeros((8, 3)), span, step)
     assert status == 0
     return q, evaluations
@@ -92,6 +101,18 @@ def test_the_fastest_contact_bounds_the_step() -> None:
     assert evaluations == pytest.approx(100.0 / verlet.RESOLUTION + 1.0, abs=1.0)
 
 
-def test_a_step_too_short_is_said() -> None:
-    q, m = np.array([1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, math.inf])
+def test_each_kick_is_half_of_the_steps_beside_it() -> None:
+    """With the first one's half step they fill the span, whether steps stay as they are or grow."""
+    for early, later in ((0.0, 0.0), (100.0, 100.0), (300.0, 20.0)):
+        q, m = np.array([1.0, 0.0, 0.0]), parameters(1.0, 0.0, early)
+        m[LATER] = later
+        run(q, m, np.zeros((8, 3)), 1.0, 0.013)
+        longest = min(0.013, verlet.RESOLUTION / early) if early else 0.013
+        first = 1.0 / math.ceil(1.0 / longest)
+        assert 0.5 * first + m[KICKS] == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("fastest", [math.inf, math.nan])
+def test_a_step_too_short_is_said(fastest: float) -> None:
+    q, m = np.array([1.0, 0.0, 0.0]), parameters(1.0, 0.0, fastest)
     assert run(q, m, np.zeros((8, 3)), 1.0, 1e-3)[0] == STEP_UNDERFLOW

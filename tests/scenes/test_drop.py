@@ -56,8 +56,9 @@ def test_force_on_the_worst_ball_doubles_with_the_cage() -> None:
     assert 1.7 < peaks[0] / peaks[1] < 2.3
 
 
-# sums of absolute values; the cageless bearing's leapfrog steps err to and fro, a twentieth of it net
-LEDGER = {CAGED: 1e-4, CAGELESS: 5e-4}
+# sums of absolute values; twice what the cageless bearing's steps leave, half of what they would leave if
+# their work were booked at the velocities that they forecast
+LEDGER = {CAGED: 1e-4, CAGELESS: 1.5e-4}
 
 
 def test_the_ledger_closes(first_impact: dict) -> None:

@@ -10,11 +10,11 @@ import math
 from dataclasses import dataclass
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.pair import INSIDE, Place, press
+from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, press
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.balls import BallSet
-from touchdown.bearings.rolling.bodies.side import note, note_apart
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
+from touchdown.bearings.rolling.side import heat_of, note, note_apart
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
@@ -58,40 +58,66 @@ def place(q, m):
 
 
 @kernel
-def pocket_contacts(q, dq, m):
-    """All balls against their pockets; adds to the balls' accelerations in dq, sets the cage's derivatives.
+def _pocket(q, i, rx, ry):
+    """Motion of a pocket at (rx, ry) (m) from the middle of the cage, whose components in q start at i."""
+    spin = q[i + SPIN]
+    return Motion(q[i + X] + rx, q[i + Y] + ry, q[i + VX] - spin * ry, q[i + VY] + spin * rx, spin)
 
-    Returns the heat (W).
-    """
+
+@kernel
+def _kick(b, place, rx, ry, m):
+    """The `Kick` of ball `b` and its pocket, at (rx, ry) (m) from the middle of the cage."""
+    d, before, side = m.d, m.s.before, m.s.side
+    lever, off = place.second + rx * place.nx + ry * place.ny, rx * place.ny - ry * place.nx
+    both = 1.0 / d.mass + 1.0 / m.p.cage.mass
+    across = both + d.ball_radius * d.ball_radius / d.inertia + lever * lever / d.cage_inertia
+    answers = across, both + off * off / d.cage_inertia
+    first, second = ball_motion(before, b, m), _pocket(before, first_component(m), rx, ry)
+    last = side.tangential[b], side.normal[b]
+    return kick_of(m.s.kick, answers, first, second, place, INSIDE, last)
+
+
+@kernel
+def pocket_contacts(q, dq, m):
+    """All balls against their pockets; adds to the balls' derivatives in dq, sets the cage's."""
     p, d = m.p, m.d
     rb, clearance = d.ball_radius, p.cage.clearance
-    grip = m.s.step * d.side_grip
     i = first_component(m)
-    vx, vy, spin = q[i + VX], q[i + VY], q[i + SPIN]
     c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
-    fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
+    fx, fy, moment = 0.0, 0.0, 0.0
     for b in range(p.balls.count):
         rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
-        ball = ball_motion(q, b, m)
-        ex, ey = ball.x - q[i + X] - rx, ball.y - q[i + Y] - ry
+        ball, pocket = ball_motion(q, b, m), _pocket(q, i, rx, ry)
+        ex, ey = ball.x - pocket.x, ball.y - pocket.y
         square = ex * ex + ey * ey
         if square <= clearance * clearance:
             note_apart(m.s.side, b)
             continue
         distance = math.sqrt(square)
         at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
-        pocket = Motion(q[i + X] + rx, q[i + Y] + ry, vx - spin * ry, vy + spin * rx, spin)
-        push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, grip)
-        note(m.s.side, b, push_out, at.indentation, d.cage_contact)
+        kick = _kick(b, at, rx, ry, m)
+        push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, kick)
+        note(m.s.side, b, push_out, at, d.cage_contact)
         push(dq, b, push_out.fx, push_out.fy, push_out.first_moment, m)
         fx -= push_out.fx
         fy -= push_out.fy
         moment += push_out.second_moment - rx * push_out.fy + ry * push_out.fx
-        loss += push_out.loss
-    dq[i + X], dq[i + Y], dq[i + ANGLE] = vx, vy, spin
+    dq[i + X], dq[i + Y], dq[i + ANGLE] = q[i + VX], q[i + VY], q[i + SPIN]
     dq[i + VX] = fx / p.cage.mass
     dq[i + VY] = fy / p.cage.mass - p.gravity
     dq[i + SPIN] = moment / d.cage_inertia
+
+
+@kernel
+def rubbing(q, dq, m):
+    """Heat (W) of all pockets over the kick whose accelerations are in dq."""
+    d, i = m.d, first_component(m)
+    c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
+    loss = 0.0
+    for b in range(m.p.balls.count):
+        if m.s.side.indentation[b] > 0.0:
+            rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
+            loss += heat_of(m.s.side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
     return loss
 
 

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 
 from touchdown.bearings.contact import profile as race_profile
 from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.laws import ContactLaw, damped
+from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.contact.profile import RaceProfile
 from touchdown.bearings.contact.search import SearchReport
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts
 from touchdown.bearings.rolling.bodies.race import Contacts
-from touchdown.bearings.rolling.bodies.side import SideContacts
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -20,7 +19,9 @@ from touchdown.bearings.rolling.declarations import (
     RollingParameters,
     race_stiffness,
 )
-from touchdown.bearings.rolling.micro_step import resolved_step
+from touchdown.bearings.rolling.declarations import problem as rolling_problem
+from touchdown.bearings.rolling.micro_step import KickMemory, resolved_step
+from touchdown.bearings.rolling.side import SideContacts
 from touchdown.modelkit.variables import array, group, groups, integer, real
 
 
@@ -29,7 +30,7 @@ class BallBodiesParameters(RollingParameters):
     """What both detailed models share."""
 
     micro_step: float = real(
-        2e-6,
+        2.5e-6,
         "s",
         "longest step inside, of the velocity Verlet method; 0: adaptive Dormand-Prince steps of the "
         "error interface.tolerance",
@@ -90,22 +91,22 @@ class BallBodiesDerived(RollingDerived):
     outer_radius: float = real(0.0, "m", "outer race")
     micro_step: float = real(0.0, "s", "longest step inside")
     searched: int = integer(0, "1: contacts with races are searched for")
-    bore_grip: float = real(0.0, "1/kg", "answer of the sliding speed to a force: journal on ring")
-    race_grip: float = real(0.0, "1/kg", "ball on race, with all that hangs together")
-    side_grip: float = real(0.0, "1/kg", "ball on ball, or on the cage")
-    cage_grip: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
+    cage_answer: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
     x: tuple = array(MOST_BALLS)  # where the balls start, from the middle
     y: tuple = array(MOST_BALLS)
 
 
 @dataclass(frozen=True)
-class BallBodiesMemory(RollingMemory):
+class BallBodiesMemory(RollingMemory, KickMemory):
     """Memory between evaluations and steps."""
 
     inner: Contacts = group(Contacts)
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)
-    step: float = real(0.0, "s", "length of the micro-step, within which friction may stop; 0: no limit")
+    inner_peaks: PeakMemory = group(PeakMemory)
+    outer_peaks: PeakMemory = group(PeakMemory)
+    side_peaks: PeakMemory = group(PeakMemory)
+    cross: tuple = array(MOST_BALLS)  # of the directions along both races at a ball
     outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
     outer_moment: float = real(0.0, "N.m", "of the balls on the outer ring, about its centre")
     inner_starts: tuple = array(2 * MOST_BALLS)
@@ -114,7 +115,7 @@ class BallBodiesMemory(RollingMemory):
 
 
 def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[str, object]:
-    """Fields of `BallBodiesDerived` by name, but for grips of side contacts and `size`, the model's own.
+    """Fields of `BallBodiesDerived` by name, but for `size` and what the model has of its own.
 
     side, lighter: law and mass (kg) of the balls' contacts with each other or the cage.
     """
@@ -125,9 +126,6 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
     places = b.starting_places(rest)
     unused = [0.0] * (MOST_BALLS - b.count)
     inner_radius = b.inner_radius - 0.5 * b.play
-    ball = 1.0 / b.ball_mass + b.ball_radius**2 / b.ball_inertia
-    bore = p.journal_radius + p.clearance
-    of_ring = 1.0 / p.ring.mass + inner_radius**2 / p.ring.inertia
     return {
         "contact": damped(p.contact, p.ring.mass),
         "friction": prepared(p.friction),
@@ -142,8 +140,6 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
         "inner_radius": inner_radius,
         "outer_radius": b.outer_radius + 0.5 * b.play,
         "searched": int(p.inner_profile.active or p.outer_profile.active),
-        "bore_grip": 1.0 / p.ring.mass + bore**2 / p.ring.inertia,
-        "race_grip": 2.0 * ball + 0.5 * b.count * of_ring,
         "rest_x": rest[0],
         "rest_y": rest[1],
         "x": tuple([x for x, _ in places] + unused),
@@ -151,14 +147,15 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
     }
 
 
-def problem(p: BallBodiesParameters) -> str | None:
-    """What is wrong between the parameters of balls and races, or None."""
+def problem(p: BallBodiesParameters, side: str) -> str | None:
+    """What is wrong between the parameters of journal, balls and races, or None.
+
+    side: name of the friction law of the balls' contacts with each other or the cage.
+    """
     b = p.balls
     inner, outer = b.inner_radius - 0.5 * b.play, b.outer_radius + 0.5 * b.play
     problems = (
-        b.problem(),
-        friction_problem(p.friction, "friction"),
-        friction_problem(p.race_friction, "race_friction"),
+        rolling_problem(p, "friction", "race_friction", side),
         race_profile.problem("inner_profile", p.inner_profile, inner, b.ball_radius, hollow=False),
         race_profile.problem("outer_profile", p.outer_profile, outer, b.ball_radius, hollow=True),
     )

@@ -8,66 +8,51 @@ from __future__ import annotations
 import math
 
 from touchdown.bearings import seat
-from touchdown.bearings.rolling.balls import watch_balls, watch_contacts
+from touchdown.bearings.contact.peaks import Largest, watch_peaks
+from touchdown.bearings.rolling.balls import largest, watch_balls
 from touchdown.bearings.rolling.bodies.state import ball_motion
+from touchdown.bearings.rolling.side import stored
 from touchdown.modelkit.kernel import kernel
 
 
 @kernel
-def largest(contacts, balls):
-    """(Normal force on one of a row (N), indentation (m), ball) of the most loaded contact; 0: none.
+def watch(time, m, sides):
+    """Peaks (N, m), after the micro-step to `time` (s).
 
-    balls: the record of `BallSet`.
+    sides: report of the balls' contacts with the cage or with each other.
     """
-    force, indentation, ball = 0.0, 0.0, 0
-    for b in range(balls.count):
-        if contacts.normal[b] > force:
-            force, ball = contacts.normal[b], b
-        indentation = max(indentation, contacts.indentation[b])
-    return force / balls.rows, indentation, ball
-
-
-@kernel
-def watch(m, sides):
-    """Peaks (N, m), after a micro-step; `sides` is the report of the cage's or neighbours' contacts."""
-    s, o, balls = m.s, m.o, m.p.balls
-    inner, sunk_in, first = largest(s.inner, balls)
-    outer, sunk_out, second = largest(s.outer, balls)
-    side, overlap, _ = largest(s.side, balls)
-    watch_contacts(inner, sunk_in, o.inner)
-    watch_contacts(outer, sunk_out, o.outer)
-    watch_contacts(side, overlap, sides)
-    if max(inner, outer) > o.balls.peak_force:
-        o.hardest.ball = (first if inner >= outer else second) + 1
-    watch_balls(max(inner, outer), approach(m), m)
+    s, o, count, rows = m.s, m.o, m.p.balls.count, m.p.balls.rows
+    inner = largest(s.inner.normal, s.inner.indentation, count, rows)
+    outer = largest(s.outer.normal, s.outer.indentation, count, rows)
+    watch_peaks(time, inner, o.inner, s.inner_peaks)
+    watch_peaks(time, outer, o.outer, s.outer_peaks)
+    watch_peaks(time, largest(s.side.normal, s.side.indentation, count, rows), sides, s.side_peaks)
+    force, contact = inner.force, inner.loaded
+    if outer.force > force:
+        force, contact = outer.force, outer.loaded + count
+    depth, deepest = approach(m)
+    before = o.balls.peak_force
+    watch_balls(time, Largest(force, depth, contact, deepest), m)
+    if o.balls.peak_force > before:
+        o.hardest.ball = contact % count + 1
 
 
 @kernel
 def approach(m):
-    """Largest approach of the rings at a ball that both press (m)."""
-    largest_sum = 0.0
+    """Largest approach of the rings at a ball that both press (m), and which ball that is."""
+    most, ball = 0.0, 0
     for b in range(m.p.balls.count):
         inner, outer = m.s.inner.indentation[b], m.s.outer.indentation[b]
-        if inner > 0.0 and outer > 0.0:
-            largest_sum = max(largest_sum, inner + outer)
-    return largest_sum
+        if inner > 0.0 and outer > 0.0 and inner + outer > most:
+            most, ball = inner + outer, b
+    return most, ball
 
 
 @kernel
-def state_contacts(report, contacts, balls):
-    """Largest force (N) and indentation (m) now, in `report` (BallContacts); balls: a `BallSet` record."""
-    report.force, report.indentation, _ = largest(contacts, balls)
-
-
-@kernel
-def stored(contacts, law, count):
-    """Energy (J) of one kind of contact of `count` balls; law: a record."""
-    energy = 0.0
-    for b in range(count):
-        depth = contacts.indentation[b]
-        if depth > 0.0:
-            energy += law.stiffness * depth ** (law.exponent + 1.0) / (law.exponent + 1.0)
-    return energy
+def state_contacts(report, contacts, m):
+    """Largest force (N) and indentation (m) of all balls' `contacts` now, in `report` (BallContacts)."""
+    now = largest(contacts.normal, contacts.indentation, m.p.balls.count, m.p.balls.rows)
+    report.force, report.indentation = now.force, now.indentation
 
 
 @kernel
@@ -79,10 +64,10 @@ def report(q, m, neighbours):
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
-    state_contacts(o.inner, s.inner, p.balls)
-    state_contacts(o.outer, s.outer, p.balls)
+    state_contacts(o.inner, s.inner, m)
+    state_contacts(o.outer, s.outer, m)
     o.balls.force = max(o.inner.force, o.outer.force)
-    o.balls.indentation = approach(m)
+    o.balls.indentation, _ = approach(m)
     kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
     for b in range(count):
         now = ball_motion(q, b, m)

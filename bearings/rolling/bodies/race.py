@@ -1,8 +1,8 @@
 """All balls of a bearing against one race.
 
-The same contact as `bearings.contact.pair.press`, for all balls at once: the loops below are vector code
-(`bearings.rolling.ball_state`) and make up most of a detailed bearing's cost. Where a race is no circle,
-the contact is searched for.
+The same contact as `bearings.contact.pair.press`, for all balls at once: the loops below, and those of
+`bearings.rolling.rubbing` for friction, are vector code (`bearings.rolling.ball_state`) and make up most of
+a detailed bearing's cost. Where a race is no circle, the contact is searched for.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.friction import curve, follow
+from touchdown.bearings.contact.kick import damped_normal
 from touchdown.bearings.contact.laws import hertz
-from touchdown.bearings.contact.pair import Place, friction_force, slip
+from touchdown.bearings.contact.pair import Place, slip
 from touchdown.bearings.contact.search import Disc, Outline, race_place
-from touchdown.bearings.rolling.ball_state import rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.bearings.rolling.rubbing import RubbedRace
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
 
 @dataclass(frozen=True)
-class Contacts:
+class Contacts(RubbedRace):
     """One contact of each ball, at the last evaluation; places as in `bearings.contact.pair.Place`."""
 
     nx: tuple = array(MOST_BALLS)
@@ -31,13 +31,9 @@ class Contacts:
     indentation: tuple = array(MOST_BALLS)
     second: tuple = array(MOST_BALLS)
     across: tuple = array(MOST_BALLS)
-    fx: tuple = array(MOST_BALLS)  # on the ball
-    fy: tuple = array(MOST_BALLS)
-    moment: tuple = array(MOST_BALLS)  # on the race
-    normal: tuple = array(MOST_BALLS)
-    tangential: tuple = array(MOST_BALLS)
     stiffness: tuple = array(MOST_BALLS)
-    loss: tuple = array(MOST_BALLS)
+    rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
+    damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
 
 
 class Balls(NamedTuple):
@@ -52,13 +48,12 @@ class Balls(NamedTuple):
 
 
 class Race(NamedTuple):
-    """What a race is for its balls: on which side of it they lie, its radius, law and grip."""
+    """What a race is for its balls: on which side of it they lie, its radius and law."""
 
     side: float
     radius: float  # m
     stiffness: float  # N/m^1.5
     damping: float  # N s/m2
-    grip: float  # s/kg
 
 
 class Places(NamedTuple):
@@ -71,16 +66,25 @@ class Places(NamedTuple):
     across: object  # m
 
 
-class Forces(NamedTuple):
-    """What a race does to all balls, an array each."""
+class Before(NamedTuple):
+    """Changes of velocity over the kick before: of all balls, an array each, and of their race's centre."""
 
-    fx: object  # N, on the ball
-    fy: object
-    moment: object  # N m, on the race
+    length: float  # s, of the kick
+    ax: object  # m/s2, of the balls
+    ay: object
+    race_x: float  # m/s
+    race_y: float
+    answer: float  # s/kg, of a ball's speed to a force over the kick
+
+
+class Forces(NamedTuple):
+    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before."""
+
     normal: object  # N
-    tangential: object  # N
     stiffness: object  # N/m, at this load
-    loss: object  # W, heat
+    damped: object  # N, what of it is damping
+    sliding: object  # m/s, before the kick
+    rate: object  # m/s, of the indentation, before the kick
 
 
 @inlined
@@ -94,23 +98,7 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    pressed = c.fx[:n], c.fy[:n], c.moment[:n], c.normal[:n], c.tangential[:n]
-    return Forces(*pressed, c.stiffness[:n], c.loss[:n])
-
-
-@kernel
-def find_on_circle(balls, ring, race, places):
-    """Set the `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion)."""
-    reach = race.side * balls.radius
-    for b in range(len(places.nx)):
-        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
-        distance = math.sqrt(dx * dx + dy * dy)
-        inverse = 1.0 / distance
-        places.nx[b] = dx * inverse
-        places.ny[b] = dy * inverse
-        places.indentation[b] = race.side * (distance + reach - race.radius)
-        places.second[b] = distance + reach
-        places.across[b] = 0.0
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], c.sliding[:n], c.rate[:n])
 
 
 @kernel
@@ -127,40 +115,82 @@ def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
         c.second[b], c.across[b] = at.second, at.across
 
 
-@kernel
-def _press_all(balls, ring, race, friction, places, forces):
-    """Set the `forces` (n,) (N, N m, N/m, W) on all `balls` at their `places` (n,); friction: a `Curve`."""
+class Squeezed(NamedTuple):
+    """A ball pressed against a race, before friction."""
+
+    normal: float  # N
+    stiffness: float  # N/m
+    damped: float  # N
+    sliding: float  # m/s
+    rate: float  # m/s
+
+
+@woven
+def _squeeze(b, balls, ring, place, race, before, last):
+    """Ball `b` at its `Place` on a race, `Squeezed`; last: its normal force (N) in the kick before."""
+    ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
+    sliding, rate = slip(ball, ring, place, race.side)
+    elastic, damping, stiffness = hertz(place.indentation, race.stiffness, race.damping)
+    faster_x = before.length * before.ax[b] - before.race_x
+    faster_y = before.length * before.ay[b] - before.race_y
+    others = race.side * (faster_x * place.nx + faster_y * place.ny) + before.answer * last
+    normal = damped_normal(elastic, damping, rate, before.answer, others)
+    return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
+
+
+@woven
+def press_circle(balls, ring, race, before, places, forces):
+    """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
+
+    before: `Before`. Forces (n,) (N, N/m, m/s) are those of pressing, friction comes later.
+    """
     reach = race.side * balls.radius
     for b in range(len(places.nx)):
-        ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
-        nx, ny, indentation = places.nx[b], places.ny[b], places.indentation[b]
-        place = Place(nx, ny, indentation, reach, places.second[b], places.across[b])
-        sliding, rate = slip(ball, ring, place, race.side)
-        normal, elastic, stiff = hertz(place.indentation, rate, race.stiffness, race.damping)
-        mu, _ = follow(sliding, friction)
-        tangential = friction_force(sliding, mu, normal, race.grip)
-        along = -race.side * normal
-        forces.fx[b] = along * place.nx - tangential * place.ny
-        forces.fy[b] = along * place.ny + tangential * place.nx
-        forces.moment[b] = place.across * along - place.second * tangential
-        forces.normal[b] = normal
-        forces.tangential[b] = tangential
-        forces.stiffness[b] = stiff
-        forces.loss[b] = (normal - elastic) * rate - tangential * sliding
+        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        inverse = 1.0 / distance
+        second = distance + reach
+        place = Place(dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0)
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
+        places.nx[b], places.ny[b] = place.nx, place.ny
+        places.indentation[b], places.second[b], places.across[b] = place.indentation, second, 0.0
+        forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
+        forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
 
-@kernel
-def press_race(balls, ring, race, friction, contacts):
-    """Forces of all `balls` on a race around `ring` (Motion), from the places in `contacts`, kept there.
+@woven
+def press_curve(balls, ring, race, before, places, forces):
+    """Set the `forces` (n,) of all `balls` on any race, whose `places` were found (`find_on_curve`).
 
-    friction: a record. Returns the `Total` (N, N m, W) on the race.
+    The rest as for `press_circle`.
     """
-    n = rounded(len(balls.x))
-    _press_all(balls, ring, race, curve(friction), places_of(contacts, n), forces_of(contacts, n))
-    fx, fy, moment, loss = 0.0, 0.0, 0.0, 0.0
-    for b in range(len(balls.x)):
-        fx -= contacts.fx[b]
-        fy -= contacts.fy[b]
-        moment += contacts.moment[b]
+    reach, p = race.side * balls.radius, places
+    for b in range(len(p.nx)):
+        place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
+        forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
+        forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
+
+
+@woven
+def pressing(contacts, side, count):
+    """The `Total` (N, N m) of normal forces that `count` balls on that `side` of a race exert on it."""
+    fx, fy, moment = 0.0, 0.0, 0.0
+    for b in range(count):
+        along = side * contacts.normal[b]
+        fx += along * contacts.nx[b]
+        fy += along * contacts.ny[b]
+        moment -= along * contacts.across[b]
+    return Total(fx, fy, moment, 0.0)
+
+
+@woven
+def with_friction(pressed, contacts, count):
+    """`Total` (N, N m, W) on a race that is `pressed` (Total) and rubbed by `count` balls."""
+    fx, fy, moment, loss = pressed.fx, pressed.fy, pressed.moment, 0.0
+    for b in range(count):
+        fx += contacts.tangential[b] * contacts.ny[b]
+        fy -= contacts.tangential[b] * contacts.nx[b]
+        moment -= contacts.tangential[b] * contacts.second[b]
         loss += contacts.loss[b]
     return Total(fx, fy, moment, loss)

@@ -2,68 +2,145 @@
 
 A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
 each with its own stiffness and with friction. Races are circles, or curves where a profile says so.
+
+What acts on the balls is found in two rounds: the races press (`press_races`), then, when all else is
+known, they rub (`rub_races`).
 """
 
 from __future__ import annotations
 
 from touchdown.bearings import seat
+from touchdown.bearings.contact.friction import curve
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import part, rounded
 from touchdown.bearings.rolling.bodies.race import (
+    Before,
     Race,
-    find_on_circle,
     find_on_curve,
+    forces_of,
     places_of,
-    press_race,
+    press_circle,
+    press_curve,
+    pressing,
+    with_friction,
 )
 from touchdown.bearings.rolling.bodies.state import ANGLE, SPIN, VX, VY, X, Y, balls_of
-from touchdown.modelkit.kernel import kernel
+from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
+from touchdown.modelkit.kernel import woven
 from touchdown.modelkit.ports import Motion
 
 
-@kernel
-def race_contacts(q, dq, m):
-    """All balls in the state q against both races; sets their derivatives in dq, gravity included.
-
-    Returns the `Total` (N, N m, W) on the inner and on the outer race.
-    """
+@woven
+def press_races(q, dq, m):
+    """Both races press all balls in the state q; sets the balls' derivatives in dq, gravity included."""
     p, d, s = m.p, m.d, m.s
-    balls = balls_of(q, m)
-    grip = s.step * d.race_grip
-    at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping, grip)
-    at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping, grip)
+    balls, moved = balls_of(q, m), ring.moved_before(m)
     inner_ring, at = ring.ring_motion(q), seat.housing_motion(q)
     housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
-    outer = _one_race(balls, housing, 0.0, at_outer, p.outer_profile, s.outer_starts, s.outer, m)
+    ax, ay = part(s.before, VX, m), part(s.before, VY, m)
+    over_outer = Before(s.kick, ax, ay, 0.0, 0.0, s.kick / d.mass)
+    over_inner = Before(s.kick, ax, ay, moved.x, moved.y, s.kick / d.mass)
+    at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping)
+    at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping)
     angle = q[ring.RANGLE]
-    inner = _one_race(balls, inner_ring, angle, at_inner, p.inner_profile, s.inner_starts, s.inner, m)
-    s.outer_moment = outer.moment
+    _one_race(balls, housing, 0.0, at_outer, over_outer, p.outer_profile, s.outer_starts, s.outer, m)
+    _one_race(balls, inner_ring, angle, at_inner, over_inner, p.inner_profile, s.inner_starts, s.inner, m)
     _accelerate(balls, dq, m)
-    return inner, outer
 
 
-@kernel
-def _one_race(balls, body, angle, race, profile, starts, contacts, m):
-    """All balls against the race of `body` (Motion), turned by `angle` (rad); returns the `Total` on it."""
+@woven
+def _one_race(balls, body, angle, race, before, profile, starts, contacts, m):
+    """All balls press the race of `body` (Motion), turned by `angle` (rad)."""
+    n = rounded(m.p.balls.count)
+    places, forces = places_of(contacts, n), forces_of(contacts, n)
     if m.d.searched == 1:
         find_on_curve(balls, body, angle, race, profile, starts, m.s.search, contacts)
+        press_curve(balls, body, race, before, places, forces)
     else:
-        find_on_circle(balls, body, race, places_of(contacts, rounded(m.p.balls.count)))
-    return press_race(balls, body, race, m.d.race_friction, contacts)
+        press_circle(balls, body, race, before, places, forces)
 
 
-@kernel
+@woven
 def _accelerate(balls, dq, m):
-    """Derivatives dq (m.n,) of the `balls` under what both races do to them, and gravity."""
+    """Derivatives dq (m.n,) of the `balls` that both races press, and under gravity."""
     d, gravity, inner, outer = m.d, m.p.gravity, m.s.inner, m.s.outer
     dx, dy, turning = part(dq, X, m), part(dq, Y, m), part(dq, ANGLE, m)
     ax, ay, alpha = part(dq, VX, m), part(dq, VY, m), part(dq, SPIN, m)
-    by_mass, by_inertia = 1.0 / d.mass, d.ball_radius / d.inertia
+    by_mass = 1.0 / d.mass
     for b in range(len(ax)):
         dx[b] = balls.vx[b]
         dy[b] = balls.vy[b]
         turning[b] = balls.spin[b]
-        ax[b] = (outer.fx[b] + inner.fx[b]) * by_mass
-        ay[b] = (outer.fy[b] + inner.fy[b]) * by_mass - gravity
-        alpha[b] = (outer.tangential[b] - inner.tangential[b]) * by_inertia
+        ax[b] = (inner.normal[b] * inner.nx[b] - outer.normal[b] * outer.nx[b]) * by_mass
+        ay[b] = (inner.normal[b] * inner.ny[b] - outer.normal[b] * outer.ny[b]) * by_mass - gravity
+        alpha[b] = 0.0
+
+
+@woven
+def rub_races(q, dq, m):
+    """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
+
+    Returns the journal's `Touch` and the `Total` (N, N m, W) on the inner and on the outer race.
+    """
+    d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
+    n = rounded(count)
+    _drive(dq, m)
+    at, kick, squeezed = ring.meet_journal(q, m)
+    pressed = pressing(s.inner, OUTSIDE, count)
+    answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
+    around = Around(
+        ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
+    )
+    inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
+    friction, moved = rub(
+        h,
+        count,
+        curve(d.race_friction),
+        answers,
+        around,
+        inner,
+        rubbed_of(s.outer, n),
+        rubbed_of(s.inner, n),
+    )
+    _rub(dq, moved, m)
+    on_inner = with_friction(pressed, s.inner, count)
+    pressed_out = pressing(s.outer, INSIDE, count)
+    on_outer = with_friction(pressed_out, s.outer, count)
+    s.outer_moment = on_outer.moment
+    s.brake.hx, s.brake.hy = on_outer.fx - pressed_out.fx, on_outer.fy - pressed_out.fy
+    return ring.rub_journal(at, squeezed, friction, moved, m), on_inner, on_outer
+
+
+@woven
+def _drive(dq, m):
+    """How all but friction at races, in dq, changes the sliding speeds over the kick."""
+    s, inner, outer, rb, h = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick
+    ax, ay, alpha = part(dq, VX, m), part(dq, VY, m), part(dq, SPIN, m)
+    for b in range(len(ax)):
+        along_outer = ay[b] * outer.nx[b] - ax[b] * outer.ny[b]
+        along_inner = ay[b] * inner.nx[b] - ax[b] * inner.ny[b]
+        outer.driven[b] = h * (along_outer + rb * alpha[b])
+        inner.driven[b] = h * (along_inner - rb * alpha[b])
+        s.cross[b] = outer.nx[b] * inner.nx[b] + outer.ny[b] * inner.ny[b]
+
+
+@woven
+def _rub(dq, moved, m):
+    """Add friction at both races to the balls' derivatives dq, and the heat of damping to that of friction.
+
+    moved: what the kick does to the ring (`Moved`).
+    """
+    inner, outer, h = m.s.inner, m.s.outer, m.s.kick
+    ax, ay, alpha = part(dq, VX, m), part(dq, VY, m), part(dq, SPIN, m)
+    by_mass, by_inertia = 1.0 / m.d.mass, m.d.ball_radius / m.d.inertia
+    for b in range(len(ax)):
+        f_o, f_i = outer.tangential[b], inner.tangential[b]
+        ax[b] -= (f_o * outer.ny[b] + f_i * inner.ny[b]) * by_mass
+        ay[b] += (f_o * outer.nx[b] + f_i * inner.nx[b]) * by_mass
+        alpha[b] += (f_o - f_i) * by_inertia
+        dx, dy = h * ax[b], h * ay[b]
+        into_outer = dx * outer.nx[b] + dy * outer.ny[b]
+        into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
+        outer.loss[b] += outer.damped[b] * (outer.rate[b] + 0.5 * into_outer)
+        inner.loss[b] += inner.damped[b] * (inner.rate[b] + 0.5 * into_inner)

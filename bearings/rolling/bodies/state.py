@@ -11,16 +11,14 @@ import math
 
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import BALLS, LANES, part
-from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.bodies.declarations import BallBodiesParameters
 from touchdown.bearings.rolling.bodies.race import Balls
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
 SIZE = 6
-MOST_STATES = BALLS + SIZE * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
 
 
 @kernel
@@ -30,7 +28,7 @@ def ball_motion(q, b, m):
     return Motion(q[i + X * n], q[i + Y * n], q[i + VX * n], q[i + VY * n], q[i + SPIN * n])
 
 
-@kernel
+@woven
 def balls_of(q, m):
     """`Balls` (m, m/s, rad/s): views of all balls in the state q."""
     at, velocity = (part(q, X, m), part(q, Y, m)), (part(q, VX, m), part(q, VY, m))
@@ -59,7 +57,7 @@ def place(q, m):
     m.s.outer_starts[:] = math.nan
 
 
-@kernel
+@woven
 def drift(trial, q, mid, h, m):
     """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     seat.drift(trial, q, mid, h, m)
@@ -75,7 +73,7 @@ def drift(trial, q, mid, h, m):
         trial[i + ANGLE] = q[i + ANGLE] + h * mid[i + SPIN]
 
 
-@kernel
+@woven
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s
@@ -88,7 +86,7 @@ def fastest(m):
     if s.ring.indentation > 0.0:
         below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
-    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_grip)), m.s.seat.fastest)
+    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 
 
 def ring_weights(p: BallBodiesParameters) -> list[float]:

@@ -26,6 +26,8 @@ class Turn(NamedTuple):
 class GaussSeidel(Stepper):
     """One component after another, in the system's order."""
 
+    in_one = any_step = True
+
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
         self.follow()

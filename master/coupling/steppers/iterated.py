@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.contract import POSITION
+from touchdown.master.components.contract import GAINS, POSITION
 from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_states
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
@@ -26,7 +26,6 @@ from touchdown.master.scene.run_spec import RunSpec
 MOST = 16  # repetitions of a step
 DEEPEST = 8  # halvings of a macro step
 TINY = 1e-300
-GAINS = ("inv_m", "inv_I", "k_over_m", "c_over_m")
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,23 @@ energy, unless the bearings lead: then they hand over the load of the step to co
 from __future__ import annotations
 
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
+from touchdown.master.coupling.steppers.rates import parts_of
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.run_spec import RunSpec
 
 
 class Jacobi(GaussSeidel):
     """Inputs for all, then steps, then outputs of all."""
 
+    def __init__(self, system: System, run: RunSpec) -> None:
+        super().__init__(system, run)
+        self._expected = run.macro_step  # s, the step for which leading bearings gave their load
+
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
+        if self.run.scheme.lead and step != self._expected:
+            self._shift_loads(0.5 * (step - self._expected))
+            self._expected = step
         due = [turn for turn in self._turns if number % turn.every == 0]
         for component, places, _, cuts in due:
             component.inputs[:] = signals[places]
@@ -25,3 +35,15 @@ class Jacobi(GaussSeidel):
         for turn in self._turns:
             if (number + 1) % turn.every == 0:  # until its own step ends, what it gave before holds
                 turn.component.pull()
+
+    def _shift_loads(self, later: float) -> None:
+        """Take the middle of loads that were given ahead `later` (s), as the step changes its length.
+
+        What mean and slope leave open of a mode's motion belongs to the other length, and is left out.
+        """
+        system, signals = self.system, self.system.signals
+        for body in system.order:
+            places = system.intakes[body].places
+            for part in parts_of(system, body):
+                signals[places[part.means[: len(part.slopes)]]] += signals[places[part.slopes]] * later
+                signals[places[part.last]] = 0.0

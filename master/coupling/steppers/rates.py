@@ -58,6 +58,12 @@ class Rates:
         return self._parts.get(name, [])
 
 
+def parts_of(system: System, body: str) -> list[Part]:
+    """Where the loads of all bearings that hold `body` stand in its inputs, each taken step by step."""
+    held = [a for a in system.attachments if a.body == body and a.bearing not in system.retired]
+    return [_part(system, a, 1, 1, 0.0) for a in held]
+
+
 def _part(system: System, a: Attachment, bearing: int, body: int, step: float) -> Part:
     inputs = system.intakes[a.body].inputs
 

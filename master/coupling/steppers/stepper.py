@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import ClassVar
 
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import RunSpec
@@ -31,6 +32,9 @@ class Stepper(ABC):
     >>> touchdown.run(scene.set({"run.scheme": "counting"}), in_process=True).summary["steps_counted"]
     300
     """
+
+    in_one: ClassVar[bool] = False  # whether each component takes a macro step once, and in one
+    any_step: ClassVar[bool] = False  # whether its steps may be of another length than those before
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.system = system

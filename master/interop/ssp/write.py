@@ -245,6 +245,7 @@ def _experiment(root: Element, scene: Scene, zero: float) -> None:
         "record_arrays": str(run.record_arrays).lower(),
         "warn_residual": repr(run.warn_residual),
         "stop_residual": repr(run.stop_residual),
+        "whirl_halvings": str(run.whirl_halvings),
     }
     annotation = SubElement(
         SubElement(root, "ssd:Annotations"), "ssc:Annotation", {"type": SCENE_ANNOTATION}

@@ -2,39 +2,70 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.ending import Finished
-from touchdown.master.results.figures.style import BLUE, COLOURS, TIME, WIDTH, sized, thinned
+from touchdown.master.results.figures.style import BLACK, BLUE, COLOURS, TIME, WIDTH, sized, thinned
 from touchdown.master.results.summary import energy_total
 
-STYLES = ("-", "--", ":", "-.")  # one per component
+PALETTE = (*COLOURS, BLACK, "#56b4e9", "#e69f00")  # one per component
+MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pairs repeat late
+STYLES = {"kinetic": "-", "potential": "--", "dissipated": ":"}
+SMALL = 1e-3  # of the largest change; less is named, not drawn
+APART = 0.12  # of the panel's diagonal, between two marks of a curve
 
 
 def energy(figure: FigureBase, run: Finished) -> list[Axes]:
-    """Where the energy is: what fell, what went into rings and balls, what became heat; and the balance."""
+    """Where the energy is: what fell, what went into rings and balls, what became heat; and the balance.
+
+    Colour and mark tell components apart, also where their curves coincide; the style of the line, kinds of
+    energy. What changes by less than SMALL of the largest is named above the panel.
+    """
     system, recording = run.system, run.recording
     flows, check = sized(figure, 13, 5).subplots(1, 2)
-    time = recording.time
-    for name, style in zip(system.components, STYLES * 4, strict=False):
-        variables = ("energy.kinetic", "energy.potential", "energy.dissipated")
-        for variable, colour in zip(variables, COLOURS, strict=False):
-            if f"{name}.{variable}" in recording:
-                values = recording[f"{name}.{variable}"]
-                change = values - values[0]
-                if np.any(change):
-                    label = f"{name} {variable.partition('.')[2]}"
-                    flows.plot(*thinned(time, change), style, color=colour, lw=WIDTH, label=label)
+    changes = {
+        (name, kind): recording[f"{name}.energy.{kind}"] - recording[f"{name}.energy.{kind}"][0]
+        for name in system.components
+        for kind in STYLES
+        if f"{name}.energy.{kind}" in recording
+    }
+    _draw(flows, recording.time, changes)
     flows.set_ylabel("change since the start [J]")
-    flows.legend(fontsize="small")
     total = energy_total(system, recording)
     assert total is not None
-    check.plot(*thinned(time, total - total[0]), color=BLUE, lw=WIDTH, label="sum of all")
+    check.plot(*thinned(recording.time, total - total[0]), color=BLUE, lw=WIDTH, label="sum of all")
     check.set_ylabel("energy balance [J]")
     check.set_title("sum of all energies: zero where nothing is lost or made")
     for axes in (flows, check):
         axes.set_xlabel(TIME)
     figure.suptitle(run.scene.title)
     return [flows, check]
+
+
+def _draw(axes: Axes, time: np.ndarray, changes: Mapping[tuple[str, str], np.ndarray]) -> None:
+    """Curves of the `changes` (J), by component and kind, with their legend."""
+    size = {key: float(np.max(np.abs(change))) for key, change in changes.items()}
+    least = SMALL * max(size.values(), default=0.0)
+    names = list(dict.fromkeys(name for name, _ in changes))
+    for i, (name, kind) in enumerate(changes):
+        if size[name, kind] > least:
+            number = names.index(name)
+            axes.plot(
+                *thinned(time, changes[name, kind]),
+                STYLES[kind],
+                color=PALETTE[number % len(PALETTE)],
+                marker=MARKS[number % len(MARKS)],
+                markevery=(APART * ((0.38 * i) % 1.0), APART),  # beside each other where curves coincide
+                markersize=4,
+                lw=WIDTH,
+                label=f"{name} {kind}",
+            )
+    if axes.lines:
+        axes.legend(fontsize="small")
+    small = [f"{name} {kind}" for name, kind in changes if 0.0 < size[name, kind] <= least]
+    if small:
+        axes.set_title(f"below {least:.1g} J: {', '.join(small)}", fontsize="x-small", wrap=True)

@@ -51,6 +51,12 @@ class Turning:
         return Direction.FORWARD if along else Direction.BACKWARD
 
 
+def most_turns(march: March) -> float:
+    """The most that a row of contacts goes one way (turns), swings and rests included; no sign."""
+    ways = stretches(march.angle, BACK)
+    return max((abs(way.turn) for way in ways), default=float(np.ptp(march.angle))) / TURN
+
+
 def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
     """All of a row of contacts, in their order."""
     time = orbit.time[march.rows]

@@ -40,7 +40,7 @@ from touchdown.master.results.whirl.contacts import Orbit, marches
 from touchdown.master.results.whirl.remarks import on_circling, on_turnings
 from touchdown.master.results.whirl.stretches import period, times
 from touchdown.master.results.whirl.swings import to_and_fro
-from touchdown.master.results.whirl.turning import Direction, Turning, turnings
+from touchdown.master.results.whirl.turning import Direction, Turning, most_turns, turnings
 
 WAIT = 0.5  # periods from a whirl's end to the recording's end: it still whirls
 
@@ -77,11 +77,12 @@ class Episode:
 
 @dataclass(frozen=True)
 class Whirl:
-    """Verdict on an orbit, with all whirls in their order; a remark does not change the verdict."""
+    """Verdict on an orbit, with all whirls in their order; what else is said does not change it."""
 
     verdict: Verdict
     episodes: tuple[Episode, ...] = ()
     remark: str = field(default="", compare=False)
+    marched: float = field(default=0.0, compare=False)  # turns, the most that contacts went one way
 
     @property
     def decisive(self) -> Episode | None:
@@ -145,12 +146,13 @@ def classify(
     rows = marches(orbit, force)
     turned = [t for march in rows for t in turnings(orbit, march)]
     episodes = tuple(_episode(orbit, t, spin) for t in turned if t.whirls)
+    marched = max((most_turns(march) for march in rows), default=0.0)
     if decisive := _decisive(episodes):
-        return Whirl(decisive.verdict, episodes)
+        return Whirl(decisive.verdict, episodes, marched=marched)
     remark = on_turnings(turned, spin)
     if any(to_and_fro(march) for march in rows):
-        return Whirl(Verdict.PENDULUM, remark=remark)
-    return Whirl(Verdict.NONE, remark=remark or on_circling(orbit, rows))
+        return Whirl(Verdict.PENDULUM, remark=remark, marched=marched)
+    return Whirl(Verdict.NONE, remark=remark or on_circling(orbit, rows), marched=marched)
 
 
 def _decisive(episodes: tuple[Episode, ...]) -> Episode | None:

@@ -4,12 +4,13 @@ A light inner ring rattles between journal and balls: the momentary contact forc
 rotor is decelerated by, and parts from it for some ten microseconds at a time. So an impact is over once
 the journal has been free for PARTED, and its force is the resultant on the journal averaged over AVERAGE,
 about two periods of that rattle. The momentary peak stands beside it: it is what race and ring suffer.
+So do the peaks inside the bearing, as far as it reports them: on the worst ball, and at the side of one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,11 +21,17 @@ from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.ports import PARTED
 
 AVERAGE = 50e-6  # s
-PARTED = 2e-4  # s
 ROUNDING = 1e-12  # s
 PEAKS = ("contact.peak_force", "contact.peak_indentation")  # of a touchdown bearing, since the start
+CONTACT = "force"  # of journal and ring, beside the parts of INSIDE
+INSIDE = {  # of those bearings that have them, N since the start
+    "ball": ("balls.peak_force",),
+    "side": ("neighbours.peak_force", "pockets.peak_force"),
+}
+LEAST = 1.0  # N; a smaller peak is a graze, whose changes say nothing
 
 
 @dataclass(frozen=True)
@@ -38,6 +45,7 @@ class Trace:
     fy: np.ndarray
     contact: np.ndarray  # N, largest normal force since the start
     indentation: np.ndarray  # m, rotor in ring, largest since the start
+    inside: Mapping[str, np.ndarray] = field(default_factory=dict)  # N, by part, largest since the start
 
     def first_impact(self) -> tuple[float, float] | None:
         """Its beginning and end (s from zero), the trace's end where it lasts; None: no touch."""
@@ -53,9 +61,18 @@ class Trace:
         part = self.time <= end + AVERAGE
         time, step = self.time[part], self.time[1] - self.time[0]
         averages = [_averaged(time, step * np.cumsum(f[part])) for f in (self.fx, self.fy)]
-        at = int(np.searchsorted(self.time, end + 0.5 * step)) - 1
+        at = self._last(end)
         force = np.max(np.hypot(*averages))
         return Peaks(float(force), float(self.contact[at]), float(self.indentation[at]))
+
+    def momentary_until(self, end: float) -> Mapping[str, float]:
+        """Largest momentary forces (N) up to `end` (s from zero): the contact's, and inside by part."""
+        at = self._last(end)
+        return {part: float(force[at]) for part, force in {CONTACT: self.contact, **self.inside}.items()}
+
+    def _last(self, end: float) -> int:
+        """Index of the last macro step up to `end` (s from zero)."""
+        return int(np.searchsorted(self.time, end + 0.5 * (self.time[1] - self.time[0]))) - 1
 
 
 @dataclass(frozen=True)
@@ -65,6 +82,17 @@ class Peaks:
     force: float  # N, resultant on the journal averaged over AVERAGE
     contact: float  # N, momentary normal force
     indentation: float  # m, momentary, rotor in ring
+
+
+def reported_inside(variables: Container[str]) -> Mapping[str, str]:
+    """By part of INSIDE: which of a bearing's variables tells its peak."""
+    return {part: name for part, names in INSIDE.items() for name in names if name in variables}
+
+
+def forces_text(peaks: Mapping[str, float]) -> str:
+    """Momentary peaks (N, by part) in words."""
+    titles = {CONTACT: "contact force", "ball": "worst ball", "side": "cage or neighbour on a ball"}
+    return ", ".join(f"{titles[part]} {force:.5g} N" for part, force in peaks.items())
 
 
 def _averaged(time: np.ndarray, impulse: np.ndarray) -> np.ndarray:
@@ -90,7 +118,10 @@ class Watch(Observer):
         self._time: list[float] = []
         self._rows: list[list[list[float]]] = [[] for _ in seats]
         self._names = [[*map(a.motion, POSITION), *map(a.load, FORCE)] for a in seats]
-        self._read = [system.components[a.bearing].reader(PEAKS) for a in seats]
+        bearings = [system.components[a.bearing] for a in seats]
+        self._inside = [reported_inside(bearing.variables) for bearing in bearings]
+        told = [(*PEAKS, *names.values()) for names in self._inside]
+        self._read = [bearing.reader(names) for bearing, names in zip(bearings, told, strict=True)]
         self._loaded: list[float | None] = [None] * len(seats)  # s, when last
         self._first: float | None = None  # s, when any
 
@@ -99,12 +130,13 @@ class Watch(Observer):
         self._time.append(time)
         for i, rows in enumerate(self._rows):
             row = [now.system.signal(name) for name in self._names[i]]
-            if row[2] != 0.0 or row[3] != 0.0:  # peaks only grow in contact
+            if row[2] != 0.0 or row[3] != 0.0:
                 self._loaded[i] = time
                 self._first = time if self._first is None else self._first
-                row += self._read[i]().tolist()
+            if self._loaded[i] is None:  # all is at rest
+                row += [0.0] * (len(PEAKS) + len(self._inside[i]))
             else:
-                row += rows[-1][4:] if rows else [0.0, 0.0]
+                row += self._read[i]().tolist()
             rows.append(row)
         if self._enough(time):
             now.stop("the first impact is over")
@@ -119,7 +151,15 @@ class Watch(Observer):
 
     def traces(self) -> list[Trace]:
         """Of all seats."""
-        return [Trace(np.array(self._time), *np.array(rows).T) for rows in self._rows]
+        time = np.array(self._time)
+        return [_trace(time, rows, inside) for rows, inside in zip(self._rows, self._inside, strict=True)]
+
+
+def _trace(time: np.ndarray, rows: list[list[float]], inside: Mapping[str, str]) -> Trace:
+    """Of one seat: its rows, by instant, end with the peaks of the parts of `inside`."""
+    columns = list(np.array(rows).T)
+    outer = len(columns) - len(inside)
+    return Trace(time, *columns[:outer], inside=dict(zip(inside, columns[outer:], strict=True)))
 
 
 def run_watched(

@@ -17,7 +17,15 @@ from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import DEFAULT
-from touchdown.master.studies.drop.first_impact import Stop, run_watched
+from touchdown.master.studies.drop.first_impact import (
+    CONTACT,
+    LEAST,
+    ROUNDING,
+    Stop,
+    Trace,
+    reported_inside,
+    run_watched,
+)
 
 FINE = 1e-6  # s, macro step of what peak forces are measured against
 LONGEST = 5e-3  # s after the first contact
@@ -33,21 +41,41 @@ class Landing:
     zero: float  # s, on the simulation's clock
     seats: Sequence[Attachment]
     impacts: Mapping[str, tuple[float, float]]  # s from zero: the first impact at each seat
-    peaks: Mapping[str, float]  # N: its largest contact force
+    traces: Mapping[str, Trace]
+
+    def peaks(self, seat: str) -> Mapping[str, float]:
+        """Largest momentary forces of its first impact (N): the contact's, and inside by part."""
+        return self.traces[seat].momentary_until(self.impacts[seat][1])
+
+    def force_errors(self, found: Mapping[str, tuple[float, Mapping[str, float]]]) -> Mapping[str, float]:
+        """Relative errors of the largest forces, by part, of the worst seat; grazes are left out.
+
+        found: by seat the instant (s from zero) at which they were read, and they (N) by part. Each is
+        held against what it was by that instant: a cage goes on rattling when the journal has parted.
+        """
+        errors: dict[str, float] = {}
+        for seat, (time, forces) in found.items():
+            for part, exact in self.traces[seat].momentary_until(time).items():
+                if exact >= LEAST:
+                    errors[part] = max(errors.get(part, 0.0), abs(forces[part] / exact - 1.0))
+        return errors
 
 
 def fine(scene: Scene, step: float) -> Scene:
     """Small macro steps, and bearings that take steps inside as tight as they can."""
     scene = scene.set({"run.scheme": DEFAULT, "run.macro_step": step})
     with opened(scene, True) as system:
-        bearings = {a.bearing: system.components[a.bearing].variables for a in touchdown_seats(system)}
-    settings = {
-        f"{name}.{variable}": value
-        for name, variables in bearings.items()
+        return scene.set(finest_inside(system))
+
+
+def finest_inside(system: System) -> dict[str, float]:
+    """Settings with which touchdown bearings take adaptive steps inside, as tight as they can."""
+    return {
+        f"{a.bearing}.{variable}": value
+        for a in touchdown_seats(system)
         for variable, value in FINE_SETTINGS.items()
-        if variable in variables
+        if variable in system.components[a.bearing].variables
     }
-    return scene.set(settings)
 
 
 def land(scene: Scene, duration: float | None) -> Landing:
@@ -66,9 +94,8 @@ def land(scene: Scene, duration: float | None) -> Landing:
     impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
-    peaks = {seat: traces[seat].peaks(end).contact for seat, (_, end) in impacts.items()}
     first = min(start for start, _ in impacts.values())
-    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, peaks)
+    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, traces)
 
 
 @dataclass(frozen=True)
@@ -100,7 +127,8 @@ class Sampler(Observer):
     def __init__(self, system: System, landing: Landing, every: int) -> None:
         self.times: list[float] = []  # s on the simulation's clock
         self.motion: list[list[np.ndarray]] = []
-        self.peaks: dict[str, float] = {}
+        self.peaks: dict[str, tuple[float, Mapping[str, float]]] = {}  # s from zero, N by part
+        self._end = landing.end
         self._every = every
         self._system = system
         self._read = [system.reader([a.motion(v) for v in SENSED]) for a in landing.seats]
@@ -111,11 +139,14 @@ class Sampler(Observer):
         if now.done % self._every == 0:
             self.times.append(now.time)
             self.motion.append([read().copy() for read in self._read])
-        over = [seat for seat, (end, _) in self._ends.items() if now.since_zero >= end]
-        self.finish(over)
-
-    def finish(self, seats: Sequence[str] | None = None) -> None:
-        """Read the peaks of `seats` (all that are left)."""
-        for seat in list(self._ends) if seats is None else seats:
+        step = now.time / now.done
+        last = now.since_zero + step > self._end + ROUNDING  # that is known of the landing
+        for seat in [seat for seat, (end, _) in self._ends.items() if last or now.since_zero >= end]:
             _, bearing = self._ends.pop(seat)
-            self.peaks[seat] = self._system.value(f"{bearing}.contact.peak_force")
+            self.peaks[seat] = now.since_zero, self._forces(bearing)
+
+    def _forces(self, bearing: str) -> Mapping[str, float]:
+        """Largest momentary forces of a bearing so far (N), by part."""
+        names = reported_inside(self._system.components[bearing].variables)
+        parts = {CONTACT: "contact.peak_force", **names}
+        return {part: self._system.value(f"{bearing}.{name}") for part, name in parts.items()}

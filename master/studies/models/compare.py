@@ -18,7 +18,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.first_impact import Peaks, Stop, Trace, run_watched
+from touchdown.master.studies.drop.first_impact import LEAST, Peaks, Stop, Trace, run_watched
 from touchdown.master.studies.models.variants import Variant
 
 LONGEST = 20e-3  # s after the first contact
@@ -53,10 +53,12 @@ class Price:
     position: float  # m, distance of the worst journal at the end of the scene's first impact there
     orbit: float  # relative, of the largest orbit
     radius: float  # m, the scene's largest orbit
+    ball: float | None  # relative, of the peak force on the worst ball; None: no balls on one side
+    side: float | None  # relative, of the peak force between a ball and the cage or its neighbour
 
     @property
     def percent(self) -> float:
-        """The largest change of forces, position over orbit, and orbit."""
+        """The largest change of the journal's forces, position over orbit, and orbit."""
         parts = (self.force, self.contact, self.position / self.radius, self.orbit)
         return 100.0 * max(abs(part) for part in parts)
 
@@ -168,7 +170,24 @@ def _price(drop: Drop, exact: Drop) -> Price:
         position=float(max(np.hypot(*place) for place in places)),
         orbit=drop.orbit() / radius - 1.0,
         radius=radius,
+        ball=_change_inside(drop, exact, both, "ball"),
+        side=_change_inside(drop, exact, both, "side"),
     )
+
+
+def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> float | None:
+    """Relative, of a peak force inside by the end of the scene's first impact; the worst of `seats`.
+
+    None where none of them has that part in both, or it is but grazed.
+    """
+    changes = []
+    for seat in seats:
+        end = exact.ends[seat]
+        before = exact.traces[seat].momentary_until(end).get(part, 0.0)
+        after = drop.traces[seat].momentary_until(end).get(part)
+        if after is not None and before >= LEAST:
+            changes.append(after / before - 1.0)
+    return max(changes, key=abs, default=None)
 
 
 def _place(trace: Trace, time: float) -> tuple[float, float]:

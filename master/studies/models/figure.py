@@ -19,7 +19,7 @@ def error_against_time(comparison: Comparison) -> Figure:
     price.barh(names, [max(row.price.percent, LEAST) for row in rows if row.price], color=BLUE, left=LEAST)
     price.axvline(CLEAR, color=GREY, ls="--", lw=0.8)
     price.set_xscale("log")
-    price.set_xlabel("largest change of forces, position over orbit, orbit [%]")
+    price.set_xlabel("largest change of the journal's forces, position over orbit, orbit [%]")
     time.barh(names, [row.ratio for row in rows if row.ratio is not None], color=GREY)
     time.axvline(1.0, color=GREY, ls="--", lw=0.8)
     time.set_xlabel("wall time over that of the scene as it is")

@@ -6,8 +6,8 @@ import csv
 from pathlib import Path
 
 from touchdown.master.common.files import writing_to
-from touchdown.master.studies.drop.first_impact import AVERAGE
-from touchdown.master.studies.models.compare import CLEAR, Comparison, Row
+from touchdown.master.studies.drop.first_impact import AVERAGE, forces_text
+from touchdown.master.studies.models.compare import CLEAR, Comparison, Price, Row
 
 WIDTH = 12
 HEADS = (
@@ -16,6 +16,8 @@ HEADS = (
     ("contact", "force %"),
     ("position", "um"),
     ("orbit", "%"),
+    ("worst ball", "force %"),
+    ("ball side", "force %"),
     ("wall/", "simulated"),
     ("time", "ratio"),
 )
@@ -34,7 +36,7 @@ def _about(comparison: Comparison) -> list[str]:
         peaks = drop.peaks[seat]
         about.append(
             f"  {seat}: first impact over at {1e3 * end:.4g} ms, journal force {peaks.force:.5g} N over "
-            f"{1e6 * average:g} us, contact force {peaks.contact:.5g} N"
+            f"{1e6 * average:g} us, {forces_text(drop.traces[seat].momentary_until(end))}"
         )
     about.append(
         f"  first contact {1e3 * drop.first:.5g} ms, largest orbit {1e6 * drop.orbit():.4g} um up to "
@@ -51,7 +53,8 @@ def _about(comparison: Comparison) -> list[str]:
 def _table(comparison: Comparison) -> list[str]:
     width = max(len(row.title) for row in comparison.rows) + 2
     top, below = ("".join(f"{head[i]:>{WIDTH}}" for head in HEADS) for i in (0, 1))
-    own = "".join(f"{cell:>{WIDTH}}" for cell in ("", "", "", "", "", f"{comparison.wall:.3g}", "1.00"))
+    unchanged = [""] * (len(HEADS) - 2)
+    own = "".join(f"{cell:>{WIDTH}}" for cell in (*unchanged, f"{comparison.wall:.3g}", "1.00"))
     return [
         f"{'changes against the scene':<{width}}{top}",
         f"{'':<{width}}{below}",
@@ -70,10 +73,16 @@ def _cells(comparison: Comparison, row: Row) -> str:
         f"{100.0 * price.contact:+.2f}",
         f"{1e6 * price.position:.3g}",
         f"{100.0 * price.orbit:+.2f}",
+        _percent(price.ball),
+        _percent(price.side),
         f"{row.wall:.3g}",
         f"{row.ratio:.2f}",
     )
     return "".join(f"{cell:>{WIDTH}}" for cell in cells)
+
+
+def _percent(change: float | None) -> str:
+    return "-" if change is None else f"{100.0 * change:+.2f}"
 
 
 def advice(comparison: Comparison) -> list[str]:
@@ -82,13 +91,21 @@ def advice(comparison: Comparison) -> list[str]:
     if not good:
         return [f"nothing of these makes the scene faster for less than {CLEAR:g} %"]
     return [
-        f"for less than {CLEAR:g} % of forces, position (over the orbit) and orbit, each by itself:",
+        f"for less than {CLEAR:g} % of the journal's forces, position (over the orbit) and orbit, "
+        "each by itself:",
         *(
-            f"  {row.title}: {row.price.percent:.2g} %, {row.ratio:.2f} of the time"
+            f"  {row.title}: {row.price.percent:.2g} %, {row.ratio:.2f} of the time{_inside(row.price)}"
             for row in good
             if row.price is not None
         ),
     ]
+
+
+def _inside(price: Price) -> str:
+    """What it does to the forces inside the bearings, as the rest of a line."""
+    changes = {"worst ball": price.ball, "ball side": price.side}
+    known = [f"{title} {_percent(change)} %" for title, change in changes.items() if change is not None]
+    return "".join(f"; {text}" for text in known)
 
 
 def write_report(comparison: Comparison, folder: Path) -> None:
@@ -101,8 +118,8 @@ def write_report(comparison: Comparison, folder: Path) -> None:
 
 
 def write_table(comparison: Comparison, path: Path) -> None:
-    fields = ("first", "force", "contact", "position", "orbit")
-    units = ("s", "relative", "relative", "m", "relative")
+    fields = ("first", "force", "contact", "position", "orbit", "ball", "side")
+    units = ("s", "relative", "relative", "m", "relative", "relative", "relative")
     titles = [f"{name}_change_{unit}" for name, unit in zip(fields, units, strict=True)]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

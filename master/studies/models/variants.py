@@ -10,6 +10,7 @@ from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.studies.drop.measured import finest_inside
 from touchdown.master.studies.modes.compare import BASIS, RIGID
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
@@ -20,6 +21,7 @@ OTHER = {
     "simplified_cageless": ("detailed_cageless", "detailed bearings"),
 }
 PLAIN = "bushing"
+COULOMB = 0  # of friction.kind
 STEPPING = ("interface.", "micro_step")
 LOOSER = 100.0  # times the tolerance inside a bearing
 OFFSETS = ("x0", "y0")  # of a housing out of line
@@ -113,7 +115,17 @@ def _friction(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Va
     present = {system.value(f"{name}.friction.kind") for name in has}
     for value in range(int(kind.minimum or 0), int(kind.maximum or 0) + 1):
         if present != {value}:
-            yield Variant(f"friction: {_law(kind, value)}", _all(scene, has, {"friction.kind": value}))
+            yield Variant(f"friction: {_law(kind, value)}", _with_law(scene, system, has, value))
+
+
+def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> Scene:
+    """Scene with that friction law; Coulomb's has one coefficient only, the dynamic one."""
+    for name in seats:
+        changes: dict[str, object] = {f"{name}.friction.kind": kind}
+        if kind == COULOMB:
+            changes[f"{name}.friction.static"] = system.value(f"{name}.friction.dynamic")
+        scene = scene.set(changes)
+    return scene
 
 
 def _law(kind: Variable, value: int) -> str:
@@ -126,7 +138,9 @@ def _law(kind: Variable, value: int) -> str:
 
 
 def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
-    """Longer steps inside bearings of fixed ones, a looser tolerance in those that adapt theirs."""
+    """Longer steps inside bearings of fixed ones, a looser tolerance in those that adapt theirs; and the
+    finest in all, which tell how far the scene's own are off.
+    """
     fixed = [n for n in seats if "micro_step" in system.components[n].variables]
     fixed = [n for n in fixed if system.value(f"{n}.micro_step") > 0.0]
     if fixed:
@@ -138,6 +152,8 @@ def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator
         values = {f"{name}.{variable}": LOOSER * system.value(f"{name}.{variable}") for name in rest}
         title = f"tolerance inside bearings {LOOSER:g} times as large"
         yield Variant(title, scene.set(values))
+    if fixed or rest:
+        yield Variant("fine adaptive steps inside bearings", scene.set(finest_inside(system)))
 
 
 def _housings(scene: Scene, system: System) -> Iterator[Variant]:

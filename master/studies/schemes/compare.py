@@ -1,9 +1,9 @@
 """Speed against error: every coupling scheme over macro steps, and monolithic solvers, on one drop.
 
 Errors are found in process, which is the same to the bit as through FMUs; wall time is through FMUs
-unless asked otherwise. Motion is measured against the monolithic reference. The peak force of the first
-impact, which bearings report from inside their steps, is measured against fine steps of the co-simulation,
-whose motion stands beside it.
+unless asked otherwise. Motion is measured against the monolithic reference. The peak forces of the first
+impact (contact, worst ball, side of a ball), which bearings report from inside their steps, are measured
+against fine steps of the co-simulation, adaptive inside bearings, whose motion stands beside it.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES
+from touchdown.master.studies.drop.first_impact import CONTACT, INSIDE
 from touchdown.master.studies.drop.measured import (
     FINE,
     Landing,
@@ -51,7 +52,6 @@ AGREED = 0.1  # of the wanted error: what the reference's solvers may differ by
 SATURATED = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
 ABOUT = 1.2  # times the least wall time: as good as the same
 NEVER = 1e9  # a residual of the ledger at which nothing stops
-QUANTITIES = ("position", "velocity", "force", "energy")
 
 
 @dataclass(frozen=True)
@@ -68,6 +68,8 @@ SHOWN = {
     "position": Quantity("journal", "um", 1e6, "error of journal [um]"),
     "velocity": Quantity("velocity", "mm/s", 1e3, "error of velocity [mm/s]"),
     "force": Quantity("peak force", "%", 100.0, "error of peak force [%]"),
+    "ball": Quantity("worst ball", "%", 100.0, "error of the worst ball's peak force [%]"),
+    "side": Quantity("ball side", "%", 100.0, "error of peak force on cage or neighbour [%]"),
     "energy": Quantity("ledger", "1", 1.0, "residual of the ledger [1]"),
 }
 
@@ -97,8 +99,8 @@ class Alarm(StrEnum):
 class Row:
     """One scheme at one macro step, or one monolithic solver; errors by quantity, where known.
 
-    position: m, velocity: m/s, both the largest of any seat and instant; force: of the first impact,
-    relative, of the worst seat; energy: residual of the ledger over the energy scale.
+    position: m, velocity: m/s, both the largest of any seat and instant; force, ball, side: of the first
+    impact, relative, of the worst seat; energy: residual of the ledger over the energy scale.
     """
 
     name: str
@@ -117,15 +119,26 @@ class Comparison:
     asked: Asked
     landing: Landing
     exact: Reference
-    fine: Mapping[str, float]  # errors of the fine co-simulation: its motion, its force at twice the step
+    fine: Mapping[str, float]  # errors of the fine co-simulation: its motion, its forces at twice the step
     rows: Sequence[Row]  # schemes
     monolithic: Sequence[Row]
+
+    @property
+    def quantities(self) -> Sequence[str]:
+        """What can be compared: bearings without balls, or whose balls only graze, say less."""
+        return [q for q in SHOWN if q in self.fine]
+
+    @property
+    def forces(self) -> Sequence[str]:
+        """Those of `quantities` that are peak forces."""
+        return [q for q in self.quantities if q == CONTACT or q in INSIDE]
 
     @property
     def floors(self) -> Mapping[str, float]:
         """By quantity: errors below it say nothing."""
         position, velocity = self.exact.floor(POSITION), self.exact.floor(VELOCITY)
-        return {"position": position, "velocity": velocity, "force": self.fine["force"], "energy": 0.0}
+        forces = {q: self.fine[q] for q in self.forces}
+        return {"position": position, "velocity": velocity, **forces, "energy": 0.0}
 
     @property
     def wanted(self) -> Mapping[str, float]:
@@ -134,15 +147,13 @@ class Comparison:
 
     def orders(self, scheme: str) -> Mapping[str, Order | None]:
         """By quantity; None where too few macro steps tell."""
-        rows = [row for row in self.rows if row.name == scheme and row.errors and row.step is not None]
-        steps = [row.step for row in rows if row.step is not None]
         extents = {"position": self.exact.extent(POSITION), "velocity": self.exact.extent(VELOCITY)}
-        return {
-            q: fitted_order(
-                steps, [row.errors[q] for row in rows], self.floors[q], SATURATED * extents.get(q, 1.0)
-            )
-            for q in QUANTITIES
-        }
+        orders = {}
+        for q in self.quantities:
+            of = {r.step: r.errors[q] for r in self.rows if r.name == scheme and r.step and q in r.errors}
+            limit = SATURATED * extents.get(q, 1.0)
+            orders[q] = fitted_order(list(of), list(of.values()), self.floors[q], limit)
+        return orders
 
     def recommended(self) -> Row | None:
         """The cheapest row of a scheme whose journals err by no more than wanted, ledgers that hold first.
@@ -172,7 +183,7 @@ def compare_schemes(
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.set({"run.stop_residual": NEVER})
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
     begin("fine steps")
     landing = land(scene, asked.duration)
     looks = plan(landing, (*asked.steps, 2.0 * FINE))
@@ -242,16 +253,15 @@ class _Judge:
                 sampler = Sampler(system, self.looks.landing, self.looks.every[step])
                 outcome = simulate(scene, system, observers=[sampler])
                 outcome.raise_if_stopped()
-                sampler.finish()
         except TouchdownError as error:
             return Row(name, step, failed=str(error))
-        residual = outcome.residual
-        return Row(name, step, self._errors(sampler, residual), ledger=self._alarm(residual))
+        errors = self._errors(sampler, outcome.residual)
+        return Row(name, step, errors, ledger=self._alarm(outcome.share))
 
-    def _alarm(self, residual: float) -> Alarm:
-        if residual > self.stop:
+    def _alarm(self, share: float) -> Alarm:
+        if share > self.stop:
             return Alarm.STOPS
-        return Alarm.WARNS if residual > self.warn else Alarm.NONE
+        return Alarm.WARNS if share > self.warn else Alarm.NONE
 
     def _errors(self, sampler: Sampler, residual: float) -> Mapping[str, float]:
         times = np.array(sampler.times) - self.looks.landing.zero
@@ -259,11 +269,10 @@ class _Judge:
         at = np.searchsorted(self.exact.time, times - 1e-10)
         at = np.minimum(at, len(self.exact.time) - 1)
         known = np.abs(self.exact.time[at] - times) < 1e-10  # up to the horizon
-        peaks = self.looks.landing.peaks
         return {
             "position": self.exact.distance(motion[known], at[known], POSITION),
             "velocity": self.exact.distance(motion[known], at[known], VELOCITY),
-            "force": max(abs(sampler.peaks[seat] / peak - 1.0) for seat, peak in peaks.items()),
+            **self.looks.landing.force_errors(sampler.peaks),
             "energy": residual,
         }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from matplotlib.axes import Axes
@@ -14,9 +15,14 @@ MARKERS = "osD^v<>ph*"
 
 
 def work_precision(comparison: Comparison) -> Figure:
-    """Four panels: journal position and velocity, peak force, ledger; labels are macro steps."""
-    figure = sheet(13, 10)
-    for axes, name in zip(figure.subplots(2, 2).flat, SHOWN, strict=True):
+    """Panels: journal position and velocity, peak forces, ledger; labels are macro steps."""
+    quantities = comparison.quantities
+    lines = math.ceil(len(quantities) / 2)
+    figure = sheet(13, 5 * lines)
+    panels = list(figure.subplots(lines, 2).flat)
+    for axes in panels[len(quantities) :]:
+        axes.set_axis_off()
+    for axes, name in zip(panels, quantities, strict=False):
         _panel(axes, comparison, name)
     figure.axes[0].legend(fontsize=8)
     asked, landing = comparison.asked, comparison.landing

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from touchdown.master.common.files import write_records, writing_to
+from touchdown.master.studies.drop.first_impact import forces_text
 from touchdown.master.studies.drop.reference import POSITION
-from touchdown.master.studies.schemes.compare import QUANTITIES, SHOWN, Comparison, Row
+from touchdown.master.studies.schemes.compare import SHOWN, Comparison, Row
 
 MONOLITHIC = "monolithic"
 
@@ -23,9 +24,10 @@ def _about(comparison: Comparison) -> list[str]:
     for seat, (start, end) in landing.impacts.items():
         about.append(
             f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, "
-            f"contact force {landing.peaks[seat]:.5g} N"
+            f"{forces_text(landing.peaks(seat))}"
         )
     first, second = exact.first, exact.second
+    known = ", ".join(f"{SHOWN[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces)
     until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
     about += [
         f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
@@ -33,7 +35,7 @@ def _about(comparison: Comparison) -> list[str]:
         f"reference: {first.solver.title} ({first.evaluations} evaluations) and {second.solver.title} "
         f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}",
         f"co-simulation in fine steps is off by {1e6 * comparison.fine['position']:.1g} um; "
-        f"peak forces are measured against it, known to {100.0 * comparison.fine['force']:.1g} %",
+        f"peak forces are measured against it, known to: {known}",
         f"wall time {'in process' if asked.in_process else 'through FMUs'}, median of {asked.repeat}; "
         "of monolithic solvers, one run in process",
     ]
@@ -43,18 +45,19 @@ def _about(comparison: Comparison) -> list[str]:
 def _table(comparison: Comparison) -> list[str]:
     rows = [*comparison.rows, *comparison.monolithic]
     width = max(len(row.name) for row in rows) + 2
-    heads = [f"{q.title}" for q in SHOWN.values()]
-    units = [f"[{q.unit}]" for q in SHOWN.values()]
+    quantities = comparison.quantities
+    heads = [SHOWN[q].title for q in quantities]
+    units = [f"[{SHOWN[q].unit}]" for q in quantities]
     top = f"{'scheme':<{width}}{'macro step':>12}" + "".join(f"{h:>12}" for h in (*heads, "wall/"))
     below = f"{'':<{width}}{'':>12}" + "".join(f"{u:>12}" for u in (*units, "simulated"))
-    return [top, below, *(f"{row.name:<{width}}{_cells(row)}".rstrip() for row in rows)]
+    return [top, below, *(f"{row.name:<{width}}{_cells(row, quantities)}".rstrip() for row in rows)]
 
 
-def _cells(row: Row) -> str:
+def _cells(row: Row, quantities: Sequence[str]) -> str:
     step = MONOLITHIC if row.step is None else f"{1e6 * row.step:g} us"
     if row.failed:
         return f"{step:>12}  {row.failed}"
-    errors = "".join(f"{_shown(row, name):>12}" for name in SHOWN)
+    errors = "".join(f"{_shown(row, name):>12}" for name in quantities)
     wall = "-" if row.wall is None else f"{row.wall:.3g}"
     return f"{step:>12}{errors}{wall:>12}" + (f"  ledger {row.ledger}" if row.ledger else "")
 
@@ -67,9 +70,10 @@ def _shown(row: Row, name: str) -> str:
 def _orders(comparison: Comparison) -> list[str]:
     """By scheme; the steps used stand beside the order."""
     width = max(len(name) for name in comparison.asked.schemes) + 2
-    head = f"{'order':<{width}}" + "".join(f"{q.title:>22}" for q in SHOWN.values())
+    quantities = comparison.quantities
+    head = f"{'order':<{width}}" + "".join(f"{SHOWN[q].title:>22}" for q in quantities)
     body = [
-        f"{name:<{width}}" + "".join(f"{_order(comparison, name, quantity):>22}" for quantity in SHOWN)
+        f"{name:<{width}}" + "".join(f"{_order(comparison, name, q):>22}" for q in quantities)
         for name in comparison.asked.schemes
     ]
     return [head, *body]
@@ -115,7 +119,7 @@ def write_report(comparison: Comparison, folder: Path) -> None:
 
 def write_table(comparison: Comparison, path: Path) -> None:
     """All rows, errors in SI and in full precision."""
-    units = {"position": "m", "velocity": "m_s", "force": "relative", "energy": "relative"}
+    units = dict.fromkeys(SHOWN, "relative") | {"position": "m", "velocity": "m_s"}
     records: list[Mapping[str, object]] = [
         {
             "scheme": row.name,
@@ -134,7 +138,7 @@ def write_orders(comparison: Comparison, path: Path) -> None:
     """Fitted orders, and the steps they were fitted to."""
     records: list[Mapping[str, object]] = []
     for scheme in comparison.asked.schemes:
-        for quantity in QUANTITIES:
+        for quantity in comparison.quantities:
             order = comparison.orders(scheme)[quantity]
             records.append(
                 {

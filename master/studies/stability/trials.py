@@ -23,9 +23,9 @@ import numpy as np
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.contract import POSITION
-from touchdown.master.coupling.advisor import fastest_contact
 from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
+from touchdown.master.coupling.system import fastest_contact
 from touchdown.master.scene import schemes
 from touchdown.master.scene.scene import Scene
 
@@ -215,7 +215,8 @@ class Bounds(Observer):
 
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
     """Run a case in process: what the loop says, and the figures, none where the run broke off."""
-    scene = case.scene.set({"run.scheme": scheme, "run.macro_step": step, "run.stop_residual": NEVER})
+    scene = case.scene.set({"run.scheme": scheme, "run.macro_step": step})
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, observers=[bounds])
         outcome.raise_if_interrupted()

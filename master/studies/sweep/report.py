@@ -95,7 +95,7 @@ def write_table(members: Sequence[Member], path: Path) -> None:
             writer = csv.writer(file)
             writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
             for i, m in enumerate(members):
-                cells = [_counted(m.summary.get(key)) for key in figures]
+                cells = [counted(m.summary.get(key)) for key in figures]
                 writer.writerow(
                     [m.number, *(values[i] for _, values in columns.values()), *cells, m.failed]
                 )
@@ -115,13 +115,13 @@ def _column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:
     return f"{name} [{unit}]" if unit else name, [part[0] for part in parts if part is not None]
 
 
-def _counted(value: object) -> object:
+def counted(value: object) -> object:
     """Of a list, such as a whirl's episodes, the number."""
     return len(value) if isinstance(value, list) else value
 
 
 def _shown(value: object) -> str:
-    value = _counted(value)
+    value = counted(value)
     if value is None:
         return "-"
     return f"{value:.6g}" if isinstance(value, float) else str(value)

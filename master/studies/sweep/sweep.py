@@ -64,12 +64,17 @@ def sweep(
         Task(number, given, scene.set(given), folder / f"{number:0{width}}", execution)
         for number, given in enumerate(settings, start=1)
     ]
-    members = [
+    members = run_tasks(tasks, jobs, done)
+    write_table(members, folder / "sweep.csv")
+    return members
+
+
+def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
+    """A member for each task, `jobs` at a time in processes of their own; those not run say why."""
+    return [
         outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
         for task, outcome in zip(tasks, run_all(carrying(_run_task), tasks, jobs, done), strict=True)
     ]
-    write_table(members, folder / "sweep.csv")
-    return members
 
 
 def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:

@@ -28,7 +28,11 @@ def execute(options: argparse.Namespace) -> int:
     chosen = find_scene(options.scene).set(settings(options))
     advice = advise(chosen, SCHEMES)
     reason = advice[chosen.run.scheme.name].reason
-    print(f"{chosen.name}, which takes {1e6 * chosen.run.macro_step:g} us: {reason}")
+    print(f"{chosen.name}: {reason}")
+    print(
+        f"It takes {1e6 * chosen.run.macro_step:g} us. With what is advised, peaks of the first impact are"
+    )
+    print("within about 1 %; what longer steps do is in the ledger of a run.")
     for name, advised in advice.items():
         scheme = SCHEMES[name]
         print(f"  {name:<18}{1e6 * advised.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")

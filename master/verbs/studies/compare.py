@@ -17,6 +17,7 @@ from touchdown.master.verbs.arguments import (
     count,
     results_folder,
     settings,
+    several_above_zero,
 )
 from touchdown.master.verbs.verb import Verb
 
@@ -68,7 +69,7 @@ def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
 
     asked = Asked(
         schemes=tuple(SCHEMES) if options.schemes is None else _names(options.schemes),
-        steps=STEPS if options.macro_steps is None else _steps(options.macro_steps),
+        steps=several_above_zero(options.macro_steps, "s", "--macro-steps") or STEPS,
         duration=above_zero(options.duration, "s", "--duration"),
         wanted=above_zero(options.wanted, "m", "--wanted") or WANTED,
         repeat=count(options.repeat, "--repeat"),
@@ -101,13 +102,6 @@ def _names(text: str) -> tuple[str, ...]:
     from touchdown.master.studies.sweep.variation import listed
 
     return tuple(dict.fromkeys(scheme(name).name for name in listed(text, f"--schemes {text}")))
-
-
-def _steps(text: str) -> tuple[float, ...]:
-    from touchdown.master.studies.sweep.variation import listed
-
-    steps = [above_zero(item, "s", "--macro-steps") for item in listed(text, f"--macro-steps {text}")]
-    return tuple(sorted({step for step in steps if step is not None}))
 
 
 def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> None:

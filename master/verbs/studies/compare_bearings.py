@@ -28,14 +28,14 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.units import to_si
-    from touchdown.master.studies.dissertation.bearings import OPTIONS, SCENES, compare_bearings
+    from touchdown.master.studies.dissertation.bearings import OPTIONS, READINGS, compare_bearings
 
     duration = to_si(options.duration, "s", "--duration")
     members = count(options.ensemble, "--ensemble")
     if duration <= 0.0:
         raise TouchdownError(f"--duration {options.duration} must be above 0 s")
     folder = results_folder(options)
-    total = members * (len(SCENES) + (len(OPTIONS) if options.options else 0))
+    total = members * (len(READINGS) + (len(OPTIONS) if options.options else 0))
     with bar_over(total, "drops", options.quiet) as bar:
         text = compare_bearings(duration, members, options.options, folder, bar.update)
     print(text, end="")

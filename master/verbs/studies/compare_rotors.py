@@ -5,8 +5,16 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from touchdown.master.common.progress import bar_over
-from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, count, results_folder
+from touchdown.master.common.progress import growing_bar
+from touchdown.master.verbs.arguments import (
+    add_jobs,
+    add_output,
+    add_phases,
+    add_quiet,
+    angle,
+    count,
+    results_folder,
+)
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
@@ -17,7 +25,8 @@ EXAMPLES = (
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("--ensemble", default="4", metavar="N", help="unbalance phases (default: 4)")
+    verb.add_argument("--ensemble", default="8", metavar="N", help="unbalance phases (default: 8)")
+    add_phases(verb)
     verb.add_argument("--long", action="store_true", help="also the run-down over 16 s")
     add_jobs(verb)
     add_output(verb, Path("runs/rotors"))
@@ -26,13 +35,15 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.studies.dissertation.rotors import compare_rotors, runs
+    from touchdown.master.studies.dissertation.rotors import compare_rotors
+    from touchdown.master.studies.verdict.study import Plan
 
     members = count(options.ensemble, "--ensemble")
     jobs = count(options.jobs, "--jobs")
+    plan = Plan(angle(options.grid, "--grid"), angle(options.resolution, "--resolution"))
     folder = results_folder(options)
-    with bar_over(runs(members), "drops", options.quiet) as bar:
-        text = compare_rotors(members, folder, options.long, jobs, bar.update)
+    with growing_bar("drops", options.quiet) as progress:
+        text = compare_rotors(members, plan, folder, options.long, jobs, progress)
     print(text, end="")
     print(f"results in {folder}")
     return 0

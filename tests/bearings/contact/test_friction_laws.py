@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -16,8 +16,9 @@ from touchdown.bearings.contact.friction import (
     coefficient,
     makkar_amplitude,
     prepared,
+    problem,
 )
-from touchdown.modelkit.variables import as_record
+from touchdown.modelkit.variables import as_record, group
 
 KINDS = {"Coulomb": COULOMB, "Stribeck": STRIBECK, "Makkar": MAKKAR}
 PAIRS = [(0.15, 0.10), (0.03, 0.02), (0.27, 0.18), (0.10, 0.10)]
@@ -141,3 +142,33 @@ def test_no_peak_where_the_plateau_is_as_high():
     values = curve(law)
     assert np.all(np.diff(values) >= 0.0)
     assert values.max() > 0.10
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Parameters of some model."""
+
+    friction: FrictionLaw = group(FrictionLaw)
+    ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
+
+
+@pytest.mark.parametrize(
+    ("static", "dynamic", "refused"),
+    [(0.15, 0.1, False), (0.15, 0.27, False), (0.27, 0.27, False), (0.3, 0.1, True), (0.0, 0.1, True)],
+)
+def test_coulomb_has_no_static_coefficient(static, dynamic, refused):
+    """One that was set and says otherwise is refused; the default beside any dynamic one is not."""
+    found = problem(Laws(friction=FrictionLaw(COULOMB, static, dynamic)), "friction", "ball_friction")
+    assert (found is not None) == refused
+    if found:
+        assert f"friction.static = {static:g} does nothing" in found
+    for kind in (STRIBECK, MAKKAR):
+        assert problem(Laws(friction=FrictionLaw(kind, static, dynamic)), "friction") is None
+
+
+def test_each_law_has_its_own_default():
+    """0.03 is what a ball has, and no sign of having been set; 0.15 is."""
+    laws = Laws(ball_friction=FrictionLaw(COULOMB, 0.03, 0.01))
+    assert problem(laws, "friction", "ball_friction") is None
+    laws = Laws(ball_friction=FrictionLaw(COULOMB, 0.15, 0.01))
+    assert "ball_friction.static = 0.15" in str(problem(laws, "friction", "ball_friction"))

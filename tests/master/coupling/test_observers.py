@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import cast
@@ -135,3 +136,12 @@ def test_the_contract_names_what_docs_have() -> None:
     assert (contract.WORK, contract.JUMP) == ("work", "jump")
     assert {contract.UNITS[name] for name in contract.LOAD} == {"N", "N.m"}
     assert set(contract.UNITS) == {*contract.MOTION, *contract.LOAD, *contract.SLOPE}
+
+
+def test_what_the_first_step_compiles_is_no_stepping() -> None:
+    """A first macro step that takes half a second longer is start-up; the others tell the run's speed."""
+    outcome = fallen(None, at(1, lambda now: time.sleep(0.5)))
+    assert outcome.start_up > 0.5
+    later = fallen(None, at(2, lambda now: time.sleep(0.5)))
+    assert later.wall_time > 0.5
+    assert outcome.wall_time < later.wall_time - 0.3

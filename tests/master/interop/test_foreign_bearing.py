@@ -12,7 +12,7 @@ from pythonfmu import FmuBuilder
 from systems import history
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import open_system
+from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
@@ -110,3 +110,29 @@ def test_a_role_names_what_is_missing() -> None:
         ("housing", "housing"),
     ):
         assert check_fmu(name, role).problems == []
+
+
+def test_a_step_in_which_it_bounces_too_high_stops_the_run(folder: Path) -> None:
+    """It states no work: a second instance of it tells what a macro step of 1 ms made."""
+    scene = find_scene("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
+    scene = scene.with_names("bearing", read_names(NAMES)).set(
+        {"amb.shutdown_time": "5.1 ms", "bearing.clearance": 0.3e-3, "run.duration": 0.02}
+    )
+    heights, outcomes = [], []
+    for step in (1e-3, 2e-5):
+        run = scene.set({"run.macro_step": step, "run.stop_residual": 1e9})
+        _, values, outcome = history(run, ["rotor.A.y"], in_process=False)
+        height = values["rotor.A.y"] + 0.3e-3
+        heights.append(np.max(height[np.argmax(height < 0.0) :]))
+        outcomes.append(outcome)
+    long, short = outcomes
+    assert heights[0] > 1.4 * heights[1]
+    assert long.unaudited == short.unaudited == ()
+    assert long.share > 0.2
+    assert short.warned_at is None
+    lost_by_falling = 1.65 * 9.81 * 0.3e-3
+    assert abs(short.made) < 0.02 * lost_by_falling
+    with opened(scene.set({"run.macro_step": 1e-3})) as system:
+        stopped = simulate(scene.set({"run.macro_step": 1e-3}), system)
+    assert "bearing.journal on rotor.A" in stopped.reason
+    assert stopped.made > 0.2 * lost_by_falling

@@ -22,6 +22,7 @@ REQUIRED = {
     "pendulum_frequency_Hz", "loaded_balls_end", "rotor_speed_end_rpm", "energy_residual_relative",
     "wall_time_s", "simulated_time_s", "scheme", "macro_step_s", "whirl_A", "whirl_A_revolutions",
     "whirl_A_radius_um", "whirl_A_frequency_Hz", "whirl_A_largest_force_N",
+    "whirl_A_force_phase_deg", "whirl_A_most_turns_one_way",
 }  # fmt: skip
 
 

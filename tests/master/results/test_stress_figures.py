@@ -77,12 +77,12 @@ def test_the_summary_tells_the_largest_stresses(drop: Drop) -> None:
     assert summary.keys() >= KEYS
     for kind in ("bending", "shear"):
         peaks = node(recording, f"peak_{kind}")
-        history = recording[f"rotor.stress.{kind}"]
+        history = recording[f"rotor.stress.{kind}"]  # at the ends of macro steps
         assert summary[f"peak_{kind}_stress_MPa"] == pytest.approx(1e-6 * peaks.max(), rel=1e-12)
-        assert summary[f"peak_{kind}_stress_MPa"] == pytest.approx(1e-6 * history.max(), rel=1e-12)
+        assert 1.0 <= summary[f"peak_{kind}_stress_MPa"] / (1e-6 * history.max()) < 1.01
         assert summary[f"peak_{kind}_stress_node"] == 1 + np.argmax(peaks)
         when = recording.time[np.argmax(history)]
-        assert summary[f"peak_{kind}_stress_time_s"] == pytest.approx(when, abs=1e-9)
+        assert summary[f"peak_{kind}_stress_time_s"] == pytest.approx(when, abs=drop.scene.run.macro_step)
         assert when > summary["first_contact_time_s_bearing_B"]
 
 

@@ -262,9 +262,11 @@ def test_the_summary_judges_the_journal_in_its_housing(tmp_path: Path) -> None:
             "frequency_Hz": summary["whirl_A_frequency_Hz"],
             "radius_um": summary["whirl_A_radius_um"],
             "largest_force_N": summary["whirl_A_largest_force_N"],
+            "force_phase_deg": pytest.approx(0.0, abs=1e-9),  # without friction
             "goes_on": False,
         }
     ]
+    assert summary["whirl_A_most_turns_one_way"] == pytest.approx(6.0)
     assert next(line for line in table(summary).splitlines() if "_episodes" in line).split()[1:] == ["1"]
 
 
@@ -289,3 +291,5 @@ def test_a_rotor_dropped_far_out_of_line_whirls(tmp_path: Path) -> None:
     assert episode["revolutions"] == summary["whirl_A_revolutions"] > 3.0
     assert episode["largest_force_N"] == pytest.approx(summary["peak_contact_force_N_bearing_A"])
     assert episode["radius_um"] == pytest.approx(300.0, rel=0.05)
+    friction = 0.15
+    assert 0.0 < math.tan(math.radians(episode["force_phase_deg"])) <= friction  # it drives the whirl

@@ -193,6 +193,7 @@ CASES = [*whirls(), *no_whirls()]
 def test_they_are_many() -> None:
     assert len(CASES) >= 60
     assert len({c.name for c in CASES}) == len(CASES)
+    assert len({c.orbit.z.tobytes() for c in CASES}) >= 60
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)

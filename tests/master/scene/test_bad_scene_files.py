@@ -41,7 +41,14 @@ def scene_file(folder: Path, *changes: tuple[str, str]) -> Path:
         ('mass = "1.65 kg"', "weight = 1.65", "no variable weight"),
         ('zero = "amb.shutdown_time"', 'zero = "amb.shutdown"', "no variable shutdown"),
         ('zero = "amb.shutdown_time"', 'zero = "amb"', "amb"),
-        ('zero = "amb.shutdown_time"', "zero = 0.005", "zero"),
+        ('zero = "amb.shutdown_time"', "zero = 0.005", "zero = 0.005 is a value; it must name a variable"),
+        ('zero = "amb.shutdown_time"', 'zero = "20 mm"', "zero = '20 mm' is a value"),
+        ('zero = "amb.shutdown_time"', 'zero = "0.02 s"', "zero = '0.02 s' is a value"),
+        (
+            'zero = "amb.shutdown_time"',
+            'zero = "bearing.clearance"',
+            "zero = bearing.clearance is measured in m; it must be a time",
+        ),
         ('"rotor.gravity"', '"rotor.gravitation"', "no variable gravitation"),
         ('"rotor.gravity"', "9.81", "energy_scale"),
         ('["rotor.mass", "rotor.gravity", "bearing.clearance"]', "0.005", "energy_scale"),
@@ -62,6 +69,13 @@ def test_a_file_that_is_no_scene(content: bytes, named: str, run: Command, tmp_p
     path = tmp_path / "mine.toml"
     path.write_bytes(content)
     assert named in run(path).line
+
+
+def test_a_byte_order_mark_is_understood(run: Command, tmp_path: Path):
+    """As some editors begin a file with; the rest is read."""
+    path = scene_file(tmp_path, ("duration = 5.0", "duraton = 5.0"))
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert "unknown key duraton" in run(path).line
 
 
 def test_a_missing_scene_file(run: Command, tmp_path: Path):

@@ -55,6 +55,23 @@ def test_unknown_scene_to_show(command: Command):
         (("--swap", "bearing"), "write NAME=VALUE"),
         (("--set", "bearing.clearance=-1e-4"), "bearing.clearance = -0.0001 m"),
         (("--set", "bearing.clearance=0"), "clearance = 0 m"),
+        (
+            ("--set", "bearing.clearance=0.3"),
+            "clearance = 0.3 m is out of all proportion to journal_radius = 0.0097 m; it may be half of "
+            "that at most. A plain number is in m; write '0.3 mm' where mm are meant",
+        ),
+        (("--set", "bearing.balls.play=5e-3"), "balls.play = 0.005 m is out of all proportion to half of"),
+        (("--set", "bearing.balls.play=-5"), "balls.play = -5 m is out of all proportion"),
+        (
+            ("--set", "bearing.contact.expected_indentation=1e-2"),
+            "contact.expected_indentation = 0.01 m is out of all proportion",
+        ),
+        (("--set", "amb.shutdown_time=-1"), "amb.shutdown_time = -1 s must be at least 0 s"),
+        (
+            ("--set", "bearing.friction.kind=0", "--set", "bearing.friction.static=0.3"),
+            "friction.static = 0.3 does nothing with friction.kind = 0 (Coulomb), whose coefficient is "
+            "friction.dynamic = 0.1; leave it out, or take friction.kind = 1",
+        ),
         (("--set", "rotor.mass=-1"), "rotor.mass = -1 kg"),
         (("--set", "rotor.mass=0"), "mass = 0 kg"),
         (("--set", "rotor.mass=nan"), "rotor.mass = 'nan'"),
@@ -88,6 +105,7 @@ def test_a_value_that_cannot_be(arguments: tuple[str, ...], named: str, run: Com
         ("detailed_caged", "balls.pitch_diameter=16 mm", "balls of 0.0064 m do not fit"),
         ("detailed_caged", "balls.count=31", "do not fit balls.pitch_diameter"),
         ("detailed_caged", "cage.clearance=-1 um", "smaller than its ball"),
+        ("detailed_caged", "cage.clearance=5", "cage.clearance = 5 m is out of all proportion"),
         ("detailed_caged", "cage.mass=0", "cage.mass = 0 kg"),
         ("detailed_caged", "inner_profile.amplitude=0.01", "inner_profile.amplitude = 0.01 m"),
         ("detailed_caged", "micro_step=-1 us", "micro_step = -1e-06 s"),
@@ -100,6 +118,7 @@ def test_a_value_that_cannot_be(arguments: tuple[str, ...], named: str, run: Com
         ("detailed_cageless", "race_friction.g2=5", "race_friction.g2 = 5"),
         ("simplified_caged", "slip=2", "slip = 2"),
         ("bushing", "contact.damping_ratio=0.1", "needs contact.mass"),
+        ("bushing", "clearance=0.3", "clearance = 0.3 m is out of all proportion to journal_radius"),
     ],
 )
 def test_a_bearing_that_cannot_be_built(

@@ -13,7 +13,7 @@ from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.models.compare import Comparison, Row, compare_models
-from touchdown.master.studies.models.report import advice
+from touchdown.master.studies.models.report import advice, report_lines
 from touchdown.master.studies.models.variants import Variant, variants
 
 DISK = "disk-caged-simplified"
@@ -32,6 +32,7 @@ def test_a_rigid_disk_has_no_modes_to_leave_out() -> None:
         "friction: Coulomb",
         "friction: static-dynamic Stribeck",
         "tolerance inside bearings 100 times as large",
+        "fine adaptive steps inside bearings",
         "housings that stand still",
         "nothing recorded",
     ]
@@ -107,6 +108,33 @@ def test_prices_are_what_the_parts_are_worth(disk: Comparison) -> None:
     assert bushing is not None
     assert bushing.contact == pytest.approx(0.104, abs=0.01)
     assert bushing.first == pytest.approx(-69e-6, abs=2e-6)  # no ring that sags through its play
+
+
+def test_forces_inside_are_compared_where_both_have_them(disk: Comparison) -> None:
+    """Fine steps say that the scene's own are good; a bushing has no balls, this bearing no pockets."""
+    fine = row(disk, "fine adaptive steps inside bearings").price
+    assert fine is not None
+    assert fine.ball is not None
+    assert abs(fine.ball) < 1e-3
+    assert fine.side is None
+    bushing = row(disk, "plain bushings").price
+    assert bushing is not None
+    assert (bushing.ball, bushing.side) == (None, None)
+    assert "worst ball" in report_lines(disk)[1]
+
+
+def test_without_friction_nothing_drives_the_cage() -> None:
+    """Races that do not rub the balls leave them where they are in their pockets, and press them alike."""
+    scene = shortened(load_scene("disk-caged-detailed"))
+    smooth = scene.set({f"bearing.race_friction.{key}": 0.0 for key in ("static", "dynamic", "g6")})
+    found = compare_models(scene, [Variant("smooth", smooth)], 1e-3, 1, True)
+    price = found.rows[0].price
+    assert price is not None
+    assert price.side is not None
+    assert price.ball is not None
+    assert price.side < -0.5
+    assert abs(price.ball) < 0.1
+    assert "cage or neighbour on a ball" in report_lines(found)[1]
 
 
 def test_a_variant_that_cannot_run_says_why(disk: Comparison) -> None:

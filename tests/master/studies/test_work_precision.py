@@ -29,7 +29,9 @@ STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
     asked = Asked(("hold", "acceleration", "interface"), STEPS, repeat=1, in_process=True)
-    scene = shortened(load_scene(SCENE))
+    # holding the motion makes 1.4 % of the turnover at 10 us, 17 % at 80 us
+    limits = {"run.warn_residual": 0.005, "run.stop_residual": 0.06}
+    scene = shortened(load_scene(SCENE)).set(limits)
     begun: list[str] = []
     found = compare_schemes(scene, asked, begun.append)
     assert len(begun) == pieces(scene, asked)
@@ -49,11 +51,12 @@ def order(found: Comparison, scheme: str, quantity: str) -> Order:
 def test_the_reference_is_far_better_than_what_is_measured_with_it(disk: Comparison) -> None:
     start, end = disk.landing.impacts["A"]
     assert 7.8e-3 < start < 8.0e-3 < end < disk.landing.end
-    assert disk.landing.peaks["A"] == pytest.approx(345.6, abs=0.5)
+    assert disk.landing.peaks("A")["force"] == pytest.approx(345.6, abs=0.5)
     assert disk.exact.whole
     assert disk.exact.floor(POSITION) < 1e-11
     assert disk.fine["position"] < 1e-11  # co-simulation and monolithic solvers: one motion
     assert disk.fine["force"] < 1e-6
+    assert disk.fine["ball"] < 1e-6
 
 
 def test_schemes_have_their_orders(disk: Comparison) -> None:
@@ -61,6 +64,29 @@ def test_schemes_have_their_orders(disk: Comparison) -> None:
         assert order(disk, "hold", quantity).value == pytest.approx(1.0, abs=0.15)
     assert order(disk, "acceleration", "position").value == pytest.approx(2.4, abs=0.3)
     assert order(disk, "acceleration", "energy").value == pytest.approx(3.0, abs=0.3)
+
+
+def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None:
+    """It errs as the contact does; the simplified bearing has no contacts at the sides of its balls."""
+    assert disk.quantities == ["position", "velocity", "force", "ball", "energy"]
+    held = [row(disk, "hold", step).errors["ball"] for step in STEPS]
+    assert held[0] < held[1] < held[2]
+    assert row(disk, "interface", 2e-5).errors["ball"] < 1e-3
+    about = report_lines(disk)[1]
+    assert f"worst ball {disk.landing.peaks('A')['ball']:.5g} N" in about
+    assert "cage" not in about
+
+
+def test_an_impact_cut_short_is_compared_up_to_there() -> None:
+    """While the force still rises, each run is held against the reference at its own last instant."""
+    asked = Asked(("interface",), (1e-5, 8e-5), duration=2e-4, repeat=1, in_process=True)
+    found = compare_schemes(shortened(load_scene(SCENE)), asked)
+    _, end = found.landing.impacts["A"]
+    assert end == pytest.approx(found.landing.end)
+    assert found.landing.peaks("A")["force"] < 300.0  # of 346
+    for step in asked.steps:
+        assert row(found, "interface", step).errors["force"] < 1e-3
+        assert row(found, "interface", step).errors["ball"] < 1e-3
 
 
 def test_the_default_errs_by_nothing_that_the_reference_could_see(disk: Comparison) -> None:
@@ -128,7 +154,7 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
     assert not good.failed
     assert good.errors
     assert (broken.failed, broken.errors, broken.wall) == ("it broke", {}, None)
-    assert found.orders("hold") == dict.fromkeys(("position", "velocity", "force", "energy"))
+    assert found.orders("hold") == dict.fromkeys(("position", "velocity", "force", "ball", "energy"))
     assert any(line.endswith("100 us  it broke") for line in report_lines(found))
 
 
@@ -148,7 +174,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert [float(r["macro_step_s"]) for r in rows[:3]] == pytest.approx([2e-5, 4e-5, 1e-4])
     assert {r["scheme"] for r in rows} >= {"hold", "interface", "DOP853 1e-09"}
     assert all(float(r["wall_time_per_simulated_s"]) > 0.0 for r in rows)
-    assert len(table(tmp_path / "orders.csv")) == 8
+    assert len(table(tmp_path / "orders.csv")) == 10
     assert (tmp_path / "work_precision.png").stat().st_size > 10_000
 
 

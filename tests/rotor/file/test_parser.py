@@ -9,7 +9,7 @@ import pytest
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
-from touchdown.rotor.file import RotorFileError, load
+from touchdown.rotor.file import RotorFileError, load, shipped
 
 GOOD = """
 title = "A rotor"
@@ -260,6 +260,13 @@ def test_most_nodes(tmp_path: Path):
     assert read(tmp_path, text).nodes == MOST_NODES
     text = text.replace(f"count = {MOST_NODES - 3}", f"count = {MOST_NODES - 2}")
     assert f"element[3] brings the rotor to {MOST_NODES + 1} nodes" in complaint(tmp_path, text)
+
+
+def test_a_byte_order_mark_is_understood(tmp_path: Path):
+    """As some editors begin a file with."""
+    path = tmp_path / "rotor.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + shipped()["rotor_I"].read_bytes())
+    assert load(path) == load(shipped()["rotor_I"])
 
 
 def test_files_that_cannot_be_read(tmp_path: Path):

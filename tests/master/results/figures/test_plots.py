@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 import pytest
 
 from touchdown.master.coupling.system import Attachment
-from touchdown.master.results.ending import Ending, Finished
+from touchdown.master.results.ending import Ending, Finished, LastValues
+from touchdown.master.results.figures.energy import STYLES, energy
 from touchdown.master.results.figures.style import LAST, sheet, zooms
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
 from touchdown.master.results.recording import Recording
@@ -199,4 +201,32 @@ def test_a_long_and_fine_run_has_a_waterfall(end: float, rate: float, there: boo
         assert len(figure.axes) == 4
         speeds = [float(label.get_text()) for label in figure.axes[0].get_yticklabels()]
         assert speeds == pytest.approx(60.0 / 2.0 / np.pi * (900.0 - 50.0 * np.arange(0.5, 8.0)), abs=1.0)
+    recording.close()
+
+
+def test_every_curve_of_energy_can_be_told_from_the_others(tmp_path: Path) -> None:
+    """By colour, mark and style, for a dozen components; small ones are named, zero is nothing."""
+    names = [f"part_{i}" for i in range(12)]
+    time = times(0.01, 1e4)
+    with h5py.File(tmp_path / "made.h5", "w") as file:
+        file["time"] = time
+        for i, name in enumerate(names):
+            for kind in STYLES:
+                file[f"{name}/energy.{kind}"] = 1e-6 * time if i == 11 else time * (i < 10)
+    recording = Recording(tmp_path / "made.h5")
+    figure = sheet()
+    told: dict[str, Any] = {f"energy.{kind}": None for kind in STYLES}
+    components = {name: LastValues(told, {}) for name in names}
+    run = Finished(load_scene("disk-caged-simplified"), Ending(components, [], []), recording)
+    flows, _ = energy(figure, run)
+    looks = [(c.get_color(), c.get_marker(), c.get_linestyle()) for c in flows.lines]
+    assert len(looks) == 30
+    assert len(set(looks)) == 30
+    offsets = [c.get_markevery()[0] for c in flows.lines]
+    assert len({round(offset, 6) for offset in offsets}) == 30, "marks of equal curves stand apart"
+    legend = flows.get_legend()
+    assert legend is not None
+    assert len(legend.get_texts()) == 30
+    assert "part_11 kinetic" in flows.get_title()
+    assert "part_10" not in flows.get_title()
     recording.close()

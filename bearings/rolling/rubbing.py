@@ -1,0 +1,211 @@
+"""Friction of all balls at both races, and of the journal in the bore, over a kick of the leapfrog method.
+
+A ball's two contacts share its velocity and its spin, all inner contacts and the bore share the ring's: so
+they are solved together (`bearings.contact.kick` has one contact alone). With f_o, f_i the friction on a
+ball along t, e the changes of the sliding speeds by all other forces, and Delta the ring's change of
+velocity,
+
+    ds_o = e_o + w_oo f_o + w_oi f_i
+    ds_i = e_i + w_io f_o + w_ii f_i - J . Delta            J = (t_x, t_y, lever)
+
+Each ball's two equations give f_i = held + gain J . Delta; put into the ring's three,
+
+    (M + sum gain h J J^T) Delta = h (F - sum held J)
+
+where F is all else that acts on it. The bore is one more contact of that form.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from touchdown.bearings.contact.kick import friction_line
+from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.modelkit.kernel import inlined, woven
+from touchdown.modelkit.variables import array
+
+
+@dataclass(frozen=True)
+class RubbedRace:
+    """All balls at one race, at the last evaluation, and their friction on its way through a kick."""
+
+    normal: tuple = array(MOST_BALLS)  # N
+    tangential: tuple = array(MOST_BALLS)  # N, friction on the ball along t
+    loss: tuple = array(MOST_BALLS)  # W, heat
+    sliding: tuple = array(MOST_BALLS)  # m/s, of the ball over the race, before the kick
+    driven: tuple = array(MOST_BALLS)  # m/s, its change by all but friction at races
+    held: tuple = array(MOST_BALLS)  # N, friction as the ring keeps its velocity
+    gain: tuple = array(MOST_BALLS)  # N s/m, and for each m/s by which its race runs ahead
+
+
+class Rubbed(NamedTuple):
+    """A `RubbedRace`, an array each; `tangential` is set anew, `loss` and the last two are set."""
+
+    normal: object  # N
+    tangential: object  # N
+    loss: object  # W
+    sliding: object  # m/s
+    driven: object  # m/s
+    held: object  # N
+    gain: object  # N s/m
+
+
+@inlined
+def rubbed_of(race, n):
+    """`Rubbed` (n,) as views of `race` (RubbedRace)."""
+    r = race
+    acting = r.normal[:n], r.tangential[:n], r.loss[:n], r.sliding[:n]
+    return Rubbed(*acting, r.driven[:n], r.held[:n], r.gain[:n])
+
+
+class Inner(NamedTuple):
+    """Where all balls touch the inner ring, an array each, and how that lies to their other contact."""
+
+    nx: object  # outward direction
+    ny: object
+    lever: object  # m, from the ring's centre to the contact
+    cross: object  # of the directions along both races
+
+
+class Answers(NamedTuple):
+    """What a ball's speeds along its races answer to friction over the kick (s/kg)."""
+
+    outer: float  # its centre's, to that of the outer race
+    inner: float
+    spin: float  # its surface's by its spin
+
+
+class Moved(NamedTuple):
+    """Change of the ring's motion over a kick."""
+
+    x: float  # m/s
+    y: float
+    spin: float  # rad/s
+
+
+class Bore(NamedTuple):
+    """The journal in the bore, and the line of its friction over the kick."""
+
+    nx: float
+    ny: float
+    lever: float  # m, from the ring's centre
+    held: float  # N, friction on the journal as the ring keeps its velocity
+    gain: float  # N s/m
+
+
+class Push(NamedTuple):
+    """All on the ring but friction, and the ring."""
+
+    fx: float  # N
+    fy: float
+    moment: float  # N m
+    mass: float  # kg
+    inertia: float  # kg m2
+
+
+class Around(NamedTuple):
+    """What the balls' friction meets around them over a kick."""
+
+    moved: Moved  # the ring, in the kick before
+    push: Push
+    bore: Bore
+
+
+@inlined
+def over_ring(nx, ny, lever, moved):
+    """By how much (m/s) the ring's surface runs ahead, along t, at a contact of `lever` (m)."""
+    return moved.y * nx - moved.x * ny + lever * moved.spin
+
+
+@woven
+def _draw_lines(law, answers, moved, at, outer, inner):
+    """Set `held` and `gain` (n,) of both races; law: a `Curve`; moved: `Moved` in the kick before."""
+    w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
+    for b in range(len(at.nx)):
+        w_oi = at.cross[b] * answers.inner - answers.spin
+        w_io = at.cross[b] * answers.outer - answers.spin
+        e_o, e_i = outer.driven[b], inner.driven[b]
+        ahead = over_ring(at.nx[b], at.ny[b], at.lever[b], moved)
+        expected_o = outer.sliding[b] + e_o + w_oi * inner.tangential[b]
+        expected_i = inner.sliding[b] + e_i + w_io * outer.tangential[b] - ahead
+        line_o = friction_line(outer.sliding[b], expected_o, w_oo, outer.normal[b], law)
+        line_i = friction_line(inner.sliding[b], expected_i, w_ii, inner.normal[b], law)
+        alone_o, alone_i = line_o.start - line_o.slope * e_o, line_i.start - line_i.slope * e_i
+        d_o, d_i = line_o.base + line_o.slope * w_oo, line_i.base + line_i.slope * w_ii
+        c_o, c_i = line_o.slope * w_oi, line_i.slope * w_io
+        inverse = 1.0 / (d_o * d_i - c_o * c_i)
+        outer.held[b] = (d_i * alone_o - c_o * alone_i) * inverse
+        inner.held[b] = (d_o * alone_i - c_i * alone_o) * inverse
+        outer.gain[b] = -c_o * line_i.slope * inverse
+        inner.gain[b] = d_o * line_i.slope * inverse
+
+
+@woven
+def _settle(answers, moved, at, outer, inner):
+    """Set the friction (n,) at both races, and its heat; moved: `Moved` in this kick."""
+    w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
+    for b in range(len(at.nx)):
+        w_oi = at.cross[b] * answers.inner - answers.spin
+        w_io = at.cross[b] * answers.outer - answers.spin
+        ahead = over_ring(at.nx[b], at.ny[b], at.lever[b], moved)
+        f_o = outer.held[b] + outer.gain[b] * ahead
+        f_i = inner.held[b] + inner.gain[b] * ahead
+        ds_o = outer.driven[b] + w_oo * f_o + w_oi * f_i
+        ds_i = inner.driven[b] + w_io * f_o + w_ii * f_i - ahead
+        outer.tangential[b], inner.tangential[b] = f_o, f_i
+        outer.loss[b] = -f_o * (outer.sliding[b] + 0.5 * ds_o)
+        inner.loss[b] = -f_i * (inner.sliding[b] + 0.5 * ds_i)
+
+
+@woven
+def _turn_ring(h, count, around, at, inner):
+    """`Moved`: what a kick of h (s) does to the ring, with `count` balls; around: `Around`."""
+    push, bore = around.push, around.bore
+    nx, ny, lever, gain, held = bore.nx, bore.ny, bore.lever, h * bore.gain, bore.held
+    xx, yy, xy = gain * ny * ny, gain * nx * nx, -gain * nx * ny
+    xw, yw, ww = -gain * ny * lever, gain * nx * lever, gain * lever * lever
+    fx, fy, moment = push.fx + held * ny, push.fy - held * nx, push.moment - held * lever
+    for b in range(count):
+        nx, ny, lever, gain, held = at.nx[b], at.ny[b], at.lever[b], h * inner.gain[b], inner.held[b]
+        along_x, along_y = -gain * ny, gain * nx
+        xx -= along_x * ny
+        xy += along_x * nx
+        yy += along_y * nx
+        xw += along_x * lever
+        yw += along_y * lever
+        ww += gain * lever * lever
+        fx += held * ny
+        fy -= held * nx
+        moment -= held * lever
+    return _solved(h, push.mass + xx, xy, push.mass + yy, xw, yw, push.inertia + ww, fx, fy, moment)
+
+
+@inlined
+def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
+    """h times the solution of the ring's three symmetric equations, as `Moved`."""
+    xy_xx, xw_xx = xy / xx, xw / xx
+    yy = yy - xy_xx * xy
+    yw = yw - xy_xx * xw
+    yw_yy = yw / yy
+    fy = fy - xy_xx * fx
+    spin = (moment - xw_xx * fx - yw_yy * fy) / (ww - xw_xx * xw - yw_yy * yw)
+    y = fy / yy - yw_yy * spin
+    x = fx / xx - xy_xx * y - xw_xx * spin
+    return Moved(h * x, h * y, h * spin)
+
+
+@woven
+def rub(h, count, law, answers, around, at, outer, inner):
+    """Friction of `count` balls at both races and of the journal in the bore over a kick of h (s).
+
+    law: `Curve` of the races; answers: `Answers`; around: `Around`; at: `Inner`; outer, inner: `Rubbed`,
+    where friction and its heat are set. Returns (friction on the journal along t (N), `Moved`: what the
+    kick does to the ring).
+    """
+    _draw_lines(law, answers, around.moved, at, outer, inner)
+    now = _turn_ring(h, count, around, at, inner)
+    _settle(answers, now, at, outer, inner)
+    bore = around.bore
+    ahead = over_ring(bore.nx, bore.ny, bore.lever, now)
+    return bore.held + bore.gain * ahead, now

@@ -1,0 +1,70 @@
+"""Contacts of each ball with the next one, or with its pocket in the cage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from touchdown.bearings.contact.pair import Place, slip
+from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.variables import array
+
+
+@dataclass(frozen=True)
+class SideContacts:
+    """Contact of each ball with the next, or with the cage, at the last evaluation."""
+
+    normal: tuple = array(MOST_BALLS)
+    tangential: tuple = array(MOST_BALLS)
+    indentation: tuple = array(MOST_BALLS)
+    stiffness: tuple = array(MOST_BALLS)
+    nx: tuple = array(MOST_BALLS)  # where it lies, as `bearings.contact.pair.Place`
+    ny: tuple = array(MOST_BALLS)
+    first: tuple = array(MOST_BALLS)
+    second: tuple = array(MOST_BALLS)
+    sliding: tuple = array(MOST_BALLS)  # m/s, before the kick
+    rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
+    damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
+
+
+@kernel
+def note(contacts, b, press, place, law):
+    """Remember the contact of ball `b`: its `Press` (N, m/s) at a `Place` (m); law: a record."""
+    c = contacts
+    c.normal[b], c.tangential[b], c.damped[b] = press.normal, press.tangential, press.damped
+    c.sliding[b], c.rate[b] = press.sliding, press.rate
+    c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
+    c.indentation[b] = place.indentation
+    c.stiffness[b] = law.exponent * press.normal / place.indentation
+
+
+@kernel
+def heat_of(contacts, b, h, first, second, side):
+    """Heat (W) of ball `b`'s contact over a kick of h (s).
+
+    first, second: Motion of the bodies with accelerations (m/s2, rad/s2) for velocities; side: as in
+    `pair`.
+    """
+    c = contacts
+    place = Place(c.nx[b], c.ny[b], c.indentation[b], c.first[b], c.second[b], 0.0)
+    sliding, rate = slip(first, second, place, side)
+    damping = c.damped[b] * (c.rate[b] + 0.5 * h * rate)
+    return damping - c.tangential[b] * (c.sliding[b] + 0.5 * h * sliding)
+
+
+@kernel
+def note_apart(contacts, b):
+    """Remember that ball `b` has no contact (0 N)."""
+    contacts.normal[b], contacts.tangential[b] = 0.0, 0.0
+    contacts.indentation[b], contacts.stiffness[b] = -1.0, 0.0
+
+
+@kernel
+def stored(contacts, law, count):
+    """Energy (J) of one kind of contact of `count` balls; law: a record."""
+    energy = 0.0
+    for b in range(count):
+        depth = contacts.indentation[b]
+        if depth > 0.0:
+            energy += law.stiffness * depth ** (law.exponent + 1.0) / (law.exponent + 1.0)
+    return energy

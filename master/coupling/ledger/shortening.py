@@ -1,0 +1,57 @@
+"""Macro steps that are divided while a whirl makes energy.
+
+In a whirl the journal is pressed hard against its ring all the time, and turns over in milliseconds what a
+drop turns over once. What the coupling makes of that grows with a power of the macro step, the order of the
+scheme, so halving it a few times takes it away. A landing turns over up to 5 m g c within `WINDOW`; beyond
+`WHIRL` it is none.
+"""
+
+from __future__ import annotations
+
+import math
+
+from touchdown.master.coupling.ledger.accounts import Ledger
+from touchdown.master.coupling.observer import Moment, Observer
+from touchdown.master.coupling.steppers.stepper import Stepper
+
+WINDOW = 5e-3  # s, over which is looked back
+WHIRL = 8.0  # m g c, turned over in a window
+OVER = 4.0  # m g c; where less is turned over the whirl has ended
+GOAL = 1e-4  # energy made in a window, over what was turned over
+
+
+class Shortening(Observer):
+    """Halves the macro steps, window by window, until a whirl makes little energy; whole ones after it."""
+
+    def __init__(self, ledger: Ledger, stepper: Stepper) -> None:
+        run, system = stepper.run, stepper.system
+        able = stepper.any_step and ledger.fall > 0.0 and set(system.every.values()) == {1}
+        self.halvings = 0  # of the macro step to come
+        self._most = run.whirl_halvings if able else 0
+        self._order = max(run.scheme.error_order, 1)
+        self.ledger, self._step = ledger, run.macro_step
+        self._times: dict[int, float] = {}  # s, by halvings
+        self._since = self._turned = self._made = 0.0  # the window's begin: s, J, J
+
+    def stepped(self, now: Moment) -> None:
+        if self._most == 0:
+            return
+        if self.halvings:
+            self._times[self.halvings] = self._times.get(self.halvings, 0.0) + self._step
+        if now.time - self._since >= WINDOW:
+            self._look_back(now.time)
+
+    def _look_back(self, time: float) -> None:
+        ledger = self.ledger
+        turned, made = ledger.turned - self._turned, abs(ledger.made - self._made)
+        self._since, self._turned, self._made = time, ledger.turned, ledger.made
+        if turned < OVER * ledger.fall:
+            self.halvings = 0
+        elif turned > WHIRL * ledger.fall and made > GOAL * turned:
+            wanted = math.ceil(math.log2(made / (GOAL * turned)) / self._order)
+            self.halvings = min(self.halvings + wanted, self._most)
+
+    @property
+    def times(self) -> dict[float, float]:
+        """How long (s) the run took which shorter step (s)."""
+        return {self._step / 2**halvings: time for halvings, time in sorted(self._times.items())}

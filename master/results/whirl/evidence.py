@@ -1,0 +1,43 @@
+"""On what a run's verdicts rest, in words for the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from touchdown.master.results.ending import Readable
+from touchdown.master.results.whirl.unbalance import unbalanced
+
+NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn is a hop or two more or less
+MARCHED = "_most_turns_one_way"  # behind the key of a verdict
+SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a whirl nor brakes it
+
+
+def evidence(summary: Mapping[str, object]) -> list[str]:
+    """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
+    return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
+
+
+def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:
+    """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
+    verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
+    if verdicts and unbalanced(system):
+        yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
+
+
+def _rests_on(summary: Mapping[str, object], seat: str) -> str:
+    marched, turns = summary[f"{seat}{MARCHED}"], summary[f"{seat}_revolutions"]
+    if not isinstance(marched, float) or not isinstance(turns, float):
+        return f"{seat}: not told, the bearing states no clearance"
+    if turns > 0.0:
+        said = f"the contact went round {turns:.3g} times{_driven(summary[f'{seat}_force_phase_deg'])}"
+    else:
+        resting = "" if marched < 1.0 else " and back, or with rests"
+        said = f"the contact went {marched:.2g} of a turn one way at most{resting}; a whirl takes 1"
+    edge = ", so it is near the edge" if NEAR[0] <= (turns or marched) <= NEAR[1] else ""
+    return f"{seat}: {summary[seat]}: {said}{edge}"
+
+
+def _driven(phase: object) -> str:
+    if not isinstance(phase, float) or abs(phase) < SLIDES:
+        return ""
+    return f", and its force {'drives' if phase > 0.0 else 'brakes'} it by {abs(phase):.2g} deg"

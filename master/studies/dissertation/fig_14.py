@@ -1,0 +1,56 @@
+"""Which drops of rotor I whirl, by speed and misalignment, beside Fig 14 of the source.
+
+Whether a rotor whirls is decided by little, the phase of its unbalance for one: so what is counted is the
+part of all phases that whirls, over phases that resolve the windows.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from touchdown.master.common.progress import Progress
+from touchdown.master.scene.file import load_scene
+from touchdown.master.studies.verdict.circle import Circle
+from touchdown.master.studies.verdict.phases import share, strays, windows
+from touchdown.master.studies.verdict.report import newtons, percent, reach, ways, write_report
+from touchdown.master.studies.verdict.study import Plan, Running, study_verdict
+
+SPEEDS = (9000, 18000)  # rpm
+SOURCE = {  # misalignment of each bearing [um]: the source's verdict
+    0: "settles",
+    75: "settles",
+    150: "settles",
+    225: "whirls",
+}
+DURATION = 0.5  # s
+
+
+def fig_14(plan: Plan, folder: Path, jobs: int, progress: Progress) -> list[str]:
+    """Shares and windows of phases that whirl at both speeds for each misalignment; files in `folder`."""
+    lines = [f"{'rpm':>6} {'misalignment':>14}  {'source':<9} phases that whirl; largest force; windows"]
+    for speed in SPEEDS:
+        for offset, source in SOURCE.items():
+            name = f"rotor1-{speed}" + (f"-{offset}um" if offset else "")
+            scene = load_scene(name).set({"run.duration": DURATION})
+            study = study_verdict(scene, plan, folder / name, Running(jobs, in_process=True), progress)
+            write_report(study, folder / name)
+            if study.interrupted:
+                raise KeyboardInterrupt
+            (circle,) = study.circles
+            lines.append(f"{speed:>6} {f'+-{offset} um':>14}  {source:<9} {_found(circle)}")
+            lines += [f"{'':>33}{phase:g} deg failed: {why}" for phase, why in circle.failed.items()]
+    return lines
+
+
+def _found(circle: Circle) -> str:
+    """A line's end: how much whirls, how hard, where and how."""
+    verdicts = circle.verdicts
+    if not verdicts:
+        return "no run gave a verdict"
+    force = circle.largest_force()
+    parts = [percent(share(verdicts)), "-" if force is None else newtons(force)]
+    for window in windows(verdicts):
+        parts.append(f"{reach(window)}: {ways(verdicts, window)}")
+    if alone := strays(verdicts):
+        parts.append(f"{len(alone)} strays")
+    return "; ".join(parts)

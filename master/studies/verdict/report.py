@@ -1,0 +1,192 @@
+"""What a study of verdicts found: as lines, as tables, as a file for other programs."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+from touchdown.master.common.files import write_records, writing_to
+from touchdown.master.studies.sweep.report import counted
+from touchdown.master.studies.verdict.circle import Circle, peak_force
+from touchdown.master.studies.verdict.phases import (
+    CONFIDENCE,
+    Edge,
+    Share,
+    Verdicts,
+    Window,
+    distance,
+    edges,
+    furthest,
+    share,
+    strays,
+    windows,
+)
+from touchdown.master.studies.verdict.study import Study
+
+MOST_ROWS = 4  # of phases with equal verdicts in a window, to be told one by one
+SETTLES = "no whirl"  # in words, where a circle has ""
+
+
+def report_lines(study: Study) -> list[str]:
+    """Windows, shares and strays with every choice of steps, and what the scene's own phase is worth."""
+    plan = study.plan
+    lines = [
+        f"{study.scene.title}: which phases of the unbalance whirl",
+        f"phases {plan.spacing:g} deg apart, {plan.resolution:g} deg where neighbours' verdicts differ; "
+        f"drops of {study.scene.run.duration:g} s",
+    ]
+    for circle in study.circles:
+        lines += ["", *_circle_lines(study, circle)]
+    return [*lines, "", *_own_phase(study)]
+
+
+def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
+    yield f"{circle.title}: {len(circle.verdicts)} runs"
+    if circle.verdicts:
+        yield from _window_lines(circle)
+        yield f"  share of phases that whirl: {percent(share(circle.verdicts))}"
+        force = circle.largest_force()
+        if force is not None:
+            yield f"  largest contact force: {newtons(force)}"
+        if study.reference is not None and circle is not study.reference:
+            yield f"  {_against(circle, study.reference)}"
+    stop = study.scene.run.stop_residual
+    if over := circle.over_the_limit(stop):
+        passed = f"the energy ledger passed {stop:g} of what a connection turned over"
+        yield f"  in {over} of them {passed}, at which a run of the scene stops"
+    for phase, reason in circle.failed.items():
+        yield f"  {phase:g} deg failed: {reason}"
+
+
+def _window_lines(circle: Circle) -> Iterator[str]:
+    found = windows(circle.verdicts)
+    alone = strays(circle.verdicts)
+    if not found:
+        yield "  no window whirls"
+    for window in found:
+        yield f"  whirls {reach(window)}: {ways(circle.verdicts, window)}"
+    if alone:
+        listed = ", ".join(f"{phase:g} deg ({circle.verdicts[phase] or SETTLES})" for phase in alone)
+        yield f"  strays, alone among others: {listed}"
+
+
+def ways(verdicts: Verdicts, window: Window) -> str:
+    """How the phases of a window whirl: from where to where, or how often where it changes too often."""
+    rows = [(words, list(row)) for words, row in itertools.groupby(window.phases, key=verdicts.__getitem__)]
+    if 1 < len(rows) <= MOST_ROWS:
+        return ", ".join(f"{row[0]:g} to {row[-1]:g} {words}" for words, row in rows)
+    counted = Counter(verdicts[phase] for phase in window.phases).most_common()
+    return ", ".join(f"{n} x {words}" for words, n in counted)
+
+
+def reach(window: Window) -> str:
+    """From where to where, with what the edges are known to."""
+    if window.begin is None or window.end is None:
+        return "all the way round"
+    return f"from {_edge(window.begin)} to {_edge(window.end)} deg"
+
+
+def _edge(edge: Edge) -> str:
+    return f"{edge.middle:g} ({edge.low:g} to {edge.high:g})"
+
+
+def percent(part: Share) -> str:
+    """A share with its interval."""
+    return f"{part.value:.1%} ({CONFIDENCE:.0%} interval {part.low:.1%} to {part.high:.1%})"
+
+
+def newtons(force: float) -> str:
+    """A force for people."""
+    return f"{force:.0f} N" if force < 1e4 else f"{1e-3 * force:.1f} kN"
+
+
+def _against(circle: Circle, reference: Circle) -> str:
+    """How far the edges are from the reference's, and how many strays there are on either."""
+    mine, theirs = edges(circle.verdicts), edges(reference.verdicts)
+    off = max(filter(None, (furthest(mine, theirs), furthest(theirs, mine))), default=0.0)
+    found = f"{len(mine)} edges against the reference's {len(theirs)}"
+    if mine and theirs:
+        found += f", at most {off:.3g} deg off"
+    alone, others = len(strays(circle.verdicts)), len(strays(reference.verdicts))
+    return (
+        f"{found}; strays {alone} of {len(circle.verdicts)} against {others} of {len(reference.verdicts)}"
+    )
+
+
+def _own_phase(study: Study) -> Iterator[str]:
+    """What the verdict at the scene's own phase is, and how far from an edge."""
+    for circle in study.circles:
+        words = circle.verdicts.get(study.phase)
+        if words is None:
+            continue
+        found = f"phase {study.phase:g} deg, the scene's own, with {circle.title}: {words or SETTLES}"
+        yield f"{found}, {_nearest(circle, study.phase, study.plan.spacing)}"
+
+
+def _nearest(circle: Circle, phase: float, spacing: float) -> str:
+    """How far a phase is from the nearest edge: near it where a neighbour in the grid lies beyond."""
+    known = edges(circle.verdicts)
+    if phase in strays(circle.verdicts):
+        return "a stray, alone among others"
+    if not known:
+        return "and no edge anywhere"
+    edge = min(known, key=lambda e: distance(e.middle, phase))
+    away = distance(edge.middle, phase)
+    if away < spacing:
+        return f"near an edge, at {_edge(edge)} deg: another phase of the grid would say otherwise"
+    return f"{away:.3g} deg from the nearest edge"
+
+
+def write_report(study: Study, folder: Path) -> None:
+    """phases.csv, a row per run with all its figures; verdict.json, the windows; verdict.png."""
+    from touchdown.master.studies.verdict.figure import circles  # matplotlib is slow to import
+
+    with writing_to(folder):
+        write_records(_records(study), folder / "phases.csv")
+        text = json.dumps(as_plain(study), indent=2)
+        (folder / "verdict.json").write_text(text + "\n", encoding="utf-8")
+        if any(circle.verdicts for circle in study.circles):
+            circles(study).savefig(folder / "verdict.png", dpi=150)
+
+
+def _records(study: Study) -> Iterator[dict[str, object]]:
+    for circle in study.circles:
+        for phase, m in circle.members.items():
+            yield {
+                "steps": circle.title,
+                "phase_deg": phase,
+                "verdict": "" if m.failed else circle.verdicts[phase] or SETTLES,
+                "largest_contact_force_N": peak_force(m.summary),
+                "failed": m.failed,
+                **{key: counted(value) for key, value in m.summary.items()},
+            }
+
+
+def as_plain(study: Study) -> dict[str, object]:
+    """What was found, for JSON: angles in degrees, forces in N."""
+    return {
+        "scene": study.scene.name,
+        "phase_deg": study.phase,
+        "grid_deg": study.plan.spacing,
+        "resolution_deg": study.plan.resolution,
+        "interrupted": study.interrupted,
+        "circles": [_plain_circle(circle) for circle in study.circles],
+    }
+
+
+def _plain_circle(circle: Circle) -> dict[str, object]:
+    known = circle.verdicts
+    return {
+        "steps": circle.title,
+        "verdicts": {f"{phase:g}": words or SETTLES for phase, words in known.items()},
+        "windows_deg": [
+            {"begin": window.begin, "end": window.end, "width": window.width} for window in windows(known)
+        ],
+        "strays_deg": strays(known),
+        "share": share(known)._asdict() if known else None,
+        "largest_contact_force_N": circle.largest_force(),
+        "failed": {f"{phase:g}": reason for phase, reason in circle.failed.items()},
+    }

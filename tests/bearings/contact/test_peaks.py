@@ -1,0 +1,198 @@
+"""Peaks between samples, against impacts whose peak is known, and where samples are no parabola."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from touchdown.bearings import bushing, simplified_cageless
+from touchdown.bearings.contact.journal import ContactMemory, ContactReport, Touched, watch_contact
+from touchdown.bearings.contact.peaks import Samples, crest
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.ports import PARTED, Motion
+from touchdown.modelkit.variables import as_record, as_tuple, layout
+
+PHASES = np.linspace(0.0, 1.0, 41)
+STEPS = {0.2: 0.01, 0.4: 0.12, 0.6: 0.6, 0.8: 1.7}  # h w: error at most, %, as the module's docstring says
+
+
+def memory_of(kind: type) -> np.void:
+    """A writable record, as a model starts with."""
+    return np.array([as_tuple(kind())], layout(kind))[0]
+
+
+def highest(times, values, places=None) -> float:
+    """The largest crest of a series of samples."""
+    samples = memory_of(Samples)
+    places = np.zeros(len(times), int) if places is None else places
+    return max(crest(samples, t, f, b) for t, f, b in zip(times, values, places, strict=True))
+
+
+def sampled(step: float, phase: float, end: float) -> np.ndarray:
+    """Instants from before an impact at 0 to behind its `end`."""
+    return np.arange(-3.0 + phase, end / step + 3.0) * step
+
+
+def linear_impact(t):
+    """Force of a unit mass that hits a unit spring at unit speed at t = 0; its peak is 1, at t = pi/2."""
+    return np.where((t > 0.0) & (t < math.pi), np.sin(t), 0.0)
+
+
+@pytest.fixture(scope="module")
+def hertz_impact():
+    """The same with Hertz's law F = d^1.5: (force over its peak, of w t; end of the contact).
+
+    Depth (5/4)^(2/5) at the turn, from the energy; w is that of small swings there.
+    """
+    depth = 1.25**0.4
+    frequency = math.sqrt(1.5 * math.sqrt(depth))
+
+    def rhs(_, y):
+        return y[1], -(max(y[0], 0.0) ** 1.5)
+
+    motion = solve_ivp(rhs, (0.0, 6.0), (0.0, 1.0), rtol=1e-10, atol=1e-12, dense_output=True).sol
+
+    def force(t):
+        return np.where(t > 0.0, np.maximum(motion(np.clip(t / frequency, 0.0, 6.0))[0], 0.0) ** 1.5, 0.0)
+
+    return (lambda t: force(t) / depth**1.5), 5.0
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_peak_of_a_linear_impact(step):
+    """sqrt(k m) v, from samples wherever they lie; their own error is eight times that and more."""
+    errors, plain = [], []
+    for phase in PHASES:
+        times = sampled(step, phase, math.pi)
+        errors.append(100.0 * abs(highest(times, linear_impact(times)) - 1.0))
+        plain.append(100.0 * abs(np.max(linear_impact(times)) - 1.0))
+    assert max(errors) < STEPS[step]
+    assert max(errors) < max(plain) / 8.0
+    assert max(plain) > 10.0 * step**2  # the samples alone are far off
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_peak_of_a_hertz_impact(hertz_impact, step):
+    """k d^1.5 with d = (5/4 m v^2/k)^(2/5), at most and on the average."""
+    force, end = hertz_impact
+    errors = []
+    for phase in PHASES:
+        times = sampled(step, phase, end)
+        errors.append(100.0 * abs(highest(times, force(times)) - 1.0))
+    assert max(errors) < STEPS[step]
+    assert np.mean(errors) < 0.45 * STEPS[step]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_steps_need_not_be_equal(seed):
+    """Adaptive steps: each from half of to twice the mean, and some of them cut to nearly nothing."""
+    rng = np.random.default_rng(seed)
+    steps = 0.3 * rng.uniform(0.5, 2.0, 20)
+    steps[rng.integers(0, 20, 3)] = 1e-9
+    times = np.cumsum(steps) - 0.5
+    assert highest(times, linear_impact(times)) == pytest.approx(1.0, abs=6e-3)
+
+
+def test_a_parabola_is_found_exactly():
+    """To rounding, with unequal steps."""
+    times = np.array([0.0, 0.3, 1.0, 1.2])
+    assert highest(times, 5.0 - (times - 0.55) ** 2) == pytest.approx(5.0, rel=1e-15)
+
+
+def test_a_sliver_makes_no_peak():
+    """A step of a billionth of the one before, over which the force jumps a little, as at a restart."""
+    times = np.array([0.0, 1.0, 1.0 + 1e-9, 2.0, 3.0])
+    assert highest(times, np.array([1.0, 2.0, 2.001, 1.9, 1.0])) < 2.2
+
+
+def test_no_parabola_over_two_balls():
+    """The largest force passes from one ball to the next: the samples are all that is known."""
+    times = np.arange(3.0)
+    values = np.array([1.0, 2.0, 1.8])
+    assert highest(times, values) > 2.0
+    for places in ([0, 0, 1], [0, 1, 1], [0, 1, 0]):
+        assert highest(times, values, np.array(places)) == 2.0
+
+
+def test_no_parabola_where_contact_begins_or_ends():
+    """A force that jumps up at the touch and fades, as linear damping has it, is not overshot."""
+    times = np.arange(-2.0, 12.0)
+    values = np.where(times >= 0.0, np.exp(-0.1 * times), 0.0)
+    assert highest(times, values) == 1.0
+    assert highest(times, values[::-1]) == 1.0
+
+
+@pytest.mark.parametrize(("macro", "tolerance"), [(1e-5, 1e-6), (5e-5, 1e-3), (1e-6, 1e-4)])
+def test_bushing_finds_the_peak_of_hertz(macro, tolerance):
+    """A disk on a rigid bore: 30.31 um and 400.5 N, in coarse adaptive steps and across macro steps."""
+    mass, speed, stiffness = 1.65, math.sqrt(2.0 * 9.81 * 0.3e-3), 2.4e9
+    depth = (1.25 * mass * speed**2 / stiffness) ** 0.4
+    instance = Instance(bushing.MODEL)
+    m = instance.memory
+    m["p"]["contact"]["damping"], m["p"]["interface"]["tolerance"] = 0.0, tolerance
+    journal = m["u"]["journal"]
+    journal["y"], journal["vy"], journal["inv_m"] = -0.29e-3, -speed, 1.0 / mass
+    instance.start(0.0)
+    time = 0.0
+    while time < 1.5e-3:
+        instance.step(time, macro)
+        time += macro
+        journal["y"], journal["vy"] = m["q"][0, 1], m["q"][0, 3]
+        if time > 5e-4:  # a state that is saved holds the samples, too
+            instance.restore(instance.save())
+    contact = m["o"]["contact"][0]
+    assert contact["peak_indentation"] == pytest.approx(depth, rel=3e-4)
+    assert contact["peak_force"] == pytest.approx(stiffness * depth**1.5, rel=5e-4)
+    assert stiffness * depth**1.5 == pytest.approx(400.5, abs=0.05)
+
+
+def test_the_first_impact_has_its_largest_ball_force():
+    """A disk on a cageless bearing whose ring rattles: what balls bore until it was free for `PARTED`."""
+    instance = Instance(simplified_cageless.MODEL)
+    m = instance.memory
+    law = m["p"]["contact"]
+    law["exponent"], law["damping"], law["dissipation"] = 10 / 9, 0.0, 0.12
+    journal, step = m["u"]["journal"], 4e-6
+    journal["y"], journal["vy"], journal["inv_m"], journal["ay_free"] = -0.2999e-3, -0.0767, 1 / 1.65, -9.81
+    instance.start(0.0)
+    free, peak = 0, 0.0
+    partings: list[float] = []  # largest force on a ball when the ring left the journal
+    for number in range(1500):
+        instance.step(number * step, step)
+        q, report = m["q"][0], m["o"][0]
+        for i, name in enumerate(("x", "y", "vx", "vy")):
+            journal[name] = q[i]
+        touching = report["contact"]["indentation"] >= 0.0
+        free = 0 if touching or report["contact"]["first_time"] < 0.0 else free + 1
+        if free == 1:
+            partings.append(float(report["balls"]["peak_force"]))
+        if peak == 0.0 and free * step > PARTED + 2.0 * step:
+            peak = float(report["balls"]["peak_force"])
+    assert len(partings) > 1
+    assert peak > 10.0 * partings[0]  # that was the ring's rattle
+    assert report["balls"]["first_impact_force"] == peak
+
+
+def test_the_first_impact_outlasts_a_rattle():
+    """A ring that parts from the journal for less than `PARTED` does not end it; a bounce does."""
+    report, memory = memory_of(ContactReport), memory_of(ContactMemory)
+    step = 1e-5
+
+    def watch(first, last, indentation):
+        for number in range(first, last):
+            touched = as_record(Touched(max(indentation, 0.0), indentation, 0.0))
+            watch_contact(number * step, Motion(0.0, 0.0, 0.0, 0.0, 0.0), touched, report, memory)
+
+    free = round(PARTED / step)
+    watch(0, 5, -1.0)
+    watch(5, 9, 1.0)
+    watch(9, 8 + free, -1.0)
+    assert memory["over"] == 0.0
+    watch(8 + free, 40, 2.0)
+    watch(40, 40 + free + 2, -1.0)
+    assert memory["over"] == 1.0
+    watch(200, 210, 3.0)
+    assert memory["over"] == 1.0

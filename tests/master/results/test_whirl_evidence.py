@@ -1,0 +1,130 @@
+"""What a verdict rests on: the phase of the contact force, the turns, and what the screen says of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from orbits import (
+    CLEARANCE,
+    FRICTION,
+    Made,
+    after_one_another,
+    circle,
+    over_the_top,
+    pendulum,
+    star,
+    turns,
+)
+
+from touchdown.master.results.whirl.contacts import Orbit
+from touchdown.master.results.whirl.drive import force_phase
+from touchdown.master.results.whirl.evidence import evidence
+
+SLIDING = math.atan(FRICTION)
+STANDS_OFF = replace(circle(-60.0, centre=0.4 - 0.2j), bore=0.4 - 0.2j)
+HIGHEST = math.sqrt(4.0 * 9.81 / CLEARANCE)  # rad/s at the bottom, of a pendulum that just reaches the top
+
+
+def phases(made: Made, factor: complex = 1.0) -> list[float | None]:
+    """Phase (rad) of the force, turned by a factor, in each whirl of an orbit."""
+    orbit = Orbit(made.time, CLEARANCE * np.real(made.z), CLEARANCE * np.imag(made.z), CLEARANCE)
+    force = factor * (made.force[0] + 1j * made.force[1])
+    whirls = made.judged().episodes
+    return [force_phase(orbit, (np.real(force), np.imag(force)), e, made.spin) for e in whirls]
+
+
+@pytest.mark.parametrize(
+    ("made", "phase"),
+    [
+        (circle(-80.0), SLIDING),
+        (circle(80.0), -SLIDING),
+        (circle(80.0).spinning(-900.0), SLIDING),
+        (circle(-80.0).spinning(-900.0), -SLIDING),
+        (circle(-140.0, rate=2e3), SLIDING),
+        (circle(-90.0, 1.04).noisy(0.004, 7), SLIDING),
+        (star(90.0, -60.0), SLIDING),
+        (star(130.0, 45.0), -SLIDING),
+        (STANDS_OFF, SLIDING),
+        (turns(1.3, -50.0), SLIDING),
+    ],
+)
+def test_friction_drives_a_backward_whirl_and_brakes_a_forward_one(made: Made, phase: float) -> None:
+    (found,) = phases(made)
+    assert found == pytest.approx(phase, abs=0.02)
+
+
+def test_each_whirl_has_its_own_phase() -> None:
+    made = after_one_another((0.3, 60.0), (0.2, 0.0), (0.3, -60.0))
+    assert phases(made) == [pytest.approx(-SLIDING, abs=0.01), pytest.approx(SLIDING, abs=0.01)]
+
+
+def test_the_size_of_the_force_does_not_count_but_its_direction_does() -> None:
+    made = circle(-80.0)
+    assert phases(made, 1e-3) == pytest.approx(phases(made))
+    assert phases(made, np.exp(0.1j)) == [pytest.approx(SLIDING + 0.1, abs=1e-3)]
+
+
+def test_without_a_force_there_is_no_phase() -> None:
+    assert phases(circle(-80.0), 0.0) == [None]
+
+
+@pytest.mark.parametrize(
+    ("made", "marched"),
+    [
+        (turns(0.9, 50.0), 0.9),
+        (turns(3.0, -50.0), 3.0),
+        (turns(0.0, 50.0), 0.0),
+        (turns(0.1, 50.0), 0.1),
+        (pendulum(45.0), 0.25),
+        (pendulum(200.0), 200.0 / 180.0),
+        (circle(60.0), 30.0),
+        (over_the_top(300.0), 2.0 * math.asin(300.0 / HIGHEST) / math.pi),
+        (circle(60.0, 0.8), 0.0),
+    ],
+)  # fmt: skip
+def test_how_far_contacts_went_one_way(made: Made, marched: float) -> None:
+    assert made.judged().marched == pytest.approx(marched, abs=0.02)
+
+
+def told(words: str, turns: float, marched: float, phase: float | None = None) -> str:
+    """What the screen says of a seat."""
+    (line,) = evidence(
+        {
+            "peak_contact_force_N": 12.0,
+            "whirl_A": words,
+            "whirl_A_revolutions": turns,
+            "whirl_A_force_phase_deg": phase,
+            "whirl_A_most_turns_one_way": marched,
+        }
+    )
+    return line
+
+
+def test_the_screen_says_what_a_verdict_rests_on() -> None:
+    assert told("sustained backward whirl", 18.18, 18.18, 3.54) == (
+        "whirl_A: sustained backward whirl: the contact went round 18.2 times, and its force drives it by "
+        "3.5 deg"
+    )
+    assert told("transient forward whirl", 3.0, 3.0, -8.5).endswith("and its force brakes it by 8.5 deg")
+    assert told("transient forward whirl", 3.0, 3.0, 0.4).endswith("went round 3 times")
+    assert told("transient forward whirl", 3.0, 3.0).endswith("went round 3 times")
+    assert told("pendulum", 0.0, 0.187) == (
+        "whirl_A: pendulum: the contact went 0.19 of a turn one way at most; a whirl takes 1"
+    )
+    assert "1.4 of a turn one way at most and back, or with rests; a whirl" in told("pendulum", 0.0, 1.4)
+
+
+@pytest.mark.parametrize(
+    ("turned", "marched", "near"),
+    [(0.0, 0.7, False), (0.0, 0.8, True), (1.1, 1.1, True), (1.3, 1.3, False), (1.3, 5.0, False)],
+)
+def test_near_a_turn_is_near_the_edge(turned: float, marched: float, near: bool) -> None:
+    assert told("some verdict", turned, marched).endswith("so it is near the edge") is near
+
+
+def test_without_a_clearance_nothing_is_told() -> None:
+    summary = {"whirl_A": None, "whirl_A_revolutions": None, "whirl_A_most_turns_one_way": None}
+    assert evidence(summary) == ["whirl_A: not told, the bearing states no clearance"]
