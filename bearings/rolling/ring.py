@@ -124,8 +124,11 @@ def rub_journal(at, squeezed, friction, moved, m):
     t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -(moved.x * at.nx + moved.y * at.ny)))
     note(s.ring, t)
     s.rubbed = friction
-    elastic = squeezed.normal - squeezed.damped
-    s.brake.jx, s.brake.jy, s.brake.jm = t.fx + elastic * at.nx, t.fy + elastic * at.ny, t.journal_moment
+    s.brake.jx, s.brake.jy, s.brake.jm = (
+        t.fx + t.elastic * at.nx,
+        t.fy + t.elastic * at.ny,
+        t.journal_moment,
+    )
     return t
 
 

@@ -317,5 +317,5 @@ def fastest(m):
         side = max(side, s.side.stiffness[b])
     below *= d.race.exponent
     if s.ring.indentation > 0.0:
-        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
+        below += m.p.contact.exponent * s.ring.elastic / s.ring.indentation
     return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * side / d.mass)), s.seat.fastest)

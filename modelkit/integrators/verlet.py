@@ -19,7 +19,7 @@ from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP
 from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
-OVERRUN = 1.25  # of the resolution, up to which a step keeps the length that its kick was for
+OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
 SLIVER = 1e-6  # of a step; what is left of a span by rounding
 
 
