@@ -95,9 +95,9 @@ class Touched:
     """Contact of journal and bore at the last evaluation."""
 
     normal: float = real(0.0, "N", "normal force")
-    elastic: float = real(0.0, "N", "what of it is not damping")
     indentation: float = real(0.0, "m", "indentation; negative: the gap")
     rate: float = real(0.0, "m/s", "of the indentation")
+    elastic: float = real(0.0, "N", "what of the normal force is not damping")
 
 
 @kernel
