@@ -26,6 +26,8 @@ from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
+MOST_STEPS = 10**9  # macro steps of a run; days of work
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -141,6 +143,11 @@ def macro_steps(duration: float, step: float) -> int:
     """How many macro steps of `step` cover `duration` (s)."""
     if step > duration:
         raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")
+    if duration / step > MOST_STEPS:
+        raise TouchdownError(
+            f"a run of {duration:g} s takes {duration / step:.3g} macro steps of {step:g} s, more than "
+            f"{MOST_STEPS:g}; shorten it, or take longer steps"
+        )
     return math.ceil(duration / step - 1e-6)
 
 

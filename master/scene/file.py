@@ -141,7 +141,9 @@ def _toml(path: Path, what: str) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding="utf-8-sig"))  # some editors begin files with a mark
     except OSError as error:
         raise TouchdownError(f"cannot read {what} {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except RecursionError:
+        raise TouchdownError(f"{what} {path} is not valid TOML: its values lie too deep in each other") from None
+    except ValueError as error:  # of TOML's syntax, of UTF-8, of an integer with thousands of digits
         raise TouchdownError(f"{what} {path} is not valid TOML: {error}") from None
 
 
