@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -14,6 +16,8 @@ from touchdown.master import verbs
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.verbs.fault import report_fault, versions
 from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,7 +39,9 @@ def _executed(given: list[str]) -> int:
         command = parser()
         argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
         options = command.parse_args(joined(given))
-        return options.run(options)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph .* missing")  # in a title: the picture shows a box
+            return options.run(options)
     except TouchdownError as error:
         complain(str(error))
         return FAILED
@@ -47,7 +53,12 @@ def _executed(given: list[str]) -> int:
         complain("it needs more memory than there is; ask for less of it")
         return FAILED
     except OSError as error:
-        return _delivered(0) or report_fault(error, given)
+        if error.errno not in NO_ROOM:
+            return report_fault(error, given)
+        complain(
+            f"cannot write {error.filename or 'what it has to say'}: {error.strerror}; make room for it"
+        )
+        return FAILED
     except Exception as error:
         return report_fault(error, given)
 
@@ -56,7 +67,7 @@ def _delivered(status: int) -> int:
     """The exit status, once all that was printed is out."""
     why = undelivered()
     if why:
-        complain(f"cannot write what is to be printed: {why}")
+        complain(f"cannot write what it has to say: {why}; make room for it")
     return FAILED if why else status
 
 

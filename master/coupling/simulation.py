@@ -143,12 +143,17 @@ def macro_steps(duration: float, step: float) -> int:
     """How many macro steps of `step` cover `duration` (s)."""
     if step > duration:
         raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")
-    if duration / step > MOST_STEPS:
-        raise TouchdownError(
-            f"a run of {duration:g} s takes {duration / step:.3g} macro steps of {step:g} s, more than "
-            f"{MOST_STEPS:g}; shorten it, or take longer steps"
-        )
+    refuse_endless(duration, step)
     return math.ceil(duration / step - 1e-6)
+
+
+def refuse_endless(duration: float, step: float) -> None:
+    """Raise TouchdownError where `duration` (s) takes more than MOST_STEPS macro steps of `step` (s)."""
+    if duration > MOST_STEPS * step:
+        raise TouchdownError(
+            f"{duration:g} s by macro steps of {step:g} s are more than {MOST_STEPS:g} of them; ask for "
+            "less time, or for longer steps"
+        )
 
 
 class Values(Protocol):

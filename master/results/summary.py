@@ -78,6 +78,7 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
     return a.body_port if alone else f"{a.body}_{a.body_port}"
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")  # of a run that ran away
 def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recording) -> dict[str, object]:
     """All figures of a run; None where something did not happen or was too short to tell."""
     figures: dict[str, object] = {
@@ -102,7 +103,12 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     figures |= stress_figures(system, outcome)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
-    return figures
+    return {key: _finite(value) for key, value in figures.items()}
+
+
+def _finite(figure: object) -> object:
+    """A figure; None for one that is no finite number, which JSON has not."""
+    return None if isinstance(figure, float) and not math.isfinite(figure) else figure
 
 
 def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:

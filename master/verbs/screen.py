@@ -38,7 +38,7 @@ def show_any_text() -> None:
 
 
 def undelivered() -> str:
-    """Why what was printed did not arrive, or "": a disk that is full, a reader that went before the end."""
+    """Why what was printed did not arrive, or "": a reader may go when it has seen enough."""
     if sys.stdout is None:
         return ""
     try:

@@ -15,7 +15,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Component
-from touchdown.master.coupling.simulation import open_system, opened
+from touchdown.master.coupling.simulation import open_system, opened, refuse_endless
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import Scene
@@ -140,6 +140,7 @@ def compare_modes(
     of modes cannot be, nothing touches, or a run stops.
     """
     rotor = _rotor(scene)
+    refuse_endless(duration or LONGEST, macro_step)
     scene = scene.set({"run.macro_step": macro_step})
     _check_modes(_basis(scene, rotor, max(modes), 1, 1))
     whole = _basis(scene, rotor, 0, 0, 0)

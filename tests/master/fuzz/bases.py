@@ -86,7 +86,8 @@ version="1.0" name="two">
 <ssd:System name="two" description="Two of a kind">
 <ssd:Elements>
 <ssd:Component name="a" source="resources/m.fmu" type="application/x-fmu-sharedlibrary">
-<ssd:Connectors><ssd:Connector name="A.x" kind="output"><ssc:Real unit="mm"/></ssd:Connector></ssd:Connectors>
+<ssd:Connectors>
+<ssd:Connector name="A.x" kind="output"><ssc:Real unit="mm"/></ssd:Connector></ssd:Connectors>
 <ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>
 <ssv:ParameterSet version="1.0" name="s"><ssv:Parameters>
 <ssv:Parameter name="k"><ssv:Real value="2.5"/></ssv:Parameter>
@@ -119,7 +120,8 @@ suppressUnitConversion="true">
 </ssd:DefaultExperiment>
 <ssd:Annotations><ssc:Annotation type="touchdown-cosim.scene">
 <touchdown:Scene scheme="hold" zero="a.stiffness" record_every="2" tolerance="1e-9">
-<touchdown:Name component="a" name="stiffness" own="k"/></touchdown:Scene></ssc:Annotation></ssd:Annotations>
+<touchdown:Name component="a" name="stiffness" own="k"/></touchdown:Scene></ssc:Annotation>
+</ssd:Annotations>
 </ssd:SystemStructureDescription>
 """
 VALUES = f"""<?xml version="1.0" encoding="UTF-8"?>

@@ -25,7 +25,7 @@ from pool import Ran, inside, run_cases
 from touchdown.fmus.recipes import recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED
-from touchdown.master.interop.ssp.names import HEART, NAMESPACES
+from touchdown.master.interop.ssp.names import HEART
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.run_spec import READERS
 from touchdown.master.verbs import ALL
@@ -38,7 +38,6 @@ SCENE = "disk-caged-simplified"
 COMPONENTS = ("rotor", "amb", "bearing", "housing")
 SHORT = ("duration = 5.0", "duration = 1e-4")
 EARLY = ('shutdown_time = "5 ms"', "shutdown_time = 0")
-
 
 
 def scene(rng: Rng) -> list[str]:
@@ -86,7 +85,7 @@ def _parameters(fmu: str) -> list[str]:
 
 
 def options(rng: Rng) -> list[str]:
-    """Options of all verbs, and what is no option. One of them is always wrong, so that nothing long begins."""
+    """Options of all verbs, and what is none. One is always wrong, so that nothing long begins."""
     verb = ALL[int(rng.integers(len(ALL)))]
     parser = argparse.ArgumentParser()
     verb.declare(parser)

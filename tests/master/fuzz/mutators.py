@@ -1,4 +1,4 @@
-"""Seeded damage to texts and archives: what people mistype, what editors and disks break, what is hostile."""
+"""Seeded damage to texts and archives: what people mistype, what disks break, what is hostile."""
 
 from __future__ import annotations
 
@@ -17,7 +17,21 @@ NUMBERS = (
     *("nan", "inf", "-inf", "1" + 400 * "0", "1" + 5000 * "0", "9223372036854775808"),
 )
 WORDS = (
-    *("", " ", "wide", "true", "None", "%s{0}", "$(id)", "é µ 零", "a\tb", "\U0001f600", "-", "--", "x" * 9999),
+    *(
+        "",
+        " ",
+        "wide",
+        "true",
+        "None",
+        "%s{0}",
+        "$(id)",
+        "é µ 零",
+        "a\tb",
+        "\U0001f600",
+        "-",
+        "--",
+        "x" * 9999,
+    ),
     *("time", "at_end", "run", "interface", "hold", "6004", "9000 rpm", "0.3 mm", "1 furlong", "1e400 mm"),
     *("/dev/full", "/dev/zero", "/dev/null", "/", "..", "../../etc/passwd", "nosuch.fmu", "nosuch.toml"),
 )
@@ -71,7 +85,9 @@ def _scaled(rng: Rng, lines: list[str]) -> None:
     at = _one_with(rng, lines, " = ")
     key, _, rest = lines[at].partition(" = ")
     scale = 10.0 ** rng.uniform(-6.0, 6.0)
-    lines[at] = f"{key} = " + re.sub(r"\d+(\.\d+)?", lambda found: f"{scale * float(found[0]):.6g}", rest, count=1)
+    lines[at] = f"{key} = " + re.sub(
+        r"\d+(\.\d+)?", lambda found: f"{scale * float(found[0]):.6g}", rest, count=1
+    )
 
 
 def _another_value(rng: Rng, lines: list[str]) -> None:
@@ -88,7 +104,18 @@ def _another_key(rng: Rng, lines: list[str]) -> None:
 
 def _another_table(rng: Rng, lines: list[str]) -> None:
     at = _one_with(rng, lines, "[")
-    names = ("time", "at_end", "run", "components", "a.b", '"a\\u0000b"', '"a/b"', '""', '"x.y"', "stations")
+    names = (
+        "time",
+        "at_end",
+        "run",
+        "components",
+        "a.b",
+        '"a\\u0000b"',
+        '"a/b"',
+        '""',
+        '"x.y"',
+        "stations",
+    )
     inner = lines[at].strip("[] \t").split(".")
     inner[int(rng.integers(len(inner)))] = pick(rng, names)
     lines[at] = f"[{'.'.join(inner)}]"
@@ -96,7 +123,9 @@ def _another_table(rng: Rng, lines: list[str]) -> None:
 
 def _added(rng: Rng, lines: list[str]) -> None:
     deep = "[" + ".".join(DEEP * ["a"]) + "]"
-    lines.insert(int(rng.integers(len(lines) + 1)), pick(rng, (deep, f"x = {_literal(rng)}", "[x]", "\0", "[[")))
+    lines.insert(
+        int(rng.integers(len(lines) + 1)), pick(rng, (deep, f"x = {_literal(rng)}", "[x]", "\0", "[["))
+    )
 
 
 def _one_with(rng: Rng, lines: Sequence[str], what: str) -> int:
@@ -151,7 +180,10 @@ def _another_attribute(rng: Rng, lines: list[str]) -> None:
     held = range(1, len(parts), 2)  # what stands between quotes
     if held:
         one = held[int(rng.integers(len(held)))]
-        parts[one] = pick(rng, (_any_size(rng), *NUMBERS, *(w for w in WORDS if "&" not in w and "<" not in w), "&b;", "&#0;"))
+        parts[one] = pick(
+            rng,
+            (_any_size(rng), *NUMBERS, *(w for w in WORDS if "&" not in w and "<" not in w), "&b;", "&#0;"),
+        )
         lines[at] = '"'.join(parts)
 
 
@@ -202,7 +234,7 @@ def archive(content: Mapping[str, bytes], stored: bool = False) -> bytes:
 
 
 def damaged_archive(rng: Rng, content: Mapping[str, bytes], heart: str) -> bytes:
-    """An archive like `content` with its `heart` damaged, an entry too few or too many, or bytes flipped."""
+    """An archive like `content` with its `heart` damaged, an entry less or more, or bytes flipped."""
     chosen = rng.random()
     files = dict(content)
     if chosen < 0.5:
@@ -212,6 +244,8 @@ def damaged_archive(rng: Rng, content: Mapping[str, bytes], heart: str) -> bytes
         del files[pick(rng, list(files))]
         return archive(files)
     if chosen < 0.7:
-        name = pick(rng, ("../out", "/abs", "a:b", "x\\y", "/", "dir/", heart.upper(), 300 * "n", 99 * "d/"))
+        name = pick(
+            rng, ("../out", "/abs", "a:b", "x\\y", "/", "dir/", heart.upper(), 300 * "n", 99 * "d/")
+        )
         return archive(files | {name: b"x"})
     return flipped(rng, archive(files, stored=chosen < 0.85))

@@ -1,5 +1,4 @@
-"""Cases run beside each other in a pool of processes that survives them: crashes and stalls are findings.
-"""
+"""Cases played in a pool of processes that survives them: crashes and stalls are findings."""
 
 from __future__ import annotations
 
