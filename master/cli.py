@@ -55,9 +55,9 @@ def _executed(given: list[str]) -> int:
     except OSError as error:
         if error.errno not in NO_ROOM:
             return report_fault(error, given)
-        complain(
-            f"cannot write {error.filename or 'what it has to say'}: {error.strerror}; make room for it"
-        )
+        undelivered()  # or what is left to print would be refused, and said, again
+        what = error.filename or "what it has to say"
+        complain(f"cannot write {what}: {error.strerror}; make room for it")
         return FAILED
     except Exception as error:
         return report_fault(error, given)

@@ -17,6 +17,8 @@ from touchdown.master.common.errors import FAILED
 from touchdown.master.scene import file
 from touchdown.master.verbs.fault import FAULT
 
+LONG = "scenes disk-caged-simplified --variables bearing"  # more than a buffer holds
+
 
 def test_a_fault_is_one_line_with_version_and_log(
     command: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
@@ -68,10 +70,12 @@ def spoken(*arguments: str, stdout: object = subprocess.PIPE, **environment: str
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
-@pytest.mark.parametrize(("arguments", "unbuffered"), [("scenes", ""), ("--version", ""), ("scenes", "1")])
+@pytest.mark.parametrize(
+    ("arguments", "unbuffered"), [("scenes", ""), ("--version", ""), ("scenes", "1"), (LONG, "")]
+)
 def test_a_screen_that_is_full(arguments: str, unbuffered: str) -> None:
     with open("/dev/full", "w") as full:
-        status, _, complaint = spoken(arguments, stdout=full, PYTHONUNBUFFERED=unbuffered)
+        status, _, complaint = spoken(*arguments.split(), stdout=full, PYTHONUNBUFFERED=unbuffered)
     assert status == FAILED
     assert (
         complaint
