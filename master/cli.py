@@ -17,6 +17,10 @@ from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.verbs.fault import report_fault, versions
 from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
 
+UNSAID = (  # warnings of libraries that would say in lines of code what the command says, or shows, itself
+    (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
+    (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and its figures are none
+)
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -40,7 +44,8 @@ def _executed(given: list[str]) -> int:
         argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
         options = command.parse_args(joined(given))
         with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "Glyph .* missing")  # in a title: the picture shows a box
+            for kind, meant in UNSAID:
+                warnings.filterwarnings("ignore", meant, kind)
             return options.run(options)
     except TouchdownError as error:
         complain(str(error))

@@ -78,7 +78,6 @@ def seat_name(a: Attachment, seats: list[Attachment]) -> str:
     return a.body_port if alone else f"{a.body}_{a.body_port}"
 
 
-@np.errstate(over="ignore", invalid="ignore", divide="ignore")  # of a run that ran away
 def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recording) -> dict[str, object]:
     """All figures of a run; None where something did not happen or was too short to tell."""
     figures: dict[str, object] = {

@@ -102,7 +102,10 @@ class _Worker:
         return Ran(self.case, None, said)
 
     def end(self) -> None:
-        """Whatever it does."""
+        """By itself where it has nothing to do, else whatever it does."""
+        if self.case is None:
+            self._pipe.send(None)
+            self._process.join(LIMIT)
         self._process.kill()
         self._process.join()
         self._pipe.close()
