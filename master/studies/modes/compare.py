@@ -144,9 +144,8 @@ def compare_modes(
     scene = scene.set({"run.macro_step": macro_step})
     _check_modes(_basis(scene, rotor, max(modes), 1, 1))
     whole = _basis(scene, rotor, 0, 0, 0)
-    fine = whole.set({"run.macro_step": 0.5 * macro_step})
     stop = Stop(LONGEST if duration is None else duration, early=duration is None, every=2)
-    exact = _run(fine, rotor, stop)
+    exact = _run(whole.set({"run.macro_step": 0.5 * macro_step}), rotor, stop)
     impacts = {seat: impact for seat, t in exact.traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
