@@ -20,6 +20,8 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
 
     Relative paths start in `folder`. Raises TouchdownError where there is none, or it has a mistake.
     """
+    if "\0" in fmu:
+        raise TouchdownError(f"no FMU can be called {fmu!r}")
     if fmu.endswith(".toml"):
         try:
             return recipe(str(folder / fmu))

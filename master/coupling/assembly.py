@@ -85,7 +85,7 @@ def _settings(component: Component, spec: ComponentSpec, scheme: Scheme) -> dict
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
     optional: dict[str, object] = {**(preset(spec.preset) if spec.preset else {}), **spec.inherited}
     given = {key: value for key, value in optional.items() if key in component.variables}
-    values = {key: _checked(component, key, value) for key, value in {**given, **spec.set}.items()}
+    values = {key: checked(component, key, value) for key, value in {**given, **spec.set}.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
         if key in spec.set:
             raise TouchdownError(f"{component.name}.{key} follows from the scheme; set run.scheme instead")
@@ -104,8 +104,8 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
             )
 
 
-def _checked(component: Component, name: str, given: object) -> float:
-    """A setting's value in SI, if the component can take it."""
+def checked(component: Component, name: str, given: object) -> float:
+    """A setting's value in SI. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
     if not variable.settable:
         raise TouchdownError(

@@ -26,6 +26,8 @@ from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
+MOST_STEPS = 10**9  # macro steps of a run; days of work
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -141,7 +143,17 @@ def macro_steps(duration: float, step: float) -> int:
     """How many macro steps of `step` cover `duration` (s)."""
     if step > duration:
         raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")
+    refuse_endless(duration, step)
     return math.ceil(duration / step - 1e-6)
+
+
+def refuse_endless(duration: float, step: float) -> None:
+    """Raise TouchdownError where `duration` (s) takes more than MOST_STEPS macro steps of `step` (s)."""
+    if duration > MOST_STEPS * step:
+        raise TouchdownError(
+            f"{duration:g} s by macro steps of {step:g} s are more than {MOST_STEPS:g} of them; ask for "
+            "less time, or for longer steps"
+        )
 
 
 class Values(Protocol):

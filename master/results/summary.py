@@ -102,7 +102,12 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     figures |= stress_figures(system, outcome)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
-    return figures
+    return {key: _finite(value) for key, value in figures.items()}
+
+
+def _finite(figure: object) -> object:
+    """A figure; None for one that is no finite number, which JSON has not."""
+    return None if isinstance(figure, float) and not math.isfinite(figure) else figure
 
 
 def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
@@ -142,7 +147,8 @@ def _orbit_figures(
     loaded = None
     if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
         last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
-        loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
+        if last.any():
+            loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
     figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
     return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
 

@@ -45,10 +45,12 @@ from touchdown.master.scene.tables import (
     reference,
     references,
     refuse_unknown,
+    refuse_unusable,
     table,
     whole,
 )
 
+LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
 
@@ -137,12 +139,25 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
 
 
 def _toml(path: Path, what: str) -> dict[str, Any]:
+    """The tables of a TOML file. Raises TouchdownError, as all that follows."""
+    where = f"{what} {path}"
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))  # some editors begin files with a mark
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
     except OSError as error:
-        raise TouchdownError(f"cannot read {what} {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise TouchdownError(f"{what} {path} is not valid TOML: {error}") from None
+        raise TouchdownError(f"cannot read {where}: {error.strerror}") from None
+    except ValueError as error:  # of a path that no file can have
+        raise TouchdownError(f"cannot read {what} {str(path)!r}: {error}") from None
+    if len(content) > LARGEST:
+        raise TouchdownError(f"{where} is larger than {LARGEST / 1e6:.0f} MB; it must be something else")
+    try:
+        data = tomllib.loads(content.decode("utf-8-sig"))  # some editors begin files with a mark
+    except RecursionError:
+        raise TouchdownError(f"{where} is not valid TOML: its values lie too deep in each other") from None
+    except ValueError as error:  # of TOML's syntax, of UTF-8, of an integer with thousands of digits
+        raise TouchdownError(f"{where} is not valid TOML: {error}") from None
+    refuse_unusable(data, where)
+    return data
 
 
 def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
