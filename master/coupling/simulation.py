@@ -15,7 +15,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.components.component import Component
-from touchdown.master.components.library import load_component
+from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
@@ -65,7 +65,8 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
     def load_one(name: str, fmu: str) -> Component:
-        return load_component(name, fmu, scene.folder, in_process)
+        stepping = Stepping(in_process, scene.components[name].isolate, scene.run.call_timeout)
+        return load_component(name, fmu, scene.folder, stepping)
 
     return assemble(scene, load_one)
 

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 from fmpy.validation import validate_fmu
 
-from touchdown.fmus.build import cached
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component
-from touchdown.master.components.fmu import FmuComponent
-from touchdown.master.components.library import locate
+from touchdown.master.components.fmu import ArchivedFmu
+from touchdown.master.components.isolation.component import PATIENCE
+from touchdown.master.components.library import Stepping, foreign, load_component
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
-from touchdown.modelkit.kernel import user_cache
 from touchdown.modelkit.variables import Causality
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
@@ -23,20 +21,25 @@ DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
 DRY_RUN_FORCE = 1e-2  # N, on a body
 
 
-def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | None = None) -> Report:
+def check_fmu(
+    name: str,
+    role: str | None = None,
+    names: Mapping[str, str] | None = None,
+    patience: float = PATIENCE,
+) -> Report:
     """Check the FMU at a path, or one of the project's own by name.
 
     With a role ("bearing", "rotor", "amb", "housing"), whether it can stand in for one; `names` gives what
-    it calls the variables of the contract. Raises TouchdownError where there is nothing to check
-    (missing, damaged, no co-simulation here).
+    it calls the variables of the contract. One at a path is stepped in a process of its own, and `patience`
+    (s) is what each call may take. Raises TouchdownError where there is nothing to check (missing, damaged,
+    no co-simulation here).
     """
-    source = locate(name)
-    path = source if isinstance(source, Path) else cached(source)
-    component = FmuComponent("checked", path, user_cache())
+    component = load_component("checked", name, stepping=Stepping(isolate=foreign(name), patience=patience))
+    assert isinstance(component, ArchivedFmu)
     report = Report(name)
     try:
         component.rename(names or {})
-        complaints = validate_fmu(str(path))
+        complaints = validate_fmu(str(component.path))
         if not complaints:
             report.lines.append("valid FMI 2.0 for co-simulation")
         elif role is None:
@@ -48,7 +51,9 @@ def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | Non
             check_role(component, role, report)
         _dry_run(component, report)
     finally:
-        component.close()
+        problem = component.close()
+    if problem:
+        report.problems.append(f"at its end: {problem}")
     if role is not None:
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
