@@ -13,13 +13,20 @@ import argcomplete
 
 from touchdown.fmus.version import VERSION
 from touchdown.master import verbs
+from touchdown.master.common import watched
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.verbs.screen import broken_off, complain
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status. A user's mistake is one line on stderr."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is not None:
+        return _run(list(arguments))
+    watched.allow_watching()
+    return watched.end(_run(sys.argv[1:]))
+
+
+def _run(given: list[str]) -> int:
     command = parser()
     argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
     options = command.parse_args(joined(given))

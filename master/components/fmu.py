@@ -43,6 +43,8 @@ CALLS = (  # what can be said of where an FMU is
     "fmi2EnterInitializationMode",
     "fmi2ExitInitializationMode",
     "fmi2SetReal",
+    "fmi2SetInteger",
+    "fmi2SetBoolean",
     "fmi2DoStep",
     "fmi2GetReal",
     "fmi2GetFMUstate",
@@ -282,14 +284,15 @@ class FmuComponent(ArchivedFmu):
 
     def set(self, values: Mapping[str, float]) -> None:
         calls = (
-            (Kind.REAL, self._set_real, "f8"),
-            (Kind.INTEGER, self._set_integer, "i4"),
-            (Kind.ENUMERATION, self._set_integer, "i4"),
-            (Kind.BOOLEAN, self._set_boolean, "i4"),
+            (Kind.REAL, "fmi2SetReal", self._set_real, "f8"),
+            (Kind.INTEGER, "fmi2SetInteger", self._set_integer, "i4"),
+            (Kind.ENUMERATION, "fmi2SetInteger", self._set_integer, "i4"),
+            (Kind.BOOLEAN, "fmi2SetBoolean", self._set_boolean, "i4"),
         )
-        for kind, call, dtype in calls:
+        for kind, title, call, dtype in calls:
             names = [n for n in values if self.variable(n).kind is kind]
             if names:
+                self._told(title)
                 references = self._references(names)
                 data = np.array([values[n] for n in names]).astype(dtype)
                 self._check(

@@ -9,11 +9,13 @@ from pathlib import Path
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import Recipe, names, recipe
 from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.watched import watch
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.foreign import ForeignFmu
-from touchdown.master.components.isolation.component import PATIENCE, IsolatedFmu
+from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.components.twin import TwinComponent
+from touchdown.master.scene.run_spec import CALL_TIMEOUT
 from touchdown.modelkit.kernel import user_cache
 from touchdown.modelkit.model import ModelError
 
@@ -45,7 +47,7 @@ class Stepping:
 
     in_process: bool = False  # the project's own: the model, without its FMU
     isolate: bool = False  # an FMU: in a process of its own
-    patience: float = PATIENCE  # s that a call of an isolated FMU may take
+    call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
 
 
 def load_component(
@@ -57,8 +59,11 @@ def load_component(
         return TwinComponent(name, source.model)
     path, origin = (source, "") if isinstance(source, Path) else (cached(source), fmu)
     if stepping.isolate:
-        return IsolatedFmu(name, path, user_cache(), origin, stepping.patience)
-    return (FmuComponent if origin else ForeignFmu)(name, path, user_cache(), origin)
+        return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
+    if origin:
+        return FmuComponent(name, path, user_cache(), origin)
+    watch(f"code of others ran in it, such as that of {path}; isolate it to see where it ends")
+    return ForeignFmu(name, path, user_cache())
 
 
 def foreign(fmu: str) -> bool:

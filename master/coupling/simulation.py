@@ -49,6 +49,12 @@ class Outcome:
     reason: str = ""  # why, where it did not complete
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
+    def after(self, problem: str) -> Outcome:
+        """The outcome where that came to light after the run; "": nothing did."""
+        if not problem or self.ended in (Ended.INTERRUPTED, Ended.STOPPED):
+            return self
+        return replace(self, ended=Ended.STOPPED, reason=problem)
+
     def raise_if_interrupted(self) -> None:
         """Raise KeyboardInterrupt where Ctrl-C ended the run."""
         if self.ended is Ended.INTERRUPTED:

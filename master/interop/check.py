@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from fmpy.validation import validate_fmu
@@ -11,9 +11,9 @@ from fmpy.validation import validate_fmu
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.components.isolation.component import PATIENCE
 from touchdown.master.components.library import Stepping, foreign, load_component
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
+from touchdown.master.scene.run_spec import CALL_TIMEOUT
 from touchdown.modelkit.variables import Causality
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
@@ -25,16 +25,17 @@ def check_fmu(
     name: str,
     role: str | None = None,
     names: Mapping[str, str] | None = None,
-    patience: float = PATIENCE,
+    call_timeout: float = CALL_TIMEOUT,
 ) -> Report:
     """Check the FMU at a path, or one of the project's own by name.
 
     With a role ("bearing", "rotor", "amb", "housing"), whether it can stand in for one; `names` gives what
-    it calls the variables of the contract. One at a path is stepped in a process of its own, and `patience`
+    it calls the variables of the contract. One at a path is stepped in a process of its own, and `call_timeout`
     (s) is what each call may take. Raises TouchdownError where there is nothing to check (missing, damaged,
     no co-simulation here).
     """
-    component = load_component("checked", name, stepping=Stepping(isolate=foreign(name), patience=patience))
+    stepping = Stepping(isolate=foreign(name), call_timeout=call_timeout)
+    component = load_component("checked", name, stepping=stepping)
     assert isinstance(component, ArchivedFmu)
     report = Report(name)
     try:
@@ -77,21 +78,26 @@ def _dry_run(component: Component, report: Report) -> None:
         component.bind(fed, np.zeros(0), [])
         component.enter(0.0)
         component.exit()
-        values = component.read(outputs)
+        wrong = _not_finite(component, outputs)
         for k in range(DRY_RUN_STEPS):
             time = k * DRY_RUN_STEP
             component.inputs[:] = [_small(name, time) for name in fed]
             component.push()
             component.step(time, DRY_RUN_STEP)
-            values = component.read(outputs)
+            wrong |= _not_finite(component, outputs)
     except TouchdownError as error:
         report.problems.append(f"dry run: {error}")
         return
-    wrong = [n for n, value in zip(outputs, values, strict=True) if not math.isfinite(value)]
     if wrong:
         report.problems.append(f"dry run: {', '.join(wrong)} not finite")
     else:
         report.lines.append(f"dry run: {DRY_RUN_STEPS} steps of {DRY_RUN_STEP:g} s, outputs finite")
+
+
+def _not_finite(component: Component, names: Sequence[str]) -> dict[str, None]:
+    """Which of `names` are no finite numbers now; a dictionary keeps their order."""
+    values = zip(names, component.read(names), strict=True)
+    return {name: None for name, value in values if not math.isfinite(value)}
 
 
 def _small(name: str, time: float) -> float:

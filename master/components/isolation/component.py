@@ -17,25 +17,23 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.fmu import CALLS, ArchivedFmu
 from touchdown.master.components.isolation.board import Ask, Word
 from touchdown.master.components.isolation.worker import LostError, Worker
-
-PATIENCE = 60.0  # s that a call may take
-
+from touchdown.master.scene.run_spec import CALL_TIMEOUT
 
 class IsolatedFmu(ArchivedFmu):
-    """An FMU that is stepped in a process of its own; `patience` (s) is what each call may take."""
+    """An FMU that is stepped in a process of its own; `call_timeout` (s) is what each call may take."""
 
     def __init__(
-        self, name: str, path: Path, cache: Path, origin: str = "", patience: float = PATIENCE
+        self, name: str, path: Path, cache: Path, origin: str = "", call_timeout: float = CALL_TIMEOUT
     ) -> None:
         super().__init__(name, path, cache, origin)
-        self._patience = patience
+        self._call_timeout = call_timeout
         self._time = 0.0  # s, of the last step's beginning
         self._lost = ""  # what became of the process
         self._pushed = False  # whether inputs wait on the board
         self._fresh = False  # whether the board has the outputs of now
         self._readers: dict[tuple[str, ...], int] = {}
         self._numbers = count()
-        self._worker = Worker(len(self.variables), patience)
+        self._worker = Worker(len(self.variables), call_timeout)
         self._in, self._out = self._worker.board.inputs[:0], self._worker.board.outputs[:0]
         try:
             self._call("load", name, str(path.absolute()), str(cache.absolute()), origin)
@@ -45,7 +43,7 @@ class IsolatedFmu(ArchivedFmu):
 
     def second(self) -> IsolatedFmu:
         name = f"{self.name} (witness)"
-        second = IsolatedFmu(name, self.path, self._cache, self._own_origin, self._patience)
+        second = IsolatedFmu(name, self.path, self._cache, self._own_origin, self._call_timeout)
         second.rename(self._own)
         return second
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
 import socket
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.watched import die_with_parent
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import CALLS, FmuComponent
 from touchdown.master.components.foreign import ForeignFmu
@@ -114,7 +114,7 @@ def main() -> None:
     """Serve the process that started this one: `... VARIABLES MEMORY CALLS TALK`, the last three are files."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_IGN)  # the master ends in order, and this process with it
-    _die_with_parent()
+    die_with_parent()
     variables, memory, calls, talk = map(int, sys.argv[1:])
     board = Board(memory, variables)
     with Connection(talk) as connection, socket.socket(fileno=calls) as wake:
@@ -137,13 +137,6 @@ def serve(board: Board, side: Side, connection: Connection) -> None:
             words[Word.FAILED] = 1
             connection.send(str(error))
         side.post()
-
-
-def _die_with_parent() -> None:
-    """Have the kernel end this process with its parent, also out of an FMU that hangs."""
-    if sys.platform.startswith("linux"):
-        set_death_signal = 1
-        ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL, 0, 0, 0)
 
 
 if __name__ == "__main__":

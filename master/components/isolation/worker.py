@@ -32,8 +32,8 @@ class LostError(Exception):
 class Worker:
     """A process that hosts one FMU."""
 
-    def __init__(self, variables: int, patience: float) -> None:
-        self._patience = patience  # s, for each request
+    def __init__(self, variables: int, call_timeout: float) -> None:
+        self._call_timeout = call_timeout  # s, for each request
         memory = os.memfd_create("touchdown")
         os.ftruncate(memory, board_size(variables))
         self.board = Board(memory, variables)
@@ -77,10 +77,10 @@ class Worker:
 
     def _wait(self) -> None:
         try:
-            self._side.wait(SPIN if CORES > 1 else 0.0, self._patience)
+            self._side.wait(SPIN if CORES > 1 else 0.0, self._call_timeout)
         except TimeoutError:
             self.end()
-            raise LostError(f"did not answer within {self._patience:g} s") from None
+            raise LostError(f"did not answer within {self._call_timeout:g} s") from None
         except GoneError:
             raise LostError(self._how_it_ended()) from None
         except BaseException:  # what it answers later would be taken for an answer to something else
