@@ -33,7 +33,10 @@ class IsolatedFmu(ArchivedFmu):
         self._fresh = False  # whether the board has the outputs of now
         self._readers: dict[tuple[str, ...], int] = {}
         self._numbers = count()
-        self._worker = Worker(len(self.variables), call_timeout)
+        try:
+            self._worker = Worker(len(self.variables), call_timeout)
+        except LostError as error:
+            raise TouchdownError(f"cannot start a process for {path} as {name}: it {error}") from None
         self._in, self._out = self._worker.board.inputs[:0], self._worker.board.outputs[:0]
         try:
             self._call("load", name, str(path.absolute()), str(cache.absolute()), origin)

@@ -123,8 +123,9 @@ def main() -> None:
 
 
 def serve(board: Board, side: Side, connection: Connection) -> None:
-    """Answer requests until the master is gone."""
+    """Answer requests until the master is gone. The first reply says that this process is up."""
     host, words = Host(board), board.words
+    side.post()
     while True:
         try:
             side.wait(1e-6 * words[Word.SPIN], FOREVER)

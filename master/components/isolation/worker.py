@@ -20,6 +20,7 @@ HOST = "touchdown.master.components.isolation.host"
 _START = "import json, runpy, sys; sys.path[:] = json.loads(sys.argv.pop(1)); " + (
     f"runpy.run_module({HOST!r}, run_name='__main__', alter_sys=False)"
 )
+UP = 120.0  # s that it may take to come up
 REAP = 5.0  # s that the end of a process which is gone may take
 
 _running: weakref.WeakSet[Worker] = weakref.WeakSet()
@@ -46,6 +47,7 @@ class Worker:
         other.close()
         self._finish = weakref.finalize(self, _end, self._process, ours, self._connection)
         _running.add(self)
+        self._wait(UP)
 
     def ask(self, what: Ask, argument: int = 0, pushed: bool = False) -> None:
         """Ask for something, and wait until it is done.
@@ -53,7 +55,7 @@ class Worker:
         Raises TouchdownError where the FMU refuses, and LostError where the process does not answer.
         """
         self._post(what, argument, pushed)
-        self._wait()
+        self._wait(self._call_timeout)
 
     def call(self, name: str, *arguments: Any, pushed: bool = False) -> None:
         """Have a method of the host called. Raises as `ask` does."""
@@ -62,7 +64,7 @@ class Worker:
             self._connection.send((name, arguments))
         except OSError:  # it is gone, and `_wait` says how
             pass
-        self._wait()
+        self._wait(self._call_timeout)
 
     def end(self) -> None:
         """End the process, whatever it does."""
@@ -75,12 +77,12 @@ class Worker:
         words[Word.SPIN] = int(1e6 * SPIN) if len(_running) < CORES else 0
         self._side.post()
 
-    def _wait(self) -> None:
+    def _wait(self, limit: float) -> None:
         try:
-            self._side.wait(SPIN if CORES > 1 else 0.0, self._call_timeout)
+            self._side.wait(SPIN if CORES > 1 else 0.0, limit)
         except TimeoutError:
             self.end()
-            raise LostError(f"did not answer within {self._call_timeout:g} s") from None
+            raise LostError(f"did not answer within {limit:g} s") from None
         except GoneError:
             raise LostError(self._how_it_ended()) from None
         except BaseException:  # what it answers later would be taken for an answer to something else

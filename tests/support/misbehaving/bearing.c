@@ -1,7 +1,7 @@
 /* A bearing as FMI 2.0 for co-simulation that misbehaves as resources/how.txt says: "CALL DEED".
 
    CALL: instantiate, setup, enter, leave, set, get, step (the third one), terminate, free. DEED: see `misbehave`.
-   Its load is a spring's, of 1 kN/m, and a value set to 77 is no number. */
+   Its load is a spring's, of 1 kN/m. It says that no work is done, so no second instance is asked. */
 
 #include <math.h>
 #include <signal.h>
@@ -119,7 +119,7 @@ EXPORT int fmi2GetReal(Bearing *b, const unsigned *references, size_t count, dou
 {
     int status = misbehave(b, "get");
     for (size_t i = 0; i < count; i++)
-        values[i] = references[i] < 2 ? b->x[references[i]] : b->f[references[i] % 2];
+        values[i] = references[i] < 2 ? b->x[references[i]] : references[i] < 4 ? b->f[references[i] % 2] : 0.0;
     return status;
 }
 
