@@ -1,4 +1,4 @@
-"""A component that is an FMU of others': what it does to the process is undone, what it gives is looked at."""
+"""A component that is an FMU of others': what it does to the process is undone, what it gives checked."""
 
 from __future__ import annotations
 

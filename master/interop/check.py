@@ -30,9 +30,9 @@ def check_fmu(
     """Check the FMU at a path, or one of the project's own by name.
 
     With a role ("bearing", "rotor", "amb", "housing"), whether it can stand in for one; `names` gives what
-    it calls the variables of the contract. One at a path is stepped in a process of its own, and `call_timeout`
-    (s) is what each call may take. Raises TouchdownError where there is nothing to check (missing, damaged,
-    no co-simulation here).
+    it calls the variables of the contract. One at a path is stepped in a process of its own, and each call
+    may take `call_timeout` (s). Raises TouchdownError where there is nothing to check (missing, damaged, no
+    co-simulation here).
     """
     stepping = Stepping(isolate=foreign(name), call_timeout=call_timeout)
     component = load_component("checked", name, stepping=stepping)

@@ -20,7 +20,7 @@ def warn(warnings: Iterable[str]) -> None:
 
 
 def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:
-    """One line, where FMUs of others' are about to run; `fmus` says whether each has a process of its own."""
+    """One line, where FMUs of others' are about to run; `fmus` says which have a process of their own."""
     own = [fmu for fmu, isolated in fmus.items() if isolated]
     here = [fmu for fmu, isolated in fmus.items() if not isolated]
     said = [f"in a process of its own: {', '.join(own)}"] if own else []

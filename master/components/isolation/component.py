@@ -19,6 +19,7 @@ from touchdown.master.components.isolation.board import Ask, Word
 from touchdown.master.components.isolation.worker import LostError, Worker
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
 
+
 class IsolatedFmu(ArchivedFmu):
     """An FMU that is stepped in a process of its own; `call_timeout` (s) is what each call may take."""
 

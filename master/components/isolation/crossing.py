@@ -6,7 +6,6 @@ So who waits looks for a while before it sleeps, where there are cores for it.
 
 from __future__ import annotations
 
-import os
 import platform
 import select
 import socket
@@ -15,7 +14,8 @@ from contextlib import suppress
 
 from touchdown.master.components.isolation.board import Board, Word
 
-SPIN = 5e-4  # s to look before sleeping
+SPIN = 3e-4  # s to look before sleeping
+LONGEST = 512  # waits that are not begun by looking, after looking was in vain again and again
 LOOK_AGAIN = 0.05  # s; a wake-up call that crossed with falling asleep is lost
 ORDERED = platform.machine() in ("x86_64", "AMD64")  # other processors may show numbers before values
 
@@ -34,6 +34,8 @@ class Side:
         self._sleep, self._they_sleep = theirs if master else theirs[::-1]
         self._words[self._sleep] = 1
         self._awaited = 1
+        self._pass_over = 0  # waits before it looks again
+        self._passed_over = 1  # the last time that looking was in vain
         self._poll = select.poll()
         self._poll.register(calls, select.POLLIN)
 
@@ -49,18 +51,24 @@ class Side:
 
         Raises GoneError where the other side is gone, TimeoutError where it does not post.
         """
-        if not (ORDERED and spin > 0.0 and self._look(spin)):
+        if not (ORDERED and spin > 0.0 and self._worth_looking() and self._look(spin)):
             self._doze(limit)
         self._awaited += 1
+
+    def _worth_looking(self) -> bool:
+        self._pass_over = max(self._pass_over - 1, 0)
+        return not self._pass_over
 
     def _look(self, spin: float) -> bool:
         words, place, awaited = self._words, self._awaits, self._awaited
         deadline = time.perf_counter() + spin
-        while words[place] != awaited:
-            os.sched_yield()  # to whom the other side may be waiting for
-            if time.perf_counter() > deadline:
-                return False
-        return True
+        while words[place] != awaited and time.perf_counter() < deadline:
+            pass
+        if time.perf_counter() < deadline:
+            self._passed_over = 1
+        else:  # the other side is slow, or the processors are busy: then looking only takes time from it
+            self._passed_over = self._pass_over = min(2 * self._passed_over, LONGEST)
+        return words[place] == awaited
 
     def _doze(self, limit: float) -> None:
         words, place, awaited = self._words, self._awaits, self._awaited
@@ -70,7 +78,8 @@ class Side:
             left = deadline - time.monotonic()
             if left <= 0.0:
                 raise TimeoutError
-            if self._poll.poll(1e3 * min(left, LOOK_AGAIN)) and not self._called() and words[place] != awaited:
+            called = self._poll.poll(1e3 * min(left, LOOK_AGAIN))
+            if called and not self._called() and words[place] != awaited:
                 raise GoneError
         words[self._sleep] = int(not ORDERED)
 

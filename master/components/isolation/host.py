@@ -111,7 +111,7 @@ class Host:
 
 
 def main() -> None:
-    """Serve the process that started this one: `... VARIABLES MEMORY CALLS TALK`, the last three are files."""
+    """Serve the process that started this one: `... VARIABLES MEMORY CALLS TALK`, three of them files."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_IGN)  # the master ends in order, and this process with it
     die_with_parent()

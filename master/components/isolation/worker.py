@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import weakref
+from contextlib import suppress
 from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
@@ -60,10 +61,8 @@ class Worker:
     def call(self, name: str, *arguments: Any, pushed: bool = False) -> None:
         """Have a method of the host called. Raises as `ask` does."""
         self._post(Ask.CALL, 0, pushed)
-        try:
+        with suppress(OSError):  # it is gone, and `_wait` says how
             self._connection.send((name, arguments))
-        except OSError:  # it is gone, and `_wait` says how
-            pass
         self._wait(self._call_timeout)
 
     def end(self) -> None:
@@ -106,9 +105,7 @@ class Worker:
 CORES = len(os.sched_getaffinity(0))
 
 
-def _start(
-    variables: int, memory: int, calls: socket.socket, talk: Connection
-) -> subprocess.Popen[bytes]:
+def _start(variables: int, memory: int, calls: socket.socket, talk: Connection) -> subprocess.Popen[bytes]:
     """Start the host with this process's search path, its output to where errors go."""
     handles = memory, calls.fileno(), talk.fileno()
     return subprocess.Popen(

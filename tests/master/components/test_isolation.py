@@ -73,9 +73,7 @@ def test_a_run_says_what_an_fmu_did(call: str, deed: str, make: Make, command: C
 
 
 @pytest.mark.parametrize(("call", "deed"), DEEDS)
-def test_a_check_says_what_an_fmu_did(
-    call: str, deed: str, make: Make, capfd: pytest.CaptureFixture[str]
-):
+def test_a_check_says_what_an_fmu_did(call: str, deed: str, make: Make, capfd: pytest.CaptureFixture[str]):
     assert main(["check", str(make(call, deed)), "--call-timeout", "1 s"]) == FAILED
     said = capfd.readouterr()
     lines = [*said.err.splitlines(), *(line for line in said.out.splitlines() if "problem: " in line)]
