@@ -72,6 +72,14 @@ def end(status: int) -> int:
     os._exit(status)
 
 
+def way_of(code: int) -> str:
+    """How a process ended, by its exit code, negative for a signal: what it did, or what was done to it."""
+    if code >= 0:
+        return f"ended with status {code}"
+    number = signal.Signals(-code)
+    return f"{'was ended by' if number in (*_PASSED_ON, signal.SIGKILL) else 'crashed with'} {number.name}"
+
+
 def _stay_behind(copy: int, report: int, what: str) -> NoReturn:
     """Wait for the copy, pass signals on to it, and end as it did."""
     while True:
@@ -85,7 +93,6 @@ def _stay_behind(copy: int, report: int, what: str) -> NoReturn:
     if said:
         os._exit(said[0])
     code = os.waitstatus_to_exitcode(how)
-    way = f"crashed with {signal.Signals(-code).name}" if code < 0 else f"ended with status {code}"
-    sys.stderr.write(f"touchdown: the process {way} before its work was done; {what}\n")
+    sys.stderr.write(f"touchdown: the process {way_of(code)} before its work was done; {what}\n")
     sys.stderr.flush()
     os._exit(128 - code if code < 0 else STOPPED)

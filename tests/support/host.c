@@ -1,8 +1,8 @@
 /* A bare FMI 2.0 host without Python: loads the library of one FMU and does what stdin says.
 
-   host LIBRARY GUID RESOURCES     stdin:  set REFERENCE VALUE | start | step TIME STEP | get REFERENCE | leave
+   host LIBRARY GUID RESOURCES     stdin:  set REFERENCE VALUE | start | step TIME STEP | get REFERENCE | renew | leave
 
-   Values go in and out as hexadecimal floating point, so that nothing is rounded. What the FMU logs goes
+   `renew` frees the instance and makes another one. Values go in and out as hexadecimal floating point, so that nothing is rounded. What the FMU logs goes
    to stderr. Exit status 1: the library cannot be loaded; 2: no instance; 3: a call was not answered OK. */
 
 #include <dlfcn.h>
@@ -79,6 +79,12 @@ int main(int count, char **arguments)
             status = setup(fmu, 0, 0.0, 0.0, 0, 0.0);
             status = status > 1 ? status : enter(fmu);
             status = status > 1 ? status : leave(fmu);
+        } else if (!strcmp(word, "renew")) {
+            terminate(fmu);
+            release(fmu);
+            fmu = instantiate("hosted", 1, arguments[2], arguments[3], &callbacks, 0, 1);
+            if (!fmu)
+                return 2;
         } else if (!strcmp(word, "leave")) {
             return 0; /* without freeing anything */
         } else {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import socket
 import subprocess
 import sys
@@ -14,6 +13,7 @@ from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.watched import way_of
 from touchdown.master.components.isolation.board import Ask, Board, Word, board_size
 from touchdown.master.components.isolation.crossing import SPIN, GoneError, Side
 
@@ -97,9 +97,7 @@ class Worker:
             return "closed what it talks to the master by"
         finally:
             self.end()
-        if status < 0:
-            return f"crashed with {signal.Signals(-status).name}"
-        return f"ended its process with status {status}"
+        return f"ended its process with status {status}" if status >= 0 else way_of(status)
 
 
 CORES = len(os.sched_getaffinity(0))
