@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +35,7 @@ class ForeignFmu(FmuComponent):
             with self._at_home():
                 super().__init__(name, path, cache, origin, told)
         except BaseException:
-            os.close(self._home)
+            self._leave_home()
             raise
 
     def set(self, values: Mapping[str, float]) -> None:
@@ -71,7 +71,7 @@ class ForeignFmu(FmuComponent):
             with self._at_home():
                 return super().close()
         finally:
-            os.close(self._home)
+            self._leave_home()
 
     def _refuse_what_is_no_number(self) -> None:
         wrong = [
@@ -90,4 +90,9 @@ class ForeignFmu(FmuComponent):
         try:
             yield
         finally:
-            os.fchdir(self._home)
+            with suppress(OSError):  # an FMU may close files that are not its own
+                os.fchdir(self._home)
+
+    def _leave_home(self) -> None:
+        with suppress(OSError):
+            os.close(self._home)

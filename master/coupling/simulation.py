@@ -103,6 +103,8 @@ def simulate(
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
         zero = system.value(scene.zero) if scene.zero else 0.0
+        if not math.isfinite(zero):
+            raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)

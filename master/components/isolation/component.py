@@ -152,7 +152,7 @@ class IsolatedFmu(ArchivedFmu):
             request(*arguments, pushed=pushed)
         except LostError as error:
             call = CALLS[self._worker.board.words[Word.AT]]
-            self._lost = f"{error} in {call} at t = {self._time:.9g} s"
+            self._lost = f"{error} in {call} at t = {self._time:.9g} s{error.remedy}"
             raise TouchdownError(self._sentence()) from None
         except KeyboardInterrupt:
             self._lost = "was interrupted"

@@ -16,6 +16,7 @@ from touchdown.master.components.isolation.board import Board, Word
 
 SPIN = 3e-4  # s to look before sleeping
 LONGEST = 512  # waits that are not begun by looking, after looking was in vain again and again
+CUT_OFF = 120  # exit status of a process that finds its side of the crossing closed
 LOOK_AGAIN = 0.05  # s; a wake-up call that crossed with falling asleep is lost
 ORDERED = platform.machine() in ("x86_64", "AMD64")  # other processors may show numbers before values
 

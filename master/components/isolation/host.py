@@ -18,7 +18,7 @@ from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import CALLS, FmuComponent
 from touchdown.master.components.foreign import ForeignFmu
 from touchdown.master.components.isolation.board import Ask, Board, Word
-from touchdown.master.components.isolation.crossing import GoneError, Side
+from touchdown.master.components.isolation.crossing import CUT_OFF, GoneError, Side
 
 SETTING, STEPPING, READING = (CALLS.index(name) for name in ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal"))
 FOREVER = 1e9  # s
@@ -117,9 +117,13 @@ def main() -> None:
     die_with_parent()
     variables, memory, calls, talk = map(int, sys.argv[1:])
     board = Board(memory, variables)
-    with Connection(talk) as connection, socket.socket(fileno=calls) as wake:
-        serve(board, Side(board, wake, master=False), connection)
-    os._exit(0)  # what an FMU's library does at the end of a process is nobody's concern here
+    status = 0
+    try:
+        with Connection(talk) as connection, socket.socket(fileno=calls) as wake:
+            serve(board, Side(board, wake, master=False), connection)
+    except (OSError, EOFError):
+        status = CUT_OFF
+    os._exit(status)  # what an FMU's library does at the end of a process is nobody's concern here
 
 
 def serve(board: Board, side: Side, connection: Connection) -> None:

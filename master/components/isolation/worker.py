@@ -15,13 +15,14 @@ from typing import Any
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.watched import way_of
 from touchdown.master.components.isolation.board import Ask, Board, Word, board_size
-from touchdown.master.components.isolation.crossing import SPIN, GoneError, Side
+from touchdown.master.components.isolation.crossing import CUT_OFF, SPIN, GoneError, Side
 
 HOST = "touchdown.master.components.isolation.host"
 _START = "import json, runpy, sys; sys.path[:] = json.loads(sys.argv.pop(1)); " + (
     f"runpy.run_module({HOST!r}, run_name='__main__', alter_sys=False)"
 )
 UP = 120.0  # s that it may take to come up
+CORES = len(os.sched_getaffinity(0))
 REAP = 5.0  # s that the end of a process which is gone may take
 
 _running: weakref.WeakSet[Worker] = weakref.WeakSet()
@@ -29,6 +30,14 @@ _running: weakref.WeakSet[Worker] = weakref.WeakSet()
 
 class LostError(Exception):
     """The process does not answer any more; the message says what became of it, after "its FMU"."""
+
+    remedy = ""
+
+
+class LateError(LostError):
+    """It did not answer in time."""
+
+    remedy = "; call_timeout says how long it may take"
 
 
 class Worker:
@@ -81,7 +90,7 @@ class Worker:
             self._side.wait(SPIN if CORES > 1 else 0.0, limit)
         except TimeoutError:
             self.end()
-            raise LostError(f"did not answer within {limit:g} s") from None
+            raise LateError(f"did not answer within {limit:g} s") from None
         except GoneError:
             raise LostError(self._how_it_ended()) from None
         except BaseException:  # what it answers later would be taken for an answer to something else
@@ -94,13 +103,12 @@ class Worker:
         try:
             status = self._process.wait(REAP)
         except subprocess.TimeoutExpired:
-            return "closed what it talks to the master by"
+            status = CUT_OFF
         finally:
             self.end()
+        if status == CUT_OFF:
+            return "closed files that are not its own"
         return f"ended its process with status {status}" if status >= 0 else way_of(status)
-
-
-CORES = len(os.sched_getaffinity(0))
 
 
 def _start(variables: int, memory: int, calls: socket.socket, talk: Connection) -> subprocess.Popen[bytes]:

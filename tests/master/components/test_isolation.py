@@ -152,6 +152,15 @@ def test_states_are_saved_and_restored_there(built: dict[str, Path]):
     assert ends[0] == ends[1]
 
 
+@pytest.mark.parametrize(
+    ("deed", "said"), [("close", "closed files that are not its own"), ("kill", "was ended by SIGKILL")]
+)
+def test_what_else_an_fmu_may_do(deed: str, said: str, make: Make):
+    component = IsolatedFmu("bearing", make("enter", deed), user_cache())
+    with pytest.raises(TouchdownError, match=f"its FMU {said} in fmi2EnterInitializationMode"):
+        component.enter(0.0)
+
+
 def test_a_lost_fmu_goes_on_saying_so(make: Make):
     component = IsolatedFmu("bearing", make("enter", "segv"), user_cache())
     for _ in range(2):
