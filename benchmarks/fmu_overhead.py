@@ -56,14 +56,15 @@ def isolated_times(scene: Scene) -> dict[str, float]:
 
 def _time_calls(component: object, call: str, spent: dict[str, float], name: str) -> None:
     original = getattr(component, call)
-    loaded = call != "step"  # a process of its own loads its machine code in the first step
+    first = call == "step"
 
     def timed(*arguments: float) -> None:
-        nonlocal loaded
+        nonlocal first
         began = clock.perf_counter()
         original(*arguments)
-        spent[name] += loaded * (clock.perf_counter() - began)
-        loaded = True
+        spent[name] += clock.perf_counter() - began
+        if first:  # up to here, a process of its own has loaded its machine code
+            spent[name], first = 0.0, False
 
     setattr(component, call, timed)
 
