@@ -13,6 +13,7 @@ from typing import NoReturn
 import argcomplete
 
 from touchdown.master import verbs
+from touchdown.master.common import watched
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.verbs.fault import report_fault, versions
 from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
@@ -26,8 +27,15 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status. What goes wrong is one line on stderr."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
     show_any_text()
+    if arguments is not None:
+        return _run(list(arguments))
+    watched.allow_watching()
+    return watched.end(_run(sys.argv[1:]))
+
+
+def _run(given: list[str]) -> int:
+    """The exit status, all that was printed delivered."""
     try:
         status = _executed(given)
     except SystemExit as end:  # argparse's, after help, version, or what it could not read

@@ -8,7 +8,6 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-from touchdown.fmus.build import EPOCH
 from touchdown.master.common.errors import TouchdownError
 
 LARGEST = 2 * 1024**3  # bytes, unpacked
@@ -42,6 +41,8 @@ def write_archive(path: Path, content: Mapping[str, bytes]) -> None:
 
     Fixed times and no compression. Raises TouchdownError where it cannot be written.
     """
+    from touchdown.fmus.build import EPOCH  # imports all models, which unpacking can do without
+
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

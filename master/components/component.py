@@ -162,8 +162,8 @@ class Component(ABC):
         """Free a saved state."""
 
     @abstractmethod
-    def close(self) -> None:
-        """Free what the component holds; nothing may be called after it."""
+    def close(self) -> str:
+        """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""
 
 
 def check_value(component: Component, variable: Variable, value: float) -> None:

@@ -121,8 +121,9 @@ class TwinComponent(Component):
         assert isinstance(state, bytes)
         self.instance.restore(state)
 
-    def close(self) -> None:
+    def close(self) -> str:
         """Nothing to free."""
+        return ""
 
     def _start(self) -> None:
         try:

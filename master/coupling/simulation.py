@@ -15,7 +15,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.components.component import Component
-from touchdown.master.components.library import load_component
+from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
@@ -51,6 +51,12 @@ class Outcome:
     reason: str = ""  # why, where it did not complete
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
+    def after(self, problem: str) -> Outcome:
+        """The outcome where that came to light after the run; "": nothing did."""
+        if not problem or self.ended in (Ended.INTERRUPTED, Ended.STOPPED):
+            return self
+        return replace(self, ended=Ended.STOPPED, reason=problem)
+
     def raise_if_interrupted(self) -> None:
         """Raise KeyboardInterrupt where Ctrl-C ended the run."""
         if self.ended is Ended.INTERRUPTED:
@@ -67,7 +73,8 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
     def load_one(name: str, fmu: str) -> Component:
-        return load_component(name, fmu, scene.folder, in_process)
+        stepping = Stepping(in_process, scene.components[name].isolate, scene.run.call_timeout)
+        return load_component(name, fmu, scene.folder, stepping)
 
     return assemble(scene, load_one)
 
@@ -98,6 +105,8 @@ def simulate(
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
         zero = system.value(scene.zero) if scene.zero else 0.0
+        if not math.isfinite(zero):
+            raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)

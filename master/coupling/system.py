@@ -36,10 +36,10 @@ class System:
         self.order = [*bearings, *(name for name in self.components if name not in bearings)]
         self._lay_out()
 
-    def close(self) -> None:
-        """Free every component."""
-        for component in self.components.values():
-            component.close()
+    def close(self) -> str:
+        """End and free every component; returns what went wrong first, or ""."""
+        problems = [component.close() for component in self.components.values()]
+        return next(filter(None, problems), "")
 
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE."""

@@ -21,7 +21,7 @@ from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS
-from touchdown.master.components.fmu import FmuComponent
+from touchdown.master.components.fmu import ArchivedFmu
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
@@ -89,7 +89,7 @@ def _fill(container: Any, system: System, sequential: bool) -> None:
     """
     for name in system.order if sequential else reversed(system.order):
         component = system.components[name]
-        assert isinstance(component, FmuComponent)
+        assert isinstance(component, ArchivedFmu)
         container.get_fmu(str(component.path.absolute()), f"{name}.fmu")
     linked: set[tuple[str, str]] = set()
     for c in system.connections:

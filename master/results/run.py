@@ -44,8 +44,9 @@ def run_scene(
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:
-                outcome = simulate(scene, system, folder / RECORDING, show)
+                outcome = simulate(scene, system, folder.absolute() / RECORDING, show)
             told = ending(system)
+            outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
             drawn = _write_results(Finished(scene, told, recording), summary, folder, csv, pictures)
@@ -68,7 +69,9 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
 
 
 def _warnings(outcome: Outcome) -> list[str]:
-    """What is to be said of a run beside its figures."""
+    """What is to be said of a run beside its figures; where it stopped, only why."""
+    if outcome.ended is Ended.STOPPED:
+        return []
     said = [f"not audited: {connection}" for connection in outcome.unaudited]
     if outcome.warning and outcome.ended is Ended.COMPLETED:
         said.append(outcome.warning)

@@ -11,6 +11,8 @@ from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
 from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
 
+CALL_TIMEOUT = 60.0  # s
+
 
 @dataclass(frozen=True)
 class RunSpec:
@@ -25,6 +27,7 @@ class RunSpec:
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
     warn_residual: float = 0.02  # ledger's residual over the turnover of a connection: say so
     stop_residual: float = 0.2  # the same: stop
+    call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take
     whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
 
 
@@ -72,5 +75,6 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "record_every": _steps_above_zero,
     "warn_residual": _above_zero("1"),
     "stop_residual": _above_zero("1"),
+    "call_timeout": _above_zero("s"),
     "whirl_halvings": _count,
 }

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale, plain
 from touchdown.master.scene.run_spec import RunSpec, with_changes
-from touchdown.master.scene.tables import whole
+from touchdown.master.scene.tables import switch, whole
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,7 @@ class ComponentSpec:
     """Variables of the contract, and what this FMU calls them."""
     inherited: Mapping[str, object] = field(default_factory=dict[str, object])
     """Settings of the component it was swapped for; those it has are applied before `set`."""
+    isolate: bool = False  # its FMU is stepped in a process of its own
 
 
 class Wire(NamedTuple):
@@ -68,9 +69,9 @@ class Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
 
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
-        catalogue, COMPONENT.every how many macro steps a component takes in one. Raises TouchdownError
-        where there is no such component, key or preset; a component's variables are looked up when a run
-        begins.
+        catalogue, COMPONENT.every how many macro steps a component takes in one, COMPONENT.isolate whether
+        its FMU is stepped in a process of its own. Raises TouchdownError where there is no such component,
+        key or preset; a component's variables are looked up when a run begins.
         """
         scene = self
         for name, value in settings.items():
@@ -88,6 +89,8 @@ class Scene:
             changed = replace(spec, preset=checked_preset(value, head))
         elif tail == "every":
             changed = replace(spec, every=whole(value, name))
+        elif tail == "isolate":
+            changed = replace(spec, isolate=switch(value, name))
         else:
             changed = replace(spec, set={**spec.set, tail: plain(value)})
         return replace(self, components={**self.components, head: changed})
@@ -104,7 +107,10 @@ class Scene:
         for name, fmu in fmus.items():
             before = scene._component(name)
             after = ComponentSpec(
-                _source(os.fspath(fmu)), every=before.every, inherited={**before.inherited, **before.set}
+                _source(os.fspath(fmu)),
+                every=before.every,
+                inherited={**before.inherited, **before.set},
+                isolate=before.isolate,
             )
             scene = replace(scene, components={**scene.components, name: after})
         return scene
