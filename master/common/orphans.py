@@ -14,10 +14,10 @@ ORPHANED = 1  # exit status that nobody is left to read
 
 
 def die_with_parent(parent: int) -> None:
-    """End this process as soon as process `parent`, which started it by multiprocessing, is gone.
+    """End this process as soon as process `parent`, which started it, is gone.
 
-    By the kernel where that can be asked for, else by a thread, which waits for what is running to give
-    Python a turn.
+    By the kernel where that can be asked for; else, for processes of multiprocessing, by a thread, which
+    waits for what is running to give Python a turn.
     """
     if sys.platform.startswith("linux"):
         ctypes.CDLL(None).prctl(SET_DEATH_SIGNAL, signal.SIGKILL, 0, 0, 0)

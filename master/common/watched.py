@@ -7,7 +7,6 @@ the shell started waits for it and passes its status on, which is 0 only where t
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
 import sys
@@ -16,6 +15,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from touchdown.master.common.errors import STOPPED
+from touchdown.master.common.orphans import die_with_parent
 
 _PASSED_ON = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 _BY_KERNEL = 0x80  # si_code: from the terminal, which reaches the copy, too
@@ -42,22 +42,16 @@ def watch(what: str) -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     read, write = os.pipe()
+    parent = os.getpid()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {*_PASSED_ON, signal.SIGCHLD})
     copy = os.fork()
     if copy:
         os.close(write)
         _stay_behind(copy, read, what)
     os.close(read)
-    die_with_parent()
+    die_with_parent(parent)
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
     _report = write
-
-
-def die_with_parent() -> None:
-    """Have the kernel end this process with the one that started it, whatever code runs here then."""
-    if sys.platform.startswith("linux"):
-        set_death_signal = 1
-        ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL, 0, 0, 0)
 
 
 def end(status: int) -> int:

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.watched import die_with_parent
+from touchdown.master.common.orphans import die_with_parent
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import CALLS, FmuComponent
 from touchdown.master.components.foreign import ForeignFmu
@@ -114,7 +114,7 @@ def main() -> None:
     """Serve the process that started this one: `... VARIABLES MEMORY CALLS TALK`, three of them files."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_IGN)  # the master ends in order, and this process with it
-    die_with_parent()
+    die_with_parent(os.getppid())
     variables, memory, calls, talk = map(int, sys.argv[1:])
     board = Board(memory, variables)
     status = 0
