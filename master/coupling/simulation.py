@@ -249,11 +249,11 @@ def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[O
     if path is None:
         yield []
         return
-    recorder = Recorder(path, scene, now.system.components, now.steps + 1)
+    recorder = Recorder(path, scene, now.system, now.steps + 1)
     try:
         recorder.append(-now.zero)
         yield [_Recording(recorder, scene.run.record_every)]
     finally:
-        problem = recorder.close()
+        problem = recorder.close(pack=now.ended in (None, Ended.AS_WANTED))
         if problem:
             now.fail(problem)

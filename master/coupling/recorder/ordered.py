@@ -1,0 +1,117 @@
+"""A file that is whole at every moment, for HDF5 to write to.
+
+HDF5 changes its file in many small writes, and between two of them it is broken. Here they are held, and
+reach the disk at `commit` in an order of which every beginning is a whole file: what is new lies where nothing
+leads to yet; then the heads of the datasets change, which say how long these are, one write each. A process
+that is killed at any moment leaves the rows of its last commit, and a disk that is full never fails HDF5.
+(Power that fails is not in this: nothing waits for the disk.)
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from contextlib import suppress
+from pathlib import Path
+
+SUPERBLOCK = 0  # its address: it says how much of the file counts
+HEAD = b"OHDR"  # begins the head of an object
+
+
+class OrderedFile:
+    """A new file at `path`, as h5py takes a file object. Raises OSError where there can be none."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.last: int | None = None  # address of the head that changes last of all
+        self.held = 0  # bytes
+        self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o666)
+        self._held: dict[int, bytes] = {}  # by address, in the order in which they came
+        self._at = 0
+        self._size = 0  # as HDF5 sees it
+        self._committed = 0  # on the disk
+
+    # -- as HDF5 sees it -------------------------------------------------------------------------------
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Go to an address."""
+        self._at = offset + (self._size if whence == io.SEEK_END else 0)
+        return self._at
+
+    def tell(self) -> int:
+        """The address."""
+        return self._at
+
+    def read(self, count: int) -> bytes:
+        """What is there, held or on the disk; zeros beyond."""
+        found = bytearray(os.pread(self._descriptor, count, self._at).ljust(count, b"\0"))
+        for address, data in self._held.items():
+            first, end = max(address, self._at), min(address + len(data), self._at + count)
+            if first < end:
+                found[first - self._at : end - self._at] = data[first - address : end - address]
+        return bytes(found)
+
+    def write(self, data: bytes) -> int:
+        """Hold it."""
+        self.held += len(data) - len(self._held.pop(self._at, b""))  # what comes again waits again
+        self._held[self._at] = bytes(data)
+        self._size = max(self._size, self._at + len(data))
+        return len(data)
+
+    def truncate(self, size: int) -> int:
+        """Hold the size."""
+        self._size = size
+        return size
+
+    def flush(self) -> None:
+        """HDF5 does not know what may be on the disk; `commit` does it."""
+
+    # -- the disk --------------------------------------------------------------------------------------
+
+    def commit(self) -> None:
+        """Bring to the disk what is held. Raises OSError where it cannot; the file is then as before."""
+        before, self._committed = self._committed, max(self._committed, self._size)
+        try:
+            if self._committed > before:
+                os.ftruncate(self._descriptor, self._committed)
+            for address, data in sorted(self._pieces(before), key=lambda piece: self._turn(before, *piece)):
+                self._put(address, data)
+        except OSError:
+            self._committed = before
+            with suppress(OSError):
+                os.ftruncate(self._descriptor, before)  # gives back the room, for the summary
+            raise
+        self._held.clear()
+        self.held = 0
+
+    def _pieces(self, end: int) -> list[tuple[int, bytes]]:
+        """What is held, cut at `end`."""
+        pieces: list[tuple[int, bytes]] = []
+        for address, data in self._held.items():
+            inside = min(max(end - address, 0), len(data))
+            if 0 < inside < len(data):
+                pieces += [(address, data[:inside]), (address + inside, data[inside:])]
+            else:
+                pieces.append((address, data))
+        return pieces
+
+    def _turn(self, end: int, address: int, data: bytes) -> int:
+        """When a piece goes to the disk, where the file had `end` bytes; those of one turn as they came."""
+        if address >= end:
+            return 0
+        if address == SUPERBLOCK:
+            return 1
+        if address == self.last:
+            return 4
+        return 3 if data.startswith(HEAD) else 2
+
+    def _put(self, address: int, data: bytes) -> None:
+        """Write all of it: a disk that runs full takes a part first."""
+        view = memoryview(data)
+        while view:
+            done = os.pwrite(self._descriptor, view, address)
+            view, address = view[done:], address + done
+
+    def close(self) -> None:
+        """Let go of the file; what is still held is lost."""
+        os.close(self._descriptor)

@@ -1,0 +1,168 @@
+"""Rows of a run, from its components into its file."""
+
+from __future__ import annotations
+
+import errno
+import os
+import time as clock
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from touchdown.fmus.version import VERSION
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.recorder.chosen import choose
+from touchdown.master.coupling.recorder.table import BLOCK, Column, Table
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.scene import Scene
+
+HELD = 2**22  # numbers held before they are written, at most
+LOSS = 1.0  # s of wall time that a killed run loses, at most
+SHARE = 0.05  # of the wall time that writing takes, at most: with very many columns more is lost instead
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+class Recorder:
+    """Records what a scene asks for of a system, `most` rows at the most, into a file at `path`.
+
+    The file takes the place of one that was there, and may be read at any time. Raises TouchdownError where
+    it cannot be written, or where the scene names what is not there.
+    """
+
+    def __init__(self, path: Path, scene: Scene, system: System, most: int) -> None:
+        self.path = path
+        self._there = path.resolve()  # a link stays, and leads to the new file
+        self._components = system.components
+        self._chosen = choose(scene.run, system)
+        self._heading = _heading(scene)
+        self._columns = [
+            Column(f"{name}/{v.name}", v.unit or "1", v.description)
+            for name, chosen in self._chosen.items()
+            for v in map(self._components[name].variable, chosen.recorded)
+        ]
+        self._readers = {
+            name: self._components[name].reader(chosen.recorded) for name, chosen in self._chosen.items()
+        }
+        self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
+        width = 1 + len(self._columns)
+        self._block = np.zeros((max(1, min(BLOCK, HELD // width)), width))
+        self._filled = 0
+        self._appended = self._written = -np.inf  # s of wall time: the last row, the last time on the disk
+        self._patience = LOSS
+        self._failed = False
+        try:
+            self._table = self._new(most)
+        except OSError as error:
+            raise TouchdownError(self._problem(error)) from None
+
+    def _new(self, most: int) -> Table:
+        """The file, whole and without rows, in its place."""
+        part = self._part
+        table = Table(part, self._heading, self._columns, most)
+        try:
+            for name, chosen in self._chosen.items():
+                if chosen.at_end:
+                    table.keep(name, {})  # the groups, which a file could not get later and be whole
+            table.commit()
+            os.replace(part, self._there)
+        except BaseException:
+            table.close()
+            part.unlink(missing_ok=True)
+            raise
+        return table
+
+    @property
+    def _part(self) -> Path:
+        """Where a file is made before it takes its place."""
+        return self._there.with_name(f".{self._there.name}.part")
+
+    def append(self, time: float) -> None:
+        """Record all variables at `time` (s). Raises TouchdownError where the file cannot grow."""
+        row = self._block[self._filled]
+        row[0] = time
+        column = 1
+        for name, fetch in self._readers.items():
+            values = self._resting[name] if name in self._resting else fetch()
+            row[column : column + len(values)] = values
+            column += len(values)
+        self._filled += 1
+        now = clock.monotonic()
+        next_one = now + (now - self._appended)  # when it is to be expected
+        self._appended = now
+        if self._filled == len(self._block) or next_one - self._written > self._patience:
+            try:
+                self._write()
+            except OSError as error:
+                raise TouchdownError(self._problem(error)) from None
+
+    def rest(self, names: Iterable[str]) -> None:
+        """The values of these components change no more."""
+        for name in names:
+            self._resting[name] = np.array(self._readers[name]())
+
+    def _write(self) -> None:
+        """Bring the rows held to the disk. Where that raises OSError they are lost, and nothing follows."""
+        count, self._filled = self._filled, 0
+        began = clock.monotonic()
+        try:
+            self._table.append(self._block[:count])
+        except OSError:
+            self._failed = True
+            raise
+        self._written = clock.monotonic()
+        self._patience = max(LOSS, (self._written - began) / SHARE)
+
+    def _problem(self, error: OSError) -> str:
+        remedy = "make room for it" if error.errno in NO_ROOM else "choose another folder with -o"
+        return f"cannot write {self.path}: {error.strerror}; {remedy}"
+
+    def _keep_end(self) -> None:
+        for name, chosen in self._chosen.items():
+            if chosen.at_end:
+                with suppress(TouchdownError):  # one that failed may answer no more
+                    values = map(float, self._components[name].read(chosen.at_end))
+                    self._table.keep(name, dict(zip(chosen.at_end, values, strict=True)))
+
+    def close(self, pack: bool) -> str:
+        """Write what is left, compressed where asked to `pack`; returns what went wrong, or ""."""
+        try:
+            if not self._failed:
+                if self._filled:
+                    self._write()
+                self._keep_end()
+                self._table.commit()
+                if pack:
+                    self._pack()
+        except OSError as error:
+            return self._problem(error)
+        finally:
+            self._table.close()
+        return ""
+
+    def _pack(self) -> None:
+        """Put a compressed copy in the file's place, where there is room for it."""
+        part = self._part
+        try:
+            packed = Table(part, self._heading, self._columns, self._table.rows, packed=True)
+            try:
+                packed.copy(self._table)
+            finally:
+                packed.close()
+            os.replace(part, self._there)
+        except OSError:
+            pass
+        finally:
+            part.unlink(missing_ok=True)
+
+
+def _heading(scene: Scene) -> dict[str, object]:
+    """What was run: attributes of the root."""
+    return {
+        "title": scene.title,
+        "scene": scene.name,
+        "version": VERSION,
+        "scheme": scene.run.scheme.name,
+        "macro_step_s": scene.run.macro_step,
+    }
