@@ -14,6 +14,7 @@ import argcomplete
 from touchdown.fmus.version import VERSION
 from touchdown.master import verbs
 from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.interrupts import ended_as_by_ctrl_c
 from touchdown.master.verbs.screen import broken_off, complain
 
 
@@ -24,7 +25,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
     options = command.parse_args(joined(given))
     try:
-        return options.run(options)
+        with ended_as_by_ctrl_c():
+            return options.run(options)
     except TouchdownError as error:
         complain(str(error))
         return FAILED

@@ -37,7 +37,7 @@ MODE_LOAD = tuple(_declared(ports.ModeLoad))
 WORK, JUMP = _declared(ports.Account)  # what each side states of the energy that crossed
 UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.SeatLoad)
 
-REPORTS = (  # groups of what bearings and bodies report of themselves, for figures and pictures
+REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
     *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage", "speed"),
     *("energy", "stress"),
 )
@@ -50,6 +50,6 @@ NEEDED = POSITION + FORCE  # no port works without them
 
 
 def reported(variable: str) -> bool:
-    """Whether a component's variable is an account at a port, or of those that figures and pictures read."""
-    group, _, last = variable.partition(".")
+    """Whether a variable is an account at a port, or of those that figures and pictures read."""
+    group, last = variable.partition(".")[0], variable.rpartition(".")[2]
     return group in REPORTS or variable == SUPPLIED or last in (WORK, JUMP)

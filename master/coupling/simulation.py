@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,7 +12,7 @@ from typing import Protocol
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.common.interrupts import Interrupts, interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import load_component
 from touchdown.master.coupling.assembly import assemble
@@ -50,7 +49,7 @@ class Outcome:
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
     def raise_if_interrupted(self) -> None:
-        """Raise KeyboardInterrupt where Ctrl-C ended the run."""
+        """Raise KeyboardInterrupt where Ctrl-C, or a signal as it is one, ended the run."""
         if self.ended is Ended.INTERRUPTED:
             raise KeyboardInterrupt
 
@@ -186,7 +185,7 @@ class _Steps:
 
 
 def _loop(
-    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
+    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: Interrupts
 ) -> tuple[float, float]:
     """Take macro steps until the end, or until the run is to end.
 
@@ -199,7 +198,7 @@ def _loop(
     try:
         for number in range(now.steps):
             if interrupted.is_set():
-                now.stop(Ended.INTERRUPTED.value, Ended.INTERRUPTED)
+                now.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
             steps.take(number)
             now.move(number + 1, steps.length)

@@ -83,6 +83,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     figures: dict[str, object] = {
         "scene": scene.name,
         "completed": outcome.ended is Ended.COMPLETED,
+        "ended": outcome.ended.value,
     }
     if outcome.ended is not Ended.COMPLETED:
         figures["stopped_because"] = outcome.reason
@@ -142,7 +143,8 @@ def _orbit_figures(
     loaded = None
     if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
         last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
-        loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
+        if last.any():  # a full disk ends a recording before its run
+            loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
     figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
     return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
 

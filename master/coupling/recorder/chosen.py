@@ -32,9 +32,7 @@ def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
     connected = {c.source_name for c in system.connections}
     found: dict[str, Chosen] = {}
     for name, component in components.items():
-        given = [
-            v for v in component.variables.values() if v.causality in REPORTED and v.kind in NUMBERS
-        ]
+        given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in NUMBERS]
         chosen = [v.name for v in given if _chosen(full(name, v.name), v, run, connected)]
         known = set(chosen)
         found[name] = Chosen(chosen, [v.name for v in given if v.name not in known])

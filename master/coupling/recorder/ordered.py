@@ -1,9 +1,9 @@
 """A file that is whole at every moment, for HDF5 to write to.
 
 HDF5 changes its file in many small writes, and between two of them it is broken. Here they are held, and
-reach the disk at `commit` in an order of which every beginning is a whole file: what is new lies where nothing
-leads to yet; then the heads of the datasets change, which say how long these are, one write each. A process
-that is killed at any moment leaves the rows of its last commit, and a disk that is full never fails HDF5.
+reach the disk at `commit`, in an order of which every beginning is a whole file: what is new lies where
+nothing leads to yet; then the heads of the datasets change, one write each, which say how long these are. A
+process that is killed at any moment leaves the rows of its last commit, and a full disk never fails HDF5.
 (Power that fails is not in this: nothing waits for the disk.)
 """
 
@@ -19,17 +19,18 @@ HEAD = b"OHDR"  # begins the head of an object
 
 
 class OrderedFile:
-    """A new file at `path`, as h5py takes a file object. Raises OSError where there can be none."""
+    """The file at `path`, as h5py takes a file object. Raises OSError where there can be none."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, new: bool) -> None:
         self.path = path
         self.last: int | None = None  # address of the head that changes last of all
         self.held = 0  # bytes
-        self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o666)
+        flags = os.O_RDWR | os.O_CLOEXEC | (os.O_CREAT | os.O_TRUNC if new else 0)
+        self._descriptor = os.open(path, flags, 0o666)
         self._held: dict[int, bytes] = {}  # by address, in the order in which they came
         self._at = 0
-        self._size = 0  # as HDF5 sees it
-        self._committed = 0  # on the disk
+        self._size = os.fstat(self._descriptor).st_size  # as HDF5 sees it
+        self._committed = self._size  # on the disk
 
     # -- as HDF5 sees it -------------------------------------------------------------------------------
 

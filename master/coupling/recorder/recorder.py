@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import os
 import time as clock
 from collections.abc import Iterable
 from contextlib import suppress
@@ -13,6 +12,7 @@ import numpy as np
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import replacing
 from touchdown.master.coupling.recorder.chosen import choose
 from touchdown.master.coupling.recorder.table import BLOCK, Column, Table
 from touchdown.master.coupling.system import System
@@ -33,7 +33,6 @@ class Recorder:
 
     def __init__(self, path: Path, scene: Scene, system: System, most: int) -> None:
         self.path = path
-        self._there = path.resolve()  # a link stays, and leads to the new file
         self._components = system.components
         self._chosen = choose(scene.run, system)
         self._heading = _heading(scene)
@@ -59,24 +58,17 @@ class Recorder:
 
     def _new(self, most: int) -> Table:
         """The file, whole and without rows, in its place."""
-        part = self._part
-        table = Table(part, self._heading, self._columns, most)
-        try:
-            for name, chosen in self._chosen.items():
-                if chosen.at_end:
-                    table.keep(name, {})  # the groups, which a file could not get later and be whole
-            table.commit()
-            os.replace(part, self._there)
-        except BaseException:
-            table.close()
-            part.unlink(missing_ok=True)
-            raise
+        with replacing(self.path) as part:
+            table = Table.created(part, self._heading, self._columns, most)
+            try:
+                for name, chosen in self._chosen.items():
+                    if chosen.at_end:
+                        table.keep(name, {})  # the groups, which a file could not get later and be whole
+                table.commit()
+            except BaseException:
+                table.close()
+                raise
         return table
-
-    @property
-    def _part(self) -> Path:
-        """Where a file is made before it takes its place."""
-        return self._there.with_name(f".{self._there.name}.part")
 
     def append(self, time: float) -> None:
         """Record all variables at `time` (s). Raises TouchdownError where the file cannot grow."""
@@ -103,16 +95,30 @@ class Recorder:
             self._resting[name] = np.array(self._readers[name]())
 
     def _write(self) -> None:
-        """Bring the rows held to the disk. Where that raises OSError they are lost, and nothing follows."""
+        """Bring the rows held to the disk. Where that raises OSError, as many as there is room for."""
         count, self._filled = self._filled, 0
         began = clock.monotonic()
         try:
             self._table.append(self._block[:count])
         except OSError:
             self._failed = True
+            self._table.close()
+            self._squeeze(self._block[:count])
             raise
         self._written = clock.monotonic()
         self._patience = max(LOSS, (self._written - began) / SHARE)
+
+    def _squeeze(self, rows: np.ndarray) -> None:
+        """Bring as many of `rows` to the disk as there is room for."""
+        count = len(rows)
+        while count := count // 2:
+            with suppress(OSError):
+                table = Table.reopened(self.path, self._columns)
+                try:
+                    table.append(rows[:count])
+                    rows = rows[count:]
+                finally:
+                    table.close()
 
     def _problem(self, error: OSError) -> str:
         remedy = "make room for it" if error.errno in NO_ROOM else "choose another folder with -o"
@@ -127,34 +133,30 @@ class Recorder:
 
     def close(self, pack: bool) -> str:
         """Write what is left, compressed where asked to `pack`; returns what went wrong, or ""."""
+        if self._failed:
+            return ""
         try:
-            if not self._failed:
-                if self._filled:
-                    self._write()
+            if self._filled:
+                self._write()
+            try:
                 self._keep_end()
                 self._table.commit()
                 if pack:
                     self._pack()
+            finally:
+                self._table.close()
         except OSError as error:
             return self._problem(error)
-        finally:
-            self._table.close()
         return ""
 
     def _pack(self) -> None:
         """Put a compressed copy in the file's place, where there is room for it."""
-        part = self._part
-        try:
-            packed = Table(part, self._heading, self._columns, self._table.rows, packed=True)
+        with suppress(OSError), replacing(self.path) as part:
+            packed = Table.created(part, self._heading, self._columns, self._table.rows, packed=True)
             try:
                 packed.copy(self._table)
             finally:
                 packed.close()
-            os.replace(part, self._there)
-        except OSError:
-            pass
-        finally:
-            part.unlink(missing_ok=True)
 
 
 def _heading(scene: Scene) -> dict[str, object]:

@@ -31,44 +31,46 @@ class Column(NamedTuple):
 
 
 class Table:
-    """Rows of `columns` over time, in a new file at `path`.
+    """Rows of columns over time in a file. What raises OSError leaves it as it was committed last."""
 
-    `most` rows at the most can be in it; they lie as they are, for speed, or `packed`: compressed. What
-    raises OSError leaves the file as it was committed last, and only `close` can follow.
-    """
+    def __init__(self, disk: OrderedFile, file: h5py.File, datasets: Sequence[h5py.Dataset]) -> None:
+        self._disk, self._file, self._datasets = disk, file, datasets  # of time first
+        disk.last = h5py.h5o.get_info(datasets[0].id).addr
+        self.rows = len(datasets[0])
+        self._broken = False  # nothing but `close` can follow
 
-    def __init__(
-        self,
+    @classmethod
+    def created(
+        cls,
         path: Path,
         heading: Mapping[str, object],
         columns: Sequence[Column],
         most: int,
         packed: bool = False,
-    ) -> None:
-        self.rows = 0
-        self._most, self._packed = most, packed
-        self._disk = OrderedFile(path)
-        self._broken = False
-        self._file: Any = h5py.File(self._disk, "w", libver=VERSION, rdcc_nbytes=0)  # nothing is cached
-        self._file.attrs.update(heading)
-        # With a bound, h5netcdf takes the dimension's size from it alone; without, it asks every column for
-        # its length, again for every column.
-        time = self._dataset(Column(TIME, "s", "time from the scene's zero"), max(most, BLOCK))
-        time.make_scale(TIME)
-        self._datasets = [time, *(self._dataset(column, None) for column in columns)]
-        for dataset in self._datasets[1:]:
-            dataset.dims[0].attach_scale(time)
-        self._disk.last = h5py.h5o.get_info(time.id).addr
-
-    def _dataset(self, column: Column, bound: int | None) -> h5py.Dataset:
-        if self._packed:
+    ) -> Table:
+        """A new one for up to `most` rows, which lie as they are, for speed, or `packed`: compressed."""
+        if packed:
             layout: dict[str, Any] = {"chunks": (BLOCK,), "compression": "gzip", "compression_opts": 1}
         else:
-            layout = {"chunks": (max(CHUNK, -(-self._most // CHUNKS)),), "fill_time": "never"}
-        dataset = self._file.create_dataset(column.name, (0,), maxshape=(bound,), dtype="f8", **layout)
-        dataset.attrs["units"] = column.unit
-        dataset.attrs["long_name"] = column.meaning
-        return dataset
+            layout = {"chunks": (max(CHUNK, -(-most // CHUNKS)),), "fill_time": "never"}
+        disk = OrderedFile(path, new=True)
+        file = h5py.File(disk, "w", libver=VERSION, rdcc_nbytes=0)  # nothing is cached
+        file.attrs.update(heading)
+        # With a bound, h5netcdf takes the dimension's size from it alone; without, it asks every column for
+        # its length, again for every column.
+        time = _dataset(file, Column(TIME, "s", "time from the scene's zero"), max(most, BLOCK), layout)
+        time.make_scale(TIME)
+        datasets = [time, *(_dataset(file, column, None, layout) for column in columns)]
+        for dataset in datasets[1:]:
+            dataset.dims[0].attach_scale(time)
+        return cls(disk, file, datasets)
+
+    @classmethod
+    def reopened(cls, path: Path, columns: Sequence[Column]) -> Table:
+        """The one at `path`, as it was committed last."""
+        disk = OrderedFile(path, new=False)
+        file = h5py.File(disk, "r+", libver=VERSION, rdcc_nbytes=0)
+        return cls(disk, file, [file[name] for name in (TIME, *(column.name for column in columns))])
 
     def append(self, rows: np.ndarray) -> None:
         """Add rows, each of a time (s) and a value per column, and commit them."""
@@ -116,3 +118,10 @@ class Table:
                 self._disk.commit()
         finally:
             self._disk.close()
+
+
+def _dataset(file: h5py.File, column: Column, bound: int | None, layout: Mapping[str, Any]) -> h5py.Dataset:
+    dataset = file.create_dataset(column.name, (0,), maxshape=(bound,), dtype="f8", **layout)
+    dataset.attrs["units"] = column.unit
+    dataset.attrs["long_name"] = column.meaning
+    return dataset
