@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
 SUPERBLOCK = 0  # its address: it says how much of the file counts
 HEAD = b"OHDR"  # begins the head of an object
+PAGE = 4096
 
 
 class OrderedFile:
@@ -27,7 +29,8 @@ class OrderedFile:
         self.held = 0  # bytes
         flags = os.O_RDWR | os.O_CLOEXEC | (os.O_CREAT | os.O_TRUNC if new else 0)
         self._descriptor = os.open(path, flags, 0o666)
-        self._held: dict[int, bytes] = {}  # by address, in the order in which they came
+        self._held: dict[int, bytearray] = {}  # by address, in the order in which they came
+        self._on_page: dict[int, set[int]] = {}  # addresses of what is held, by the pages it lies on
         self._at = 0
         self._size = os.fstat(self._descriptor).st_size  # as HDF5 sees it
         self._committed = self._size  # on the disk
@@ -46,18 +49,31 @@ class OrderedFile:
     def read(self, count: int) -> bytes:
         """What is there, held or on the disk; zeros beyond."""
         found = bytearray(os.pread(self._descriptor, count, self._at).ljust(count, b"\0"))
-        for address, data in self._held.items():
-            first, end = max(address, self._at), min(address + len(data), self._at + count)
-            if first < end:
-                found[first - self._at : end - self._at] = data[first - address : end - address]
+        for address, first, end in self._shared(count):
+            part = self._held[address][first - address : end - address]
+            found[first - self._at : end - self._at] = part
         return bytes(found)
 
     def write(self, data: bytes) -> int:
-        """Hold it."""
-        self.held += len(data) - len(self._held.pop(self._at, b""))  # what comes again waits again
-        self._held[self._at] = bytes(data)
+        """Hold it; what was held of the same place is this from now on, whichever goes to the disk first."""
+        self.held += len(data) - len(self._held.pop(self._at, b""))
+        for address, first, end in self._shared(len(data)):
+            part = data[first - self._at : end - self._at]
+            self._held[address][first - address : end - address] = part
+        self._held[self._at] = bytearray(data)
+        for page in _pages(self._at, len(data)):
+            self._on_page.setdefault(page, set()).add(self._at)
         self._size = max(self._size, self._at + len(data))
         return len(data)
+
+    def _shared(self, count: int) -> Iterator[tuple[int, int, int]]:
+        """Addresses of what is held of the `count` bytes from here; where what they share begins and ends."""
+        near = [self._on_page.get(page, ()) for page in _pages(self._at, count)]
+        for address in set[int]().union(*near) & self._held.keys():
+            first = max(address, self._at)
+            end = min(address + len(self._held[address]), self._at + count)
+            if first < end:
+                yield address, first, end
 
     def truncate(self, size: int) -> int:
         """Hold the size."""
@@ -83,11 +99,12 @@ class OrderedFile:
                 os.ftruncate(self._descriptor, before)  # gives back the room, for the summary
             raise
         self._held.clear()
+        self._on_page.clear()
         self.held = 0
 
-    def _pieces(self, end: int) -> list[tuple[int, bytes]]:
+    def _pieces(self, end: int) -> list[tuple[int, bytearray]]:
         """What is held, cut at `end`."""
-        pieces: list[tuple[int, bytes]] = []
+        pieces: list[tuple[int, bytearray]] = []
         for address, data in self._held.items():
             inside = min(max(end - address, 0), len(data))
             if 0 < inside < len(data):
@@ -96,7 +113,7 @@ class OrderedFile:
                 pieces.append((address, data))
         return pieces
 
-    def _turn(self, end: int, address: int, data: bytes) -> int:
+    def _turn(self, end: int, address: int, data: bytearray) -> int:
         """When a piece goes to the disk, where the file had `end` bytes; those of one turn as they came."""
         if address >= end:
             return 0
@@ -106,7 +123,7 @@ class OrderedFile:
             return 4
         return 3 if data.startswith(HEAD) else 2
 
-    def _put(self, address: int, data: bytes) -> None:
+    def _put(self, address: int, data: bytearray) -> None:
         """Write all of it: a disk that runs full takes a part first."""
         view = memoryview(data)
         while view:
@@ -116,3 +133,8 @@ class OrderedFile:
     def close(self) -> None:
         """Let go of the file; what is still held is lost."""
         os.close(self._descriptor)
+
+
+def _pages(address: int, count: int) -> range:
+    """Numbers of the pages that `count` bytes lie on."""
+    return range(address // PAGE, (address + count - 1) // PAGE + 1)
