@@ -9,6 +9,7 @@ class Dataset:
     attrs: Any
     dims: Any
     id: Any
+    ref: Any
     shape: tuple[int, ...]
     name: str
 
@@ -55,6 +56,8 @@ class File(Group):
         mode: str = ...,
         libver: str | tuple[str, str] = ...,
         rdcc_nbytes: int = ...,
+        alignment_threshold: int = ...,
+        alignment_interval: int = ...,
     ) -> None: ...
     def flush(self) -> None: ...
     def close(self) -> None: ...

@@ -13,10 +13,12 @@ import io
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import pairwise
 from pathlib import Path
 
 SUPERBLOCK = 0  # its address: it says how much of the file counts
 HEAD = b"OHDR"  # begins the head of an object
+INDEX = b"TREE"  # begins an index of chunks
 PAGE = 4096
 
 
@@ -55,7 +57,7 @@ class OrderedFile:
         return bytes(found)
 
     def write(self, data: bytes) -> int:
-        """Hold it; what was held of the same place is this from now on, whichever goes to the disk first."""
+        """Hold it; what was held of the same place is this now, whichever goes to the disk first."""
         self.held += len(data) - len(self._held.pop(self._at, b""))
         for address, first, end in self._shared(len(data)):
             part = data[first - self._at : end - self._at]
@@ -67,7 +69,7 @@ class OrderedFile:
         return len(data)
 
     def _shared(self, count: int) -> Iterator[tuple[int, int, int]]:
-        """Addresses of what is held of the `count` bytes from here; where what they share begins and ends."""
+        """What is held of the `count` bytes from here: addresses, each with where that begins and ends."""
         near = [self._on_page.get(page, ()) for page in _pages(self._at, count)]
         for address in set[int]().union(*near) & self._held.keys():
             first = max(address, self._at)
@@ -103,14 +105,17 @@ class OrderedFile:
         self.held = 0
 
     def _pieces(self, end: int) -> list[tuple[int, bytearray]]:
-        """What is held, cut at `end`."""
+        """What is held, cut at `end`, and an index within that by pages."""
         pieces: list[tuple[int, bytearray]] = []
         for address, data in self._held.items():
-            inside = min(max(end - address, 0), len(data))
-            if 0 < inside < len(data):
-                pieces += [(address, data[:inside]), (address + inside, data[inside:])]
-            else:
-                pieces.append((address, data))
+            cuts = {0, len(data)}
+            if address < end < address + len(data):
+                cuts.add(end - address)
+            if address < end and data.startswith(INDEX):
+                cuts.update(page * PAGE - address for page in _pages(address, len(data))[1:])
+            ordered = sorted(cuts)
+            parts = [(address + a, data[a:b]) for a, b in pairwise(ordered)]
+            pieces += reversed(parts)  # of an index, how many entries it has comes first: after them
         return pieces
 
     def _turn(self, end: int, address: int, data: bytearray) -> int:

@@ -14,7 +14,7 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import replacing
 from touchdown.master.coupling.recorder.chosen import choose
-from touchdown.master.coupling.recorder.table import BLOCK, Column, Table
+from touchdown.master.coupling.recorder.table import BLOCK, Column, Contents, Table
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
@@ -35,17 +35,18 @@ class Recorder:
         self.path = path
         self._components = system.components
         self._chosen = choose(scene.run, system)
-        self._heading = _heading(scene)
-        self._columns = [
+        columns = [
             Column(f"{name}/{v.name}", v.unit or "1", v.description)
             for name, chosen in self._chosen.items()
             for v in map(self._components[name].variable, chosen.recorded)
         ]
+        keeping = [name for name, chosen in self._chosen.items() if chosen.at_end]
+        self._contents = Contents(_heading(scene), columns, keeping)
         self._readers = {
             name: self._components[name].reader(chosen.recorded) for name, chosen in self._chosen.items()
         }
         self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
-        width = 1 + len(self._columns)
+        width = 1 + len(columns)
         self._block = np.zeros((max(1, min(BLOCK, HELD // width)), width))
         self._filled = 0
         self._appended = self._written = -np.inf  # s of wall time: the last row, the last time on the disk
@@ -59,11 +60,8 @@ class Recorder:
     def _new(self, most: int) -> Table:
         """The file, whole and without rows, in its place."""
         with replacing(self.path) as part:
-            table = Table.created(part, self._heading, self._columns, most)
+            table = Table.created(part, self._contents, most)
             try:
-                for name, chosen in self._chosen.items():
-                    if chosen.at_end:
-                        table.keep(name, {})  # the groups, which a file could not get later and be whole
                 table.commit()
             except BaseException:
                 table.close()
@@ -113,7 +111,7 @@ class Recorder:
         count = len(rows)
         while count := count // 2:
             with suppress(OSError):
-                table = Table.reopened(self.path, self._columns)
+                table = Table.reopened(self.path, self._contents)
                 try:
                     table.append(rows[:count])
                     rows = rows[count:]
@@ -125,11 +123,11 @@ class Recorder:
         return f"cannot write {self.path}: {error.strerror}; {remedy}"
 
     def _keep_end(self) -> None:
-        for name, chosen in self._chosen.items():
-            if chosen.at_end:
-                with suppress(TouchdownError):  # one that failed may answer no more
-                    values = map(float, self._components[name].read(chosen.at_end))
-                    self._table.keep(name, dict(zip(chosen.at_end, values, strict=True)))
+        for name in self._contents.keeping:
+            kept = self._chosen[name].at_end
+            with suppress(TouchdownError):  # one that failed may answer no more
+                values = map(float, self._components[name].read(kept))
+                self._table.keep(name, dict(zip(kept, values, strict=True)))
 
     def close(self, pack: bool) -> str:
         """Write what is left, compressed where asked to `pack`; returns what went wrong, or ""."""
@@ -152,7 +150,7 @@ class Recorder:
     def _pack(self) -> None:
         """Put a compressed copy in the file's place, where there is room for it."""
         with suppress(OSError), replacing(self.path) as part:
-            packed = Table.created(part, self._heading, self._columns, self._table.rows, packed=True)
+            packed = Table.created(part, self._contents, self._table.rows, packed=True)
             try:
                 packed.copy(self._table)
             finally:

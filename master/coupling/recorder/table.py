@@ -22,12 +22,25 @@ CHUNKS = 64  # of a column at most: HDF5's index of them is then one node, which
 VERSION = ("v108", "v108")
 
 
+# Bytes. A write within a page is there or not, one over two pages may be there by half when a process is
+# killed: heads of objects lie within a page each, aligned, and so small that they fit.
+ALIGNED = {"alignment_threshold": 128, "alignment_interval": 512}
+
+
 class Column(NamedTuple):
     """A variable that is recorded."""
 
     name: str  # COMPONENT/VARIABLE
     unit: str
     meaning: str
+
+
+class Contents(NamedTuple):
+    """What a table is of."""
+
+    heading: Mapping[str, object]  # attributes of the root
+    columns: Sequence[Column]
+    keeping: Sequence[str]  # components of which something is kept of the end
 
 
 class Table:
@@ -40,37 +53,34 @@ class Table:
         self._broken = False  # nothing but `close` can follow
 
     @classmethod
-    def created(
-        cls,
-        path: Path,
-        heading: Mapping[str, object],
-        columns: Sequence[Column],
-        most: int,
-        packed: bool = False,
-    ) -> Table:
+    def created(cls, path: Path, contents: Contents, most: int, packed: bool = False) -> Table:
         """A new one for up to `most` rows, which lie as they are, for speed, or `packed`: compressed."""
         if packed:
             layout: dict[str, Any] = {"chunks": (BLOCK,), "compression": "gzip", "compression_opts": 1}
         else:
             layout = {"chunks": (max(CHUNK, -(-most // CHUNKS)),), "fill_time": "never"}
         disk = OrderedFile(path, new=True)
-        file = h5py.File(disk, "w", libver=VERSION, rdcc_nbytes=0)  # nothing is cached
-        file.attrs.update(heading)
+        file = _file(disk, "w")
+        file.attrs.update(contents.heading)
+        columns = [Column(TIME, "s", "time from the scene's zero"), *contents.columns]
         # With a bound, h5netcdf takes the dimension's size from it alone; without, it asks every column for
         # its length, again for every column.
-        time = _dataset(file, Column(TIME, "s", "time from the scene's zero"), max(most, BLOCK), layout)
-        time.make_scale(TIME)
-        datasets = [time, *(_dataset(file, column, None, layout) for column in columns)]
-        for dataset in datasets[1:]:
-            dataset.dims[0].attach_scale(time)
+        bounds = [max(most, BLOCK), *(None for _ in contents.columns)]
+        datasets = [
+            file.create_dataset(column.name, (0,), maxshape=(bound,), dtype="f8", **layout)
+            for column, bound in zip(columns, bounds, strict=True)
+        ]
+        for component in contents.keeping:  # groups, which the file could not get later and be whole
+            file.require_group(f"{END}/{component}")
+        _describe(datasets, columns)  # after all heads, which stay small where they cannot grow
         return cls(disk, file, datasets)
 
     @classmethod
-    def reopened(cls, path: Path, columns: Sequence[Column]) -> Table:
+    def reopened(cls, path: Path, contents: Contents) -> Table:
         """The one at `path`, as it was committed last."""
         disk = OrderedFile(path, new=False)
-        file = h5py.File(disk, "r+", libver=VERSION, rdcc_nbytes=0)
-        return cls(disk, file, [file[name] for name in (TIME, *(column.name for column in columns))])
+        file = _file(disk, "r+")
+        return cls(disk, file, [file[TIME], *(file[column.name] for column in contents.columns)])
 
     def append(self, rows: np.ndarray) -> None:
         """Add rows, each of a time (s) and a value per column, and commit them."""
@@ -107,8 +117,8 @@ class Table:
                 mine[begin:end] = others[begin:end]
                 if self._disk.held > MEMORY:
                     self.commit()
-        if END in other._file:
-            other._file.copy(END, self._file)
+        for component in other._file.get(END, ()):
+            self.keep(component, other._file[END][component].attrs)
 
     def close(self) -> None:
         """Commit what was added, unless something failed, and close the file."""
@@ -120,8 +130,25 @@ class Table:
             self._disk.close()
 
 
-def _dataset(file: h5py.File, column: Column, bound: int | None, layout: Mapping[str, Any]) -> h5py.Dataset:
-    dataset = file.create_dataset(column.name, (0,), maxshape=(bound,), dtype="f8", **layout)
-    dataset.attrs["units"] = column.unit
-    dataset.attrs["long_name"] = column.meaning
-    return dataset
+def _file(disk: OrderedFile, mode: str) -> h5py.File:
+    return h5py.File(disk, mode, libver=VERSION, rdcc_nbytes=0, **ALIGNED)  # no cache of chunks
+
+
+def _describe(datasets: Sequence[h5py.Dataset], columns: Sequence[Column]) -> None:
+    """Units and meanings; the first of `datasets` is the dimension of the others.
+
+    Attached one by one, each would have HDF5 write the dimension's list of all those before anew.
+    """
+    time, *others = datasets
+    for dataset, column in zip(datasets, columns, strict=True):
+        dataset.attrs["units"] = column.unit
+        dataset.attrs["long_name"] = column.meaning
+    time.make_scale(TIME)
+    scales = np.empty(1, object)  # of the one dimension
+    scales[0] = np.array([time.ref], h5py.ref_dtype)
+    for dataset in others:
+        dataset.attrs.create("DIMENSION_LIST", scales, dtype=h5py.vlen_dtype(h5py.ref_dtype))
+    if others:
+        scaled = np.zeros(len(others), [("dataset", h5py.ref_dtype), ("dimension", "i4")])
+        scaled["dataset"] = [dataset.ref for dataset in others]
+        time.attrs.create("REFERENCE_LIST", scaled)
