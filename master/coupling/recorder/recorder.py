@@ -18,7 +18,7 @@ from touchdown.master.coupling.recorder.table import BLOCK, Column, Contents, Ta
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
-HELD = 2**22  # numbers held before they are written, at most
+HELD = 2**17  # numbers held before they are written, at most: 1 MiB
 LOSS = 1.0  # s of wall time that a killed run loses, at most
 SHARE = 0.05  # of the wall time that writing takes, at most: with very many columns more is lost instead
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
