@@ -20,7 +20,7 @@ from touchdown.master.scene.scene import Scene
 
 HELD = 2**17  # numbers held before they are written, at most: 1 MiB
 LOSS = 1.0  # s of wall time that a killed run loses, at most
-SHARE = 0.05  # of the wall time that writing takes, at most: with very many columns more is lost instead
+SHARE = 0.05  # of the time that writing takes, at most: with very many columns more is lost instead
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -95,7 +95,7 @@ class Recorder:
     def _write(self) -> None:
         """Bring the rows held to the disk. Where that raises OSError, as many as there is room for."""
         count, self._filled = self._filled, 0
-        began = clock.monotonic()
+        began = clock.thread_time()  # what it costs, not how long others keep it waiting
         try:
             self._table.append(self._block[:count])
         except OSError:
@@ -103,8 +103,8 @@ class Recorder:
             self._table.close()
             self._squeeze(self._block[:count])
             raise
+        self._patience = max(LOSS, (clock.thread_time() - began) / SHARE)
         self._written = clock.monotonic()
-        self._patience = max(LOSS, (self._written - began) / SHARE)
 
     def _squeeze(self, rows: np.ndarray) -> None:
         """Bring as many of `rows` to the disk as there is room for."""

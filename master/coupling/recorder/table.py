@@ -15,7 +15,7 @@ TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
 BLOCK = 4096  # rows that are compressed together
 CHUNK = 512  # rows that get their place in the file together, at least
-MEMORY = 2**22  # bytes that wait for the disk when a table is copied
+MEMORY = 2**20  # bytes that wait for the disk when a table is copied
 CHUNKS = 64  # of a column at most: HDF5's index of them is then one node, which is never split
 # The file's version: from it on columns' heads are small and whole, and later ones mark a file that is open
 # for writing, so that none could read it after a kill.
