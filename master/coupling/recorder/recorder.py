@@ -19,7 +19,7 @@ from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
 HELD = 2**17  # numbers held before they are written, at most: 1 MiB
-LOSS = 1.0  # s of wall time that a killed run loses, at most
+LOSS = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
 SHARE = 0.05  # of the time that writing takes, at most: with very many columns more is lost instead
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
