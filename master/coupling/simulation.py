@@ -253,6 +253,6 @@ def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[O
         recorder.append(-now.zero)
         yield [_Recording(recorder, scene.run.record_every)]
     finally:
-        problem = recorder.close(pack=now.ended in (None, Ended.AS_WANTED))
+        problem = recorder.close()
         if problem:
             now.fail(problem)

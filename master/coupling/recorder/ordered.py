@@ -28,7 +28,6 @@ class OrderedFile:
     def __init__(self, path: Path, new: bool) -> None:
         self.path = path
         self.last: int | None = None  # address of the head that changes last of all
-        self.held = 0  # bytes
         flags = os.O_RDWR | os.O_CLOEXEC | (os.O_CREAT | os.O_TRUNC if new else 0)
         self._descriptor = os.open(path, flags, 0o666)
         self._held: dict[int, bytearray] = {}  # by address, in the order in which they came
@@ -58,7 +57,7 @@ class OrderedFile:
 
     def write(self, data: bytes) -> int:
         """Hold it; what was held of the same place is this now, whichever goes to the disk first."""
-        self.held += len(data) - len(self._held.pop(self._at, b""))
+        self._held.pop(self._at, None)  # it waits anew
         for address, first, end in self._shared(len(data)):
             part = data[first - self._at : end - self._at]
             self._held[address][first - address : end - address] = part
@@ -102,7 +101,6 @@ class OrderedFile:
             raise
         self._held.clear()
         self._on_page.clear()
-        self.held = 0
 
     def _pieces(self, end: int) -> list[tuple[int, bytearray]]:
         """What is held, cut at `end`, and an index within that by pages."""

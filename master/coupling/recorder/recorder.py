@@ -14,7 +14,7 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import replacing
 from touchdown.master.coupling.recorder.chosen import choose
-from touchdown.master.coupling.recorder.table import BLOCK, Column, Contents, Table
+from touchdown.master.coupling.recorder.table import Column, Contents, Table
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
@@ -47,7 +47,7 @@ class Recorder:
         }
         self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
         width = 1 + len(columns)
-        self._block = np.zeros((max(1, min(BLOCK, HELD // width)), width))
+        self._block = np.zeros((max(1, HELD // width), width))
         self._filled = 0
         self._appended = self._written = -np.inf  # s of wall time: the last row, the last time on the disk
         self._patience = LOSS
@@ -129,8 +129,8 @@ class Recorder:
                 values = map(float, self._components[name].read(kept))
                 self._table.keep(name, dict(zip(kept, values, strict=True)))
 
-    def close(self, pack: bool) -> str:
-        """Write what is left, compressed where asked to `pack`; returns what went wrong, or ""."""
+    def close(self) -> str:
+        """Write what is left, and values of the end; returns what went wrong, or ""."""
         if self._failed:
             return ""
         try:
@@ -139,22 +139,11 @@ class Recorder:
             try:
                 self._keep_end()
                 self._table.commit()
-                if pack:
-                    self._pack()
             finally:
                 self._table.close()
         except OSError as error:
             return self._problem(error)
         return ""
-
-    def _pack(self) -> None:
-        """Put a compressed copy in the file's place, where there is room for it."""
-        with suppress(OSError), replacing(self.path) as part:
-            packed = Table.created(part, self._contents, self._table.rows, packed=True)
-            try:
-                packed.copy(self._table)
-            finally:
-                packed.close()
 
 
 def _heading(scene: Scene) -> dict[str, object]:

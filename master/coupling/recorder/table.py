@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import h5py
 import numpy as np
@@ -13,9 +14,7 @@ from touchdown.master.coupling.recorder.ordered import OrderedFile
 
 TIME = "time"
 END = "at_end"  # group of the values that are kept of the end only
-BLOCK = 4096  # rows that are compressed together
 CHUNK = 512  # rows that get their place in the file together, at least
-MEMORY = 2**20  # bytes that wait for the disk when a table is copied
 CHUNKS = 64  # of a column at most: HDF5's index of them is then one node, which is never split
 # The file's version: from it on columns' heads are small and whole, and later ones mark a file that is open
 # for writing, so that none could read it after a kill.
@@ -53,21 +52,20 @@ class Table:
         self._broken = False  # nothing but `close` can follow
 
     @classmethod
-    def created(cls, path: Path, contents: Contents, most: int, packed: bool = False) -> Table:
-        """A new one for up to `most` rows, which lie as they are, for speed, or `packed`: compressed."""
-        if packed:
-            layout: dict[str, Any] = {"chunks": (BLOCK,), "compression": "gzip", "compression_opts": 1}
-        else:
-            layout = {"chunks": (max(CHUNK, -(-most // CHUNKS)),), "fill_time": "never"}
+    def created(cls, path: Path, contents: Contents, most: int) -> Table:
+        """A new one for up to `most` rows."""
+        chunk = max(CHUNK, math.ceil(most / CHUNKS))
         disk = OrderedFile(path, new=True)
         file = _file(disk, "w")
         file.attrs.update(contents.heading)
         columns = [Column(TIME, "s", "time from the scene's zero"), *contents.columns]
         # With a bound, h5netcdf takes the dimension's size from it alone; without, it asks every column for
         # its length, again for every column.
-        bounds = [max(most, BLOCK), *(None for _ in contents.columns)]
+        bounds = [max(most, chunk), *(None for _ in contents.columns)]
         datasets = [
-            file.create_dataset(column.name, (0,), maxshape=(bound,), dtype="f8", **layout)
+            file.create_dataset(
+                column.name, (0,), maxshape=(bound,), chunks=(chunk,), dtype="f8", fill_time="never"
+            )
             for column, bound in zip(columns, bounds, strict=True)
         ]
         for component in contents.keeping:  # groups, which the file could not get later and be whole
@@ -106,19 +104,6 @@ class Table:
     def keep(self, component: str, values: Mapping[str, float]) -> None:
         """Keep values of the end, by variable."""
         self._file.require_group(f"{END}/{component}").attrs.update(values)
-
-    def copy(self, other: Table) -> None:
-        """Take over all rows of another table of the same columns, and what it keeps of the end."""
-        self.rows = other.rows
-        for mine, others in zip(self._datasets, other._datasets, strict=True):
-            mine.resize((self.rows,))
-            for begin in range(0, self.rows, BLOCK):
-                end = min(begin + BLOCK, self.rows)
-                mine[begin:end] = others[begin:end]
-                if self._disk.held > MEMORY:
-                    self.commit()
-        for component in other._file.get(END, ()):
-            self.keep(component, other._file[END][component].attrs)
 
     def close(self) -> None:
         """Commit what was added, unless something failed, and close the file."""
