@@ -15,6 +15,7 @@ import argcomplete
 from touchdown.master import verbs
 from touchdown.master.common import watched
 from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.interrupts import ended_as_by_ctrl_c
 from touchdown.master.verbs.fault import report_fault, versions
 from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
 
@@ -54,7 +55,8 @@ def _executed(given: list[str]) -> int:
         with warnings.catch_warnings():
             for kind, meant in UNSAID:
                 warnings.filterwarnings("ignore", meant, kind)
-            return options.run(options)
+            with ended_as_by_ctrl_c():
+                return options.run(options)
     except TouchdownError as error:
         complain(str(error))
         return FAILED

@@ -152,7 +152,7 @@ def _end(processes: Sequence[BaseProcess]) -> None:
         _join(processes)
     finally:
         for process in processes:
-            process.terminate()
+            process.kill()  # a run would only note SIGTERM
 
 
 def _join(processes: Sequence[BaseProcess]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,7 +12,7 @@ from typing import Protocol
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.common.interrupts import Interrupts, interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
@@ -58,7 +57,7 @@ class Outcome:
         return replace(self, ended=Ended.STOPPED, reason=problem)
 
     def raise_if_interrupted(self) -> None:
-        """Raise KeyboardInterrupt where Ctrl-C ended the run."""
+        """Raise KeyboardInterrupt where Ctrl-C, or a signal as it is one, ended the run."""
         if self.ended is Ended.INTERRUPTED:
             raise KeyboardInterrupt
 
@@ -207,7 +206,7 @@ class _Steps:
 
 
 def _loop(
-    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
+    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: Interrupts
 ) -> tuple[float, float]:
     """Take macro steps until the end, or until the run is to end.
 
@@ -220,7 +219,7 @@ def _loop(
     try:
         for number in range(now.steps):
             if interrupted.is_set():
-                now.stop(Ended.INTERRUPTED.value, Ended.INTERRUPTED)
+                now.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
             steps.take(number)
             now.move(number + 1, steps.length)
@@ -270,7 +269,7 @@ def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[O
     if path is None:
         yield []
         return
-    recorder = Recorder(path, scene, now.system.components, now.steps + 1)
+    recorder = Recorder(path, scene, now.system, now.steps + 1)
     try:
         recorder.append(-now.zero)
         yield [_Recording(recorder, scene.run.record_every)]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from pathlib import Path
 
 from tqdm.auto import tqdm
@@ -14,6 +14,7 @@ from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
+from touchdown.master.results.folder import TABLE, claimed
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
@@ -39,25 +40,42 @@ def run_scene(
     if folder is None:
         scratch = Scratch()
         folder = scratch.path
-    make_writable(folder)
-    with interrupts_noted():
+    with interrupts_noted(), claimed(folder) as results:
         system = open_system(scene, in_process)
         try:
+            with _writing(folder):
+                results.begin(scene.resolved())
             with _Bar(scene, progress) as show:
                 outcome = simulate(scene, system, folder.absolute() / RECORDING, show)
             told = ending(system)
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
-            drawn = _write_results(Finished(scene, told, recording), summary, folder, csv, pictures)
-        except OSError as error:
-            raise TouchdownError(
-                f"cannot write to {folder}: {error}; choose another folder with -o"
-            ) from None
+            with _writing(folder, outcome.ended is not Ended.STOPPED):
+                drawn: list[Path] = []
+                try:
+                    drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
+                finally:
+                    results.finish(summary)
         finally:
             system.close()
     warnings = _warnings(outcome)
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+@contextmanager
+def _writing(folder: Path, matters: bool = True) -> Generator[None]:
+    """Raise TouchdownError where results cannot be written, unless it does not matter any more.
+
+    A run that stopped has its reason to tell, which is the same where the disk is full.
+    """
+    try:
+        yield
+    except OSError as error:
+        if matters:
+            raise TouchdownError(
+                f"cannot write to {folder}: {error}; choose another folder with -o"
+            ) from None
 
 
 def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
@@ -78,15 +96,10 @@ def _warnings(outcome: Outcome) -> list[str]:
     return said
 
 
-def _write_results(
-    run: Finished, summary: dict[str, object], folder: Path, csv: bool, pictures: bool
-) -> list[Path]:
-    """scene.json, summary.json, and on request result.csv and pictures, which are returned."""
-    resolved = json.dumps(run.scene.resolved(), indent=2, default=str)
-    (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
-    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+def _show(run: Finished, folder: Path, csv: bool, pictures: bool) -> list[Path]:
+    """On request result.csv and pictures, which are returned."""
     if csv:
-        write_csv(run.recording, folder / "result.csv")
+        write_csv(run.recording, folder / TABLE)
     if not pictures:
         return []
     from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import

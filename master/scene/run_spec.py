@@ -23,7 +23,8 @@ class RunSpec:
     scheme: Scheme = SCHEMES[DEFAULT]
     tolerance: float = 1e-10  # m, of the interface per macro step, for schemes that repeat or divide it
     record_every: int = 5  # macro steps
-    record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
+    record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that alone are recorded
+    record_also: tuple[str, ...] = ()  # the same, beside what is recorded anyway: also locals and elements
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
     warn_residual: float = 0.02  # ledger's residual over the turnover of a connection: say so
     stop_residual: float = 0.2  # the same: stop
@@ -68,6 +69,7 @@ def _count(value: object, name: str) -> int:
 READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
     "scheme": _scheme,
     "record": beginnings,
+    "record_also": beginnings,
     "record_arrays": switch,
     "duration": _above_zero("s"),
     "macro_step": _above_zero("s"),

@@ -26,8 +26,8 @@ PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene"
 
 
 RUN_KEYS = (
-    "scheme", "tolerance", "record_every", "record", "record_arrays", "warn_residual", "stop_residual",
-    "whirl_halvings",
+    "scheme", "tolerance", "record_every", "record", "record_also", "record_arrays", "warn_residual",
+    "stop_residual", "whirl_halvings",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 

@@ -242,6 +242,7 @@ def _experiment(root: Element, scene: Scene, zero: float) -> None:
         "tolerance": repr(run.tolerance),
         "record_every": str(run.record_every),
         "record": ",".join(run.record),
+        "record_also": ",".join(run.record_also),
         "record_arrays": str(run.record_arrays).lower(),
         "warn_residual": repr(run.warn_residual),
         "stop_residual": repr(run.stop_residual),
