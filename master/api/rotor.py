@@ -16,7 +16,7 @@ from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written

@@ -11,7 +11,7 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.twin import TwinComponent
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import ModelError
 
 

@@ -15,7 +15,7 @@ from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.library import locate
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.variables import Causality
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5

@@ -25,7 +25,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.fmu import describe
 from touchdown.master.components.unpack import unpack
 from touchdown.master.interop import trial
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PATIENCE = 600.0  # s; a first step compiles for a minute at most
 

@@ -28,7 +28,7 @@ from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.master.interop import doctor
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import slots
 
 every_fmu = pytest.mark.parametrize("fmu", names())
