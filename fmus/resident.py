@@ -23,7 +23,8 @@ def _cache_folder(here: Path):
     """The module that knows the cache, read before the package it is of can be imported."""
     path = here / "modelkit" / "kernel" / "cache_folder.py"
     spec = importlib.util.spec_from_file_location(f"{__name__}_cache_folder", path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -44,7 +45,7 @@ def _whole(here: Path, there: Path) -> bool:
         return False
     try:
         lines = (there / DIGESTS).read_text(encoding="utf-8").splitlines()
-        noted = dict(reversed(line.split("  ", 1)) for line in lines)
+        noted = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
         return len(noted) == len(names) and all(noted[n] == _digest(there / n) for n in noted)
     except (OSError, ValueError):
         return False

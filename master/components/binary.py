@@ -55,7 +55,7 @@ _THREAD = 6  # type of symbols that are offsets
 _RELATIVE = {62: 8, 183: 1027}  # type of relocations whose addend is an address
 
 
-class _Damage(Exception):
+class _DamageError(Exception):
     """What is wrong."""
 
 
@@ -65,12 +65,12 @@ def refuse_damaged(path: Path, binary: Path) -> None:
         return
     try:
         if not binary.stat().st_size:
-            raise _Damage("it is empty")
+            raise _DamageError("it is empty")
         _Library(np.memmap(binary, np.uint8, "r")).check()
-    except _Damage as damage:
+    except _DamageError as damage:
         raise TouchdownError(
-            f"cannot load {path}: its library {binary.name} is damaged or none ({damage}); build or download "
-            "it again"
+            f"cannot load {path}: its library {binary.name} is damaged or none ({damage}); "
+            "build or download it again"
         ) from None
 
 
@@ -81,16 +81,16 @@ class _Library:
         self._content = content
         self._head = self._array(_HEAD, 0, 1, "header")[0]
         if bytes(self._head["ident"][:6]) != b"\x7fELF\x02\x01":
-            raise _Damage("it is no 64-bit ELF file")
+            raise _DamageError("it is no 64-bit ELF file")
         machine = MACHINES.get(platform.machine())
         if int(self._head["type"]) != _SHARED or machine not in (None, int(self._head["machine"])):
-            raise _Damage(f"it is no shared library for {platform.machine()}")
+            raise _DamageError(f"it is no shared library for {platform.machine()}")
         self._segments = self._table(_SEGMENT, "ph", "segments")
         self._sections = self._table(_SECTION, "sh", "sections")
         self._loads = self._segments[self._segments["type"] == _LOAD]
 
     def check(self) -> None:
-        """Raises _Damage for the first thing that cannot be."""
+        """Raises _DamageError for the first thing that cannot be."""
         self._check_extents()
         dynamic = self._dynamic()
         self._check_dynamic(dynamic)
@@ -102,13 +102,13 @@ class _Library:
 
     def _array(self, kind: np.dtype, offset: int, count: int, what: str) -> np.ndarray:
         if offset + count * kind.itemsize > len(self._content):
-            raise _Damage(f"its {what} end behind the file's end")
+            raise _DamageError(f"its {what} end behind the file's end")
         return np.frombuffer(self._content, kind, count, offset)
 
     def _table(self, kind: np.dtype, prefix: str, what: str) -> np.ndarray:
         count, size = int(self._head[f"{prefix}num"]), int(self._head[f"{prefix}entsize"])
         if count and size != kind.itemsize:
-            raise _Damage(f"its {what} are described by {size} bytes each, not {kind.itemsize}")
+            raise _DamageError(f"its {what} are described by {size} bytes each, not {kind.itemsize}")
         return self._array(kind, int(self._head[f"{prefix}off"]), count, what)
 
     def _check_extents(self) -> None:
@@ -119,40 +119,42 @@ class _Library:
             *zip(solid["offset"], solid["size"], strict=True),
         ):
             if int(offset) + int(size) > len(self._content):
-                raise _Damage(f"{size} bytes from {offset} on are behind its end at {len(self._content)}")
+                raise _DamageError(
+                    f"{size} bytes from {offset} on are behind its end at {len(self._content)}"
+                )
         end = 0
         for load in self._loads:
             start, size = int(load["address"]), int(load["memsz"])
             if start < end or size < int(load["filesz"]) or (start - int(load["offset"])) % 4096:
-                raise _Damage("its segments do not fit each other")
+                raise _DamageError("its segments do not fit each other")
             end = start + size
         if not 0 < end < 2**40:
-            raise _Damage("its segments do not fit into memory")
+            raise _DamageError("its segments do not fit into memory")
 
     def _dynamic(self) -> dict[int, int]:
         """The dynamic table by tag, the last of each; names are checked here, since there are several."""
         tables = self._segments[self._segments["type"] == _TABLE]
         if len(tables) != 1:
-            raise _Damage(f"it has {len(tables)} dynamic tables")
+            raise _DamageError(f"it has {len(tables)} dynamic tables")
         table = tables[0]
         count = int(table["filesz"]) // _ENTRY.itemsize
         entries = self._array(_ENTRY, int(table["offset"]), count, "dynamic entries")
         ends = np.flatnonzero(entries["tag"] == 0)
         if not len(ends):
-            raise _Damage("its dynamic table has no end")
+            raise _DamageError("its dynamic table has no end")
         entries = entries[: ends[0]]
         found = dict(zip(entries["tag"].tolist(), entries["value"].tolist(), strict=True))
         if not {_STRINGS, _SYMBOL_TABLE, _STRING_SIZE, _SYMBOL_SIZE} <= found.keys():
-            raise _Damage("its dynamic table lacks strings or symbols")
+            raise _DamageError("its dynamic table lacks strings or symbols")
         for place in entries["value"][np.isin(entries["tag"], _NAMES)]:
             if place >= found[_STRING_SIZE]:
-                raise _Damage("a name of its dynamic table is none of its strings")
+                raise _DamageError("a name of its dynamic table is none of its strings")
         return found
 
     def _check_dynamic(self, dynamic: dict[int, int]) -> None:
         """Addresses in the dynamic table are loaded ones."""
         if dynamic[_SYMBOL_SIZE] != _SYMBOL.itemsize:
-            raise _Damage("its symbols are of another size")
+            raise _DamageError("its symbols are of another size")
         self._require_loaded([dynamic[_STRINGS]], dynamic[_STRING_SIZE], "strings")
         for tag in (_SYMBOL_TABLE, *_TABLES):
             if tag in dynamic:
@@ -173,7 +175,7 @@ class _Library:
 
     def _check_symbols(self, symbols: np.ndarray, strings: int) -> None:
         if np.any(symbols["name"] >= strings):
-            raise _Damage("a symbol's name is none of its strings")
+            raise _DamageError("a symbol's name is none of its strings")
         defined = symbols[(symbols["index"] > 0) & (symbols["index"] < _COMMON)]
         defined = defined[defined["info"] & 15 != _THREAD]
         self._require_loaded(defined["value"], 0, "symbols")
@@ -185,12 +187,12 @@ class _Library:
         found = self._array(_RELOCATION, offset, size // _RELOCATION.itemsize, "relocations")
         self._require_loaded(found["offset"], 8, "relocations", _WRITABLE)
         if symbols and np.any(found["symbol"] >= symbols):
-            raise _Damage("a relocation is for a symbol that it does not have")
+            raise _DamageError("a relocation is for a symbol that it does not have")
         relative = found[found["type"] == _RELATIVE.get(int(self._head["machine"]), 0)]
         self._require_loaded(relative["addend"].astype(np.uint64), 0, "relocations")
 
     def _require_loaded(self, addresses: Any, size: int, what: str, flag: int = 0) -> None:
-        """Raise _Damage where `size` bytes from one of the addresses on are not loaded with `flag`."""
+        """Raise _DamageError where `size` bytes from one of the addresses on are not loaded with `flag`."""
         loads: Iterable[Any] = self._loads if not flag else self._loads[self._loads["flags"] & flag != 0]
         starts = np.asarray(addresses, np.uint64)
         inside = np.zeros(len(starts), bool)
@@ -199,4 +201,4 @@ class _Library:
             if size <= length:
                 inside |= (starts >= first) & (starts <= first + length - size)
         if not inside.all():
-            raise _Damage(f"its {what} lead out of what is loaded")
+            raise _DamageError(f"its {what} lead out of what is loaded")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import Recipe, names, recipe
+from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
@@ -43,4 +44,14 @@ def load_component(name: str, fmu: str, folder: Path = Path(), in_process: bool 
         return FmuComponent(name, source, user_cache())
     if in_process:
         return TwinComponent(name, source.model)
-    return FmuComponent(name, cached(source), user_cache(), origin=fmu)
+    return FmuComponent(name, built(source), user_cache(), origin=fmu)
+
+
+def built(recipe: Recipe) -> Path:
+    """The FMU of a recipe, built if it is not there. Raises TouchdownError where that cannot be written."""
+    try:
+        path = cached(recipe)
+    except OSError as error:
+        raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
+    tidy()
+    return path

@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 from fmpy.validation import validate_fmu
 
-from touchdown.fmus.build import cached
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import FmuComponent
-from touchdown.master.components.library import locate
+from touchdown.master.components.library import built, locate
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
 from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.variables import Causality
@@ -31,7 +30,7 @@ def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | Non
     (missing, damaged, no co-simulation here).
     """
     source = locate(name)
-    path = source if isinstance(source, Path) else cached(source)
+    path = source if isinstance(source, Path) else built(source)
     component = FmuComponent("checked", path, user_cache())
     report = Report(name)
     try:

@@ -1,91 +1,22 @@
-"""The one decorator behind every compiled kernel.
+"""The one decorator behind every compiled kernel, its variants, and where machine code is kept.
 
-A kernel's machine code holds pieces of other kernels, inlined, and would go on using them after they
-changed. So the folder it is kept in (`machine_code`) is named by a hash over the sources of all physics
-packages: any edit starts a fresh folder, and nothing stale is ever run.
+numba is imported when one of them is asked for: the folder of the cache (`cache_folder`) can do without.
 """
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable
-from functools import cache
-from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import TYPE_CHECKING
 
-import numba
-from numba.core.dispatcher import Dispatcher
+if TYPE_CHECKING:
+    from touchdown.modelkit.kernel.compiled import PHYSICS_PACKAGES, inlined, kernel, source_hash, woven
 
-from touchdown.modelkit.kernel.cache_folder import own_folder
-from touchdown.modelkit.kernel.machine_code import KernelCache
+__all__ = ["PHYSICS_PACKAGES", "inlined", "kernel", "source_hash", "woven"]
 
 
-@cache
-def _by_content(record: Any) -> tuple[str, tuple[str]]:
-    return type(record).__name__, (hashlib.sha256(record.name.encode()).hexdigest()[:24],)
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from touchdown.modelkit.kernel import compiled
 
-
-# numba names machine code after the types it is for, and a record type after its turn in the process. Code
-# kept by two processes may then bear one name for different records, and a third one that loads both, as
-# for two bearings, runs the wrong one. Named after what it holds, a record has one name everywhere.
-numba.types.Record.mangling_args = property(_by_content)  # type: ignore[misc, assignment]
-
-PHYSICS_PACKAGES = ("modelkit", "rotor", "bearings")
-
-F = TypeVar("F", bound=Callable[..., object])
-
-
-@cache
-def source_hash(packages: tuple[str, ...] = PHYSICS_PACKAGES) -> str:
-    """Hash (16 hex digits) over the Python sources of `packages`, which stand beside `modelkit`."""
-    root = Path(__file__).resolve().parents[2]
-    digest = hashlib.sha256()
-    for package in packages:
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(path.relative_to(root).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-def kernel(function: F) -> F:
-    """Compile `function` on first call and keep the machine code for later processes.
-
-    IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in process
-    must agree bit for bit.
-    """
-    return _compiled(function, forceinline=False)
-
-
-def woven(function: F) -> F:
-    """A kernel that becomes part of every kernel that calls it, whatever its length.
-
-    For the bodies of loops that are to become vector code, which a call left in them would prevent.
-    """
-    return _compiled(function, forceinline=True)
-
-
-def _compiled(function: F, forceinline: bool) -> F:
-    compiled = numba.njit(error_model="numpy", forceinline=forceinline)(function)
-    folder = _machine_code_folder()
-    if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
-        compiled._cache = KernelCache(function, folder)
-    return cast(F, compiled)
-
-
-@cache
-def _machine_code_folder() -> Path | None:
-    """Where machine code of these sources is kept; None where nothing can be."""
-    try:
-        return own_folder("machine-code", source_hash())
-    except OSError:
-        return None
-
-
-def inlined(function: F) -> F:
-    """Compile `function` into each caller, so that it may take other kernels as arguments.
-
-    numba cannot cache a kernel that was handed another one as a value; inlined, the argument is a
-    name known at compile time, and the caller is cached as usual. Right also for a piece of one kernel
-    that stands apart to be read: a kernel of its own is compiled again for every kernel above it.
-    """
-    return cast(F, numba.njit(inline="always", error_model="numpy")(function))
+    globals()[name] = value = getattr(compiled, name)
+    return value

@@ -9,6 +9,7 @@ read this file before they are a package.
 from __future__ import annotations
 
 import atexit
+import errno
 import os
 import shutil
 import stat
@@ -22,9 +23,10 @@ TAG, SIGNATURE = "CACHEDIR.TAG", "Signature: 8a477f597d28d172789f06886806bc55\n"
 KINDS = ("machine-code", "fmus", "sources", "unpacked", "rotors", "peers")  # of what is kept
 _PROBE = 4096  # bytes that must find room
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
+_NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO}
 
 _settled: dict[str | None, Path] = {}  # by what was asked for
-_temporary: set[Path] = set()
+_temporary: dict[Path, str] = {}  # and what is wrong with the one in whose place it is
 
 
 def user_cache() -> Path:
@@ -43,21 +45,40 @@ def user_cache() -> Path:
 
 def own_folder(*parts: str) -> Path:
     """A folder in the cache, made where it is missing; it belongs to the user, and is marked as used."""
-    return kept(lambda folder: folder, *parts)
+    try:
+        return _entered(user_cache(), parts)
+    except OSError as error:
+        _retreat(os.environ.get(VARIABLE) or None, error)
+        return _entered(user_cache(), parts)
 
 
 def kept(make: Callable[[Path], Path], *parts: str) -> Path:
-    """What `make` makes in a folder of the cache. Where it cannot be written, in a temporary cache.
+    """What `make` makes in a folder of the cache; in a temporary cache's where there is no room.
 
-    Raises OSError where it cannot be written there, either.
+    Raises OSError where there is none there, either, and what else `make` meets.
     """
     try:
-        return make(_entered(user_cache(), parts))
+        return make(own_folder(*parts))
     except OSError as error:
-        if user_cache() in _temporary:
+        if error.errno not in _NO_ROOM:
             raise
         _retreat(os.environ.get(VARIABLE) or None, error)
-        return make(_entered(user_cache(), parts))
+        return make(own_folder(*parts))
+
+
+def why_temporary() -> str:
+    """What is wrong with the cache that was asked for, where a temporary one takes its place; else ""."""
+    return _temporary.get(user_cache(), "")
+
+
+def is_users(root: Path) -> bool:
+    """Whether `root` is what `user_cache` gave, now or before it had to be given up."""
+    return root in _settled.values()
+
+
+def is_cache(root: Path) -> bool:
+    """Whether a folder was made to be the cache, and may be cleaned up: not one that holds other things."""
+    return (root / TAG).is_file()
 
 
 def is_own(found: os.stat_result) -> bool:
@@ -75,18 +96,19 @@ def _wanted(asked: str | None) -> Path:
     if not os.path.isabs(base):
         base = os.path.join(os.path.expanduser("~"), ".cache")
     if not os.path.isabs(base):
-        raise OSError("HOME is not set")
+        raise OSError("nothing says where: HOME is not set")
     return Path(base) / "touchdown-cosim"
 
 
 def _usable(root: Path) -> Path:
     """`root`, made and found fit for use. Raises OSError where it is not."""
     root.mkdir(mode=0o700, parents=True, exist_ok=True)
-    if all(entry in (*KINDS, TAG) for entry in os.listdir(root)):  # nothing in it but what is kept here
+    there = set(os.listdir(root))
+    older = KINDS[0] in there and there <= set(KINDS)  # than the tag is
+    if not there or older:
+        (root / TAG).write_text(SIGNATURE, encoding="ascii")
+    if is_cache(root):
         _make_private(root)
-        tag = root / TAG
-        if not tag.is_file():
-            tag.write_text(SIGNATURE, encoding="ascii")
     _require_own(root)
     with tempfile.TemporaryFile(dir=root) as probe:
         probe.write(bytes(_PROBE))
@@ -94,6 +116,8 @@ def _usable(root: Path) -> Path:
 
 
 def _entered(root: Path, parts: tuple[str, ...]) -> Path:
+    if not root.is_dir():  # removed meanwhile
+        _usable(root)
     folder = root
     for part in parts:
         folder = folder / part
@@ -117,21 +141,23 @@ def _require_own(folder: Path) -> None:
     found = folder.stat()
     if not is_own(found):
         why = "others can write it" if found.st_mode & _OTHERS else "it belongs to another user"
-        raise OSError(f"{folder} is not used: {why}")
+        raise PermissionError(errno.EPERM, why, str(folder))
 
 
 def _retreat(asked: str | None, error: OSError) -> None:
-    """Put a temporary folder in the cache's place, and say so."""
+    """Put a temporary folder in the cache's place, and say so. Raises `error` where one is already."""
+    if asked is not None and Path(asked) in _temporary:
+        raise error
+    where = f"{error.filename or asked or ''} ({error.strerror or error})".strip()
     folder = Path(tempfile.mkdtemp(prefix="touchdown_cache_"))
     _settled[str(folder)] = folder
-    _temporary.add(folder)
+    _temporary[folder] = where
     os.environ[VARIABLE] = str(folder)  # processes started from here share it
     atexit.register(_remove, folder, os.getpid())
-    where = f"{asked}: " if asked else ""
     if sys.stderr is not None:
         sys.stderr.write(
-            f"touchdown: warning: cannot use the cache ({where}{error.strerror or error}); a temporary one "
-            f"takes its place, and compiling starts anew; set {VARIABLE} to a folder of yours\n"
+            f"touchdown: warning: cannot use the cache {where}; a temporary one takes its place, so compiling "
+            f"starts anew; set {VARIABLE} to a folder of yours\n"
         )
 
 

@@ -25,6 +25,7 @@ from numba import types
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
+from numba.core.sigutils import normalize_signature
 
 from touchdown.modelkit.kernel.cache_folder import is_own
 
@@ -70,8 +71,9 @@ class KernelCache(_Cache):
 
         Code that holds addresses of this process is of no use to another one.
         """
-        fixed = not data.library.has_dynamic_globals and not any(isinstance(t, types.Callable) for t in sig)
-        if self._enabled and fixed:
+        arguments, _ = normalize_signature(sig)
+        fixed = not any(isinstance(argument, types.Callable) for argument in arguments)
+        if self._enabled and fixed and not data.library.has_dynamic_globals:
             key = self._key(sig, data.codegen)
             with contextlib.suppress(OSError):
                 _replace(self._path(key), _sealed(dumps((key, data._reduce()))))
