@@ -55,7 +55,7 @@ def run_scene(
             ) from None
         finally:
             system.close()
-    warnings = _warnings(outcome)
+    warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 

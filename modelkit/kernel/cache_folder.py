@@ -156,8 +156,8 @@ def _retreat(asked: str | None, error: OSError) -> None:
     atexit.register(_remove, folder, os.getpid())
     if sys.stderr is not None:
         sys.stderr.write(
-            f"touchdown: warning: cannot use the cache {where}; a temporary one takes its place, so compiling "
-            f"starts anew; set {VARIABLE} to a folder of yours\n"
+            f"touchdown: warning: cannot use the cache {where}; a temporary one takes its place, "
+            f"so compiling starts anew; set {VARIABLE} to a folder of yours\n"
         )
 
 

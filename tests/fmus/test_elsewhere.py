@@ -320,7 +320,7 @@ def test_the_command_line_of_the_doctor_works(host: Path, here: Interpreter, unp
 @pytest.mark.parametrize(
     ("name", "value", "named"),
     [
-        ("TOUCHDOWN_CACHE", "{tmp}/file/cache", "cannot be written"),
+        ("TOUCHDOWN_CACHE", "{tmp}/file/cache", "cannot use "),
         ("NUMBA_DISABLE_JIT", "1", "unset NUMBA_DISABLE_JIT"),
     ],
 )
