@@ -93,7 +93,7 @@ def _wanted(asked: str | None) -> Path:
     if asked:
         return Path(asked).absolute()
     base = os.environ.get("XDG_CACHE_HOME", "")
-    if not os.path.isabs(base):
+    if not os.path.isabs(base) and os.environ.get("HOME") != "":
         base = os.path.join(os.path.expanduser("~"), ".cache")
     if not os.path.isabs(base):
         raise OSError("nothing says where: HOME is not set")

@@ -79,11 +79,12 @@ class KernelCache(_Cache):
                 _replace(self._path(key), _sealed(dumps((key, data._reduce()))))
 
     def _key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
-        """All that decides the code beside the sources: types, processor, numba, the kernel's own text."""
-        cells = tuple(cell.cell_contents for cell in self._kernel.__closure__ or ())
+        """All that decides the code beside other sources: types, processor, numba, the kernel itself."""
+        kernel = self._kernel
+        cells = tuple(cell.cell_contents for cell in kernel.__closure__ or ())
         closed = hashlib.sha256(dumps(cells)).hexdigest() if cells else ""
-        text = _text_of(inspect.getfile(self._kernel))
-        return signature, codegen.magic_tuple(), self._kernel.__code__.co_code, closed, text, _VERSION
+        own = kernel.__module__, self._name, kernel.__code__.co_code, closed
+        return signature, codegen.magic_tuple(), own, _text_of(inspect.getfile(kernel)), _VERSION
 
     def _path(self, key: tuple[Any, ...]) -> Path:
         signature, *others = key
