@@ -122,8 +122,8 @@ def _settings(
     component: Component, spec: ComponentSpec, inherited: Mapping[str, float], scheme: Scheme
 ) -> dict[str, float]:
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
-    known = preset(spec.preset) if spec.preset else {}
-    optional = {key: value for key, value in known.items() if key in component.variables} | inherited
+    known = preset(spec.preset) if spec.preset else dict[str, float]()
+    optional = {key: value for key, value in known.items() if key in component.variables} | dict(inherited)
     values = {key: _checked(component, key, value) for key, value in {**optional, **spec.set}.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
         if key in spec.set:
