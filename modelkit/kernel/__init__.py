@@ -5,6 +5,7 @@ numba is imported when one of them is asked for: the folder of the cache (`cache
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -16,7 +17,5 @@ __all__ = ["PHYSICS_PACKAGES", "inlined", "kernel", "source_hash", "woven"]
 def __getattr__(name: str) -> object:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from touchdown.modelkit.kernel import compiled
-
-    globals()[name] = value = getattr(compiled, name)
+    globals()[name] = value = getattr(import_module(f"{__name__}.compiled"), name)
     return value
