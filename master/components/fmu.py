@@ -29,6 +29,7 @@ from fmpy.fmi2 import (
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
+from touchdown.master.components.binary import refuse_damaged
 from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.description import refuse_definitions, refuse_lies
 from touchdown.master.components.unpack import unpack
@@ -70,11 +71,13 @@ def describe(path: Path, folder: Path) -> Any:
         )
     identifier = description.coSimulation.modelIdentifier
     refuse_lies(path, description)
-    if not (folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}").is_file():
+    library = folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}"
+    if not library.is_file():
         there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
         raise TouchdownError(
             f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
         )
+    refuse_damaged(path, library)
     if _by_pythonfmu(description):
         _check_script(path, folder)
     return description

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import Recipe, names, recipe
+from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.watched import watch
 from touchdown.master.components.component import Component
@@ -16,7 +17,7 @@ from touchdown.master.components.foreign import ForeignFmu
 from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.components.twin import TwinComponent
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import ModelError
 
 
@@ -59,7 +60,7 @@ def load_component(
     source = locate(fmu, folder)
     if isinstance(source, Recipe) and stepping.in_process:
         return TwinComponent(name, source.model)
-    path, origin = (source, "") if isinstance(source, Path) else (cached(source), fmu)
+    path, origin = (source, "") if isinstance(source, Path) else (built(source), fmu)
     if stepping.isolate:
         return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
     if origin:
@@ -71,3 +72,13 @@ def load_component(
 def foreign(fmu: str) -> bool:
     """Whether `fmu` is a file that brings code of its own, and none of the project's."""
     return not fmu.endswith(".toml") and (fmu.endswith(".fmu") or os.sep in fmu)
+
+
+def built(recipe: Recipe) -> Path:
+    """The FMU of a recipe, built if it is not there. Raises TouchdownError where that cannot be written."""
+    try:
+        path = cached(recipe)
+    except OSError as error:
+        raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
+    tidy()
+    return path

@@ -103,7 +103,7 @@ def simulate(
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
-        zero = system.value(scene.zero) if scene.zero else 0.0
+        zero = zero_of(scene, system)
         if not math.isfinite(zero):
             raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
@@ -171,10 +171,29 @@ class Values(Protocol):
         """Value of COMPONENT.VARIABLE."""
         ...
 
+    def __contains__(self, name: str) -> bool:
+        """Whether there is COMPONENT.VARIABLE."""
+        ...
+
+
+def zero_of(scene: Scene, system: Values) -> float:
+    """The scene's zero on the simulation's clock (s); 0 where it has none, or one that went in a swap."""
+    if scene.zero is None or _swapped_away(scene, scene.zero, system):
+        return 0.0
+    return system.value(scene.zero)
+
 
 def energy_scale(scene: Scene, system: Values) -> float:
-    """Product of the scene's energy_scale variables (J); 0 where it names none."""
+    """Product of the scene's energy_scale variables (J); 0 where it names none, or one went in a swap."""
+    if any(_swapped_away(scene, name, system) for name in scene.energy_scale):
+        return 0.0
     return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
+
+
+def _swapped_away(scene: Scene, name: str, system: Values) -> bool:
+    """Whether COMPONENT.VARIABLE is not there because another FMU was put in for that component."""
+    spec = scene.components.get(name.partition(".")[0])
+    return spec is not None and bool(spec.instead_of) and name not in system
 
 
 def fall_energy(system: System) -> float:

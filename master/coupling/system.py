@@ -25,6 +25,7 @@ class System:
     connections: list[Connection]
     settings: dict[tuple[str, str], float]
     every: dict[str, int]  # macro steps of the run that each component takes in one
+    left_out: Sequence[str] = ()  # what swapped components do not take over, a line each
     order: list[str] = field(init=False)  # bearings first
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals

@@ -22,7 +22,7 @@ from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS
 from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.coupling.simulation import open_system
+from touchdown.master.coupling.simulation import open_system, zero_of
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.variables import Causality
@@ -42,7 +42,7 @@ def write_container(scene: Scene, path: Path) -> Path:
     system = open_system(scene)
     try:
         _refuse_what_it_cannot(system)
-        zero = system.value(scene.zero) if scene.zero else 0.0
+        zero = zero_of(scene, system)
         system.initialise()
         with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
             container = toolbox.FMUContainer(re.sub(r"\W", "_", path.stem, flags=re.ASCII), folder)

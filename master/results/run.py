@@ -59,7 +59,7 @@ def run_scene(
                     results.finish(summary)
         finally:
             system.close()
-    warnings = _warnings(outcome)
+    warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 
