@@ -13,9 +13,9 @@ from typing import NoReturn
 import argcomplete
 
 from touchdown.master import verbs
-from touchdown.master.common import watched
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.common.interrupts import ended_as_by_ctrl_c
+from touchdown.master.common.processes import watched
 from touchdown.master.verbs.fault import report_fault, versions
 from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
 

@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from fmpy import calloc, free, read_model_description, sharedLibraryExtension
-from fmpy import platform as fmi_platform
+from fmpy import calloc, free
 from fmpy.fmi2 import (
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
@@ -28,12 +27,9 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import BASE, Unit
-from touchdown.master.components.binary import refuse_damaged
-from touchdown.master.components.component import Component, Kind, Variable
-from touchdown.master.components.description import refuse_definitions, refuse_lies
+from touchdown.master.components.component import Component, Kind
+from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
-from touchdown.modelkit.variables import Causality, Variability
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
@@ -56,73 +52,6 @@ CALLS = (  # what can be said of where an FMU is
 )
 
 
-def describe(path: Path, folder: Path) -> Any:
-    """fmpy's model description of an unpacked FMU that can be co-simulated here."""
-    try:
-        refuse_definitions(folder / "modelDescription.xml")
-        description = read_model_description(str(folder), validate=False)
-    except Exception as error:
-        first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({first})") from None
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        kind = "co-simulation" if description.coSimulation else "model exchange only"
-        raise TouchdownError(
-            f"{path} is FMI {description.fmiVersion}, {kind}; FMI 2.0 for co-simulation is needed"
-        )
-    identifier = description.coSimulation.modelIdentifier
-    refuse_lies(path, description)
-    library = folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}"
-    if not library.is_file():
-        there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
-        raise TouchdownError(
-            f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
-        )
-    refuse_damaged(path, library)
-    if _by_pythonfmu(description):
-        _check_script(path, folder)
-    return description
-
-
-def _by_pythonfmu(description: Any) -> bool:
-    return "PythonFMU" in (description.generationTool or "")
-
-
-def _check_script(path: Path, folder: Path) -> None:
-    """pythonfmu's library ends the process where the script it is to run is missing."""
-    name = folder / "resources" / "slavemodule.txt"
-    module = name.read_bytes().decode("utf-8", "replace").strip() if name.is_file() else ""
-    if not module.isidentifier() or not (name.parent / f"{module}.py").is_file():
-        raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
-
-
-def variables_of(description: Any) -> dict[str, Variable]:
-    """Variables by name."""
-
-    def number(text: object) -> float | None:
-        try:
-            return None if text is None else float(str(text))
-        except ValueError:
-            return None
-
-    return {
-        v.name: Variable(
-            name=v.name,
-            reference=v.valueReference,
-            kind=Kind(v.type),
-            causality=Causality(v.causality or Causality.LOCAL),
-            variability=Variability(v.variability or Variability.CONTINUOUS),
-            unit=(v.unit or (v.declaredType.unit if v.declaredType else None))
-            if v.type == Kind.REAL
-            else "1",
-            minimum=number(v.min),
-            maximum=number(v.max),
-            start=number(v.start),
-            description=v.description or "",
-        )
-        for v in description.modelVariables
-    }
-
-
 def _resources(folder: Path, description: Any) -> str:
     """URI of an unpacked FMU's resources.
 
@@ -130,7 +59,7 @@ def _resources(folder: Path, description: Any) -> str:
     it crashes.
     """
     path = (folder / "resources").absolute()
-    if not _by_pythonfmu(description):
+    if not by_pythonfmu(description):
         return path.as_uri()
     if "%20" in str(path):
         raise TouchdownError(f"pythonfmu cannot read {path}: it has %20 in it; set another TOUCHDOWN_CACHE")
@@ -146,23 +75,6 @@ def _release_interpreter(library: ctypes.CDLL) -> None:
     release = getattr(library, "finalizePythonInterpreter", None)
     if release is not None:
         release()
-
-
-def units_of(description: Any) -> dict[str, Unit]:
-    """Units that the description defines by SI base units, by name."""
-    units: dict[str, Unit] = {}
-    for unit in description.unitDefinitions:
-        base = unit.baseUnit
-        if base is not None:
-            exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
-            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
-    return units
-
-
-def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
-    """Variables and units of an FMU, which is not loaded."""
-    description = describe(path, unpack(path, cache))
-    return variables_of(description), units_of(description)
 
 
 class _Fetch(NamedTuple):

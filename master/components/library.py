@@ -10,7 +10,7 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import Recipe, names, recipe
 from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.watched import watch
+from touchdown.master.common.processes.watched import watch
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.foreign import ForeignFmu

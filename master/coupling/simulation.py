@@ -104,8 +104,6 @@ def simulate(
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
         zero = zero_of(scene, system)
-        if not math.isfinite(zero):
-            raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)
@@ -180,7 +178,10 @@ def zero_of(scene: Scene, system: Values) -> float:
     """The scene's zero on the simulation's clock (s); 0 where it has none, or one that went in a swap."""
     if scene.zero is None or _swapped_away(scene, scene.zero, system):
         return 0.0
-    return system.value(scene.zero)
+    zero = system.value(scene.zero)
+    if not math.isfinite(zero):
+        raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
+    return zero
 
 
 def energy_scale(scene: Scene, system: Values) -> float:

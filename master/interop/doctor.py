@@ -22,7 +22,7 @@ from touchdown.fmus.link import (
     why_not_compiled,
 )
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.fmu import describe
+from touchdown.master.components.interface import describe
 from touchdown.master.components.unpack import unpack
 from touchdown.master.interop import trial
 from touchdown.modelkit.kernel.cache_folder import user_cache, why_temporary

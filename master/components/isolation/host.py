@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.orphans import die_with_parent
+from touchdown.master.common.processes.orphans import die_with_parent
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import CALLS, FmuComponent
 from touchdown.master.components.foreign import ForeignFmu

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.watched import way_of
+from touchdown.master.common.processes.watched import way_of
 from touchdown.master.components.isolation.board import Ask, Board, Word, board_size
 from touchdown.master.components.isolation.crossing import CUT_OFF, SPIN, GoneError, Side
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale, Unit, scaled, then
 from touchdown.master.components.component import Variable
-from touchdown.master.components.fmu import interface
+from touchdown.master.components.interface import interface
 from touchdown.master.components.unpack import Format, unpack
 from touchdown.master.interop.ssp import structure
 from touchdown.master.interop.ssp.bindings import Value

@@ -11,7 +11,7 @@ from pathlib import Path
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
-from touchdown.master.common.processes import TaskOutcome, run_all
+from touchdown.master.common.processes.pool import TaskOutcome, run_all
 from touchdown.master.coupling.assembly import checked
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.coupling.steppers.carried import carrying

@@ -105,7 +105,7 @@ def study_verdict(
     Each run leaves its summary.json in `folder`/STEPS/PHASE. Several unbalanced rotors are turned together.
     The energy ledger stops no run. After Ctrl-C the study has what is there, and is `interrupted`. Raises
     TouchdownError where there is nothing to turn, or nothing that a verdict could be given on. Starts
-    processes: see `touchdown.master.common.processes`.
+    processes: see `touchdown.master.common.processes.pool`.
     """
     if running.jobs < 1:
         raise TouchdownError(f"a study needs at least one job, not {running.jobs}")

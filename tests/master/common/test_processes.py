@@ -11,11 +11,11 @@ import pytest
 from places import ROOT
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.common.processes import run_all
+from touchdown.master.common.processes.pool import run_all
 
 PARENT = """
 import multiprocessing, os, sys, time
-from touchdown.master.common.orphans import die_with_parent, watch_parent
+from touchdown.master.common.processes.orphans import die_with_parent, watch_parent
 
 def child(way):
     {"kernel": lambda: die_with_parent(os.getppid()), "thread": watch_parent}[way]()

@@ -17,7 +17,7 @@ from typing import Any, Generic, TypeVar
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_ignored
-from touchdown.master.common.orphans import die_with_parent
+from touchdown.master.common.processes.orphans import die_with_parent
 
 GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
 

@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from touchdown.master.common.errors import STOPPED
-from touchdown.master.common.orphans import die_with_parent
+from touchdown.master.common.processes.orphans import die_with_parent
 
 _PASSED_ON = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 _BY_KERNEL = 0x80  # si_code: from the terminal, which reaches the copy, too
