@@ -92,7 +92,7 @@ def _resident() -> Path:
         cache = _cache_folder(here)
         there = cache.own_folder("sources", f"{here.name}-{sys.implementation.cache_tag}")
         if not _whole(here, there):
-            cache.kept(lambda folder: _put(here, folder), "sources", there.name)
+            there = cache.kept(lambda folder: _put(here, folder), "sources", there.name)
         return there if _whole(here, there) else here
     except OSError:
         return here

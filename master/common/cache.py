@@ -1,6 +1,6 @@
 """What the cache holds, and what of it may go: what was not used for long, and the oldest above a size.
 
-Everything in it is made again when it is missed, so nothing is lost but time. What stands in the folder and
+What goes is made again when it is missed, so nothing is lost but time. What stands in the folder and
 is none of the cache's own kinds is left alone, always.
 """
 
@@ -69,14 +69,18 @@ def _size(path: Path) -> int:
     return total
 
 
+def made_again(held: Iterable[Entry]) -> list[Entry]:
+    """Of `held`, all but STAYING."""
+    return [entry for entry in held if entry.kind not in STAYING]
+
+
 def outworn(held: Iterable[Entry], now: float, age: float = AGE, limit: float = LIMIT) -> list[Entry]:
     """Of `held`, what was not used for `age` (days), and the longest unused above `limit` (bytes) in all.
 
     For the size nothing goes that was used within RECENT days: other processes may be at it. What a process
     left unfinished goes after as long.
     """
-    going = [entry for entry in held if entry.kind not in STAYING]
-    oldest_first = sorted(going, key=lambda entry: entry.used)
+    oldest_first = sorted(made_again(held), key=lambda entry: entry.used)
     total = sum(entry.size for entry in oldest_first)
     found: list[Entry] = []
     for entry in oldest_first:

@@ -89,6 +89,9 @@ def _unpacked(archive: zipfile.ZipFile, folder: Path) -> Path:
         if folder.exists() or folder.is_symlink():
             folder.rename(fresh / "before")
         (fresh / "content").rename(folder)
+    except OSError:
+        if not (folder.is_dir() and is_unpacked(archive, folder)):  # or another process was first
+            raise
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
     return folder

@@ -161,6 +161,12 @@ def _retreat(asked: str | None, error: OSError) -> None:
         )
 
 
+def leave() -> None:
+    """Remove temporary caches: of a process that ends without its exit handlers."""
+    for folder in _temporary:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 def _remove(folder: Path, process: int) -> None:
     if os.getpid() == process:  # not one it forked
         shutil.rmtree(folder, ignore_errors=True)

@@ -16,6 +16,7 @@ from typing import NoReturn
 
 from touchdown.master.common.errors import STOPPED
 from touchdown.master.common.processes.orphans import die_with_parent
+from touchdown.modelkit.kernel.cache_folder import leave
 
 _PASSED_ON = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 _BY_KERNEL = 0x80  # si_code: from the terminal, which reaches the copy, too
@@ -63,6 +64,7 @@ def end(status: int) -> int:
             stream.flush()
     with suppress(OSError):  # nobody waits any more
         os.write(_report, bytes([status]))
+    leave()
     os._exit(status)
 
 
@@ -83,7 +85,11 @@ def _stay_behind(copy: int, report: int, what: str) -> NoReturn:
         ended, how = os.waitpid(copy, os.WNOHANG)
         if ended:
             break
-    said = os.read(report, 1)
+    leave()
+    os.set_blocking(report, False)  # a process that the FMU started may hold the other end
+    said = b""
+    with suppress(BlockingIOError):
+        said = os.read(report, 1)
     if said:
         os._exit(said[0])
     code = os.waitstatus_to_exitcode(how)

@@ -130,8 +130,9 @@ class IsolatedFmu(ArchivedFmu):
             self._call("close")
         except TouchdownError as error:
             return str(error)
-        self._lost = "is closed"
-        self._worker.end()
+        finally:
+            self._lost = self._lost or "is closed"
+            self._worker.end()
         return ""
 
     # -- crossing ------------------------------------------------------------------------------------

@@ -57,12 +57,12 @@ class OrderedFile:
 
     def write(self, data: bytes) -> int:
         """Hold it; what was held of the same place is this now, whichever goes to the disk first."""
-        self._held.pop(self._at, None)  # it waits anew
+        longer = self._held.pop(self._at, bytearray())[len(data) :]  # it waits anew
         for address, first, end in self._shared(len(data)):
             part = data[first - self._at : end - self._at]
             self._held[address][first - address : end - address] = part
-        self._held[self._at] = bytearray(data)
-        for page in _pages(self._at, len(data)):
+        self._held[self._at] = bytearray(data) + longer
+        for page in _pages(self._at, len(data) + len(longer)):
             self._on_page.setdefault(page, set()).add(self._at)
         self._size = max(self._size, self._at + len(data))
         return len(data)
@@ -87,17 +87,20 @@ class OrderedFile:
     # -- the disk --------------------------------------------------------------------------------------
 
     def commit(self) -> None:
-        """Bring to the disk what is held. Raises OSError where it cannot; the file is then as before."""
+        """Bring to the disk what is held. Raises OSError where it cannot; the file is whole then, too."""
         before, self._committed = self._committed, max(self._committed, self._size)
+        counted = False  # whether what is new may be of the file already
         try:
             if self._committed > before:
                 os.ftruncate(self._descriptor, self._committed)
             for address, data in sorted(self._pieces(before), key=lambda piece: self._turn(before, *piece)):
+                counted |= address == SUPERBLOCK
                 self._put(address, data)
         except OSError:
-            self._committed = before
-            with suppress(OSError):
-                os.ftruncate(self._descriptor, before)  # gives back the room, for the summary
+            if not counted:
+                self._committed = before
+                with suppress(OSError):
+                    os.ftruncate(self._descriptor, before)  # gives back the room, for the summary
             raise
         self._held.clear()
         self._on_page.clear()

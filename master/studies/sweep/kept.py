@@ -19,10 +19,10 @@ from typing import Any, cast
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.files import replace_text
 from touchdown.master.components.library import locate
+from touchdown.master.results.folder import MARK, SUMMARY
 from touchdown.master.results.result import RECORDING
 from touchdown.master.scene.scene import Scene
 
-MARK, SUMMARY = "member.json", "summary.json"
 UNSAID = ("title", "about", "folder")  # of a scene: they change no number
 
 
@@ -46,11 +46,6 @@ def identity(scene: Scene, made_of: Mapping[str, str], in_process: bool) -> str:
     return hashlib.sha256(json.dumps(whole, default=str).encode()).hexdigest()
 
 
-def begin(folder: Path) -> None:
-    """What is in `folder` from now on is of no finished member."""
-    (folder / MARK).unlink(missing_ok=True)
-
-
 def finish(folder: Path, own: str) -> None:
     """The member in `folder`, whose run is known as `own`, is finished."""
     replace_text(folder / MARK, json.dumps({"run": own}) + "\n")
@@ -68,7 +63,8 @@ def settle(folder: Path, wanted: Mapping[str, Path]) -> None:
             moving[own] = place.rename(folder / f".{own}")
     taken = {path.name for path in (*wanted.values(), *there.values())}
     width = max((len(path.name) for path in wanted.values()), default=3)
-    free = (folder / name for n in count(1) if (name := f"{n:0{width}}") not in taken)
+    names = (f"{n:0{width}}" for n in count(1))
+    free = (folder / name for name in names if name not in taken and not (folder / name).exists())
     for own, place in moving.items():
         target = wanted[own] if own in wanted else next(free)
         if target.exists():  # it is of no finished member

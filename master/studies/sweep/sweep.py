@@ -16,6 +16,7 @@ from touchdown.master.coupling.assembly import checked
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.coupling.system import System
+from touchdown.master.results.folder import claimed
 from touchdown.master.results.result import RECORDING
 from touchdown.master.results.run import make_writable, run_scene
 from touchdown.master.scene.scene import Scene
@@ -60,17 +61,21 @@ def sweep(
     `folder` has already, finished by the same version with equal scenes, are `kept`, not run again. Runs
     `jobs` at a time; done() after each. Raises TouchdownError where a setting cannot be, or the members are
     more than MOST; a member that fails says so and the others go on. After Ctrl-C those that have not run
-    are INTERRUPTED. A script that calls it needs `if __name__ == "__main__":`, as all do that start
-    processes.
+    are INTERRUPTED. One sweep at a time has the folder. A script that calls it needs
+    `if __name__ == "__main__":`, as all do that start processes.
     """
     check(scene, variations)
     if jobs < 1:
         raise TouchdownError(f"a sweep needs at least one job, not {jobs}")
     make_writable(folder)
-    tasks = _tasks(scene, variations, folder, execution)
-    table = folder / "sweep.csv"
-    with writing_to(folder):
-        kept.settle(folder, {task.identity: task.folder for task in tasks})
+    with claimed(folder):
+        return _run(_tasks(scene, variations, folder, execution), folder / "sweep.csv", jobs, done)
+
+
+def _run(tasks: Sequence[Task], table: Path, jobs: int, done: Callable[[], object]) -> list[Member]:
+    """A member for each task, those that are there already not run; the table is written after each."""
+    with writing_to(table.parent):
+        kept.settle(table.parent, {task.identity: task.folder for task in tasks})
     members = _already(tasks, done)
 
     def heard(member: Member) -> None:
@@ -164,7 +169,6 @@ def _check_value(first: Scene, name: str, value: object, system: System) -> None
 
 def _run_task(task: Task) -> Member:
     """Run a member; whether it completed or not, it has a summary."""
-    kept.begin(task.folder)
     result = run_scene(task.scene, task.folder, in_process=task.execution.in_process, pictures=False)
     if not task.execution.keep:
         (task.folder / RECORDING).unlink(missing_ok=True)

@@ -28,21 +28,28 @@ def declare(verb: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--unused-for", metavar="DAYS", help="remove what was not used for so many days (unasked: 30)"
     )
-    what.add_argument("--clear", action="store_true", help="remove everything; runs under way break")
+    what.add_argument(
+        "--clear",
+        action="store_true",
+        help="remove all that is made again when it is missed; runs under way break",
+    )
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.common.cache import entries, outworn, remove
+    from touchdown.master.common.cache import entries, made_again, outworn, remove
     from touchdown.modelkit.kernel.cache_folder import user_cache
 
     root = user_cache()
-    held = entries(root)
+    try:
+        held = entries(root)
+    except OSError as error:  # something went meanwhile
+        raise TouchdownError(f"cannot look at {error.filename}: {error.strerror}; try again") from None
     print("\n".join(_table(str(root), held)))
     if not options.clear and options.unused_for is None:
         return 0
     _require_cache(root)
-    chosen = held if options.clear else outworn(held, time.time(), _days(options.unused_for))
+    chosen = made_again(held) if options.clear else outworn(held, time.time(), _days(options.unused_for))
     try:
         freed = remove(chosen)
     except OSError as error:

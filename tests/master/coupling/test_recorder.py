@@ -138,6 +138,42 @@ def test_a_full_disk_leaves_the_file_as_it_was(tmp_path: Path, monkeypatch: pyte
     check_whole(path, 7)
 
 
+def test_a_disk_that_is_full_at_any_write_leaves_a_whole_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, pwrite, room = tmp_path / "result.h5", os.pwrite, 0
+    left = 0
+
+    def full(descriptor: int, data: memoryview, address: int) -> int:
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise OSError(28, "No space left on device")
+        return pwrite(descriptor, data, address)
+
+    while True:
+        table, _ = next(lives(path))
+        table.append(block(0, 300))
+        left = room
+        try:
+            with monkeypatch.context() as patch:
+                patch.setattr(os, "pwrite", full)
+                table.append(block(300, 400))
+        except OSError:
+            table.close()
+            check_whole(path, 300)
+            again = Table.reopened(path, CONTENTS)
+            rows = again.rows
+            again.append(block(rows, 2))
+            again.close()
+            check_whole(path, rows + 2)
+            room += 1
+        else:
+            table.close()
+            break
+    assert room > 10
+
+
 def variable(name: str, causality: Causality) -> Variable:
     """A real one."""
     return Variable(
