@@ -62,7 +62,7 @@ class Scene:
 
     >>> scene = touchdown.load("disk-caged-simplified")
     >>> scene.set({"rotor.speed": "12000 rpm", "run.duration": "10 ms"}).swap(bearing="simplified_cageless")
-    <Scene disk-caged-simplified: Rigid disk dropped on a simplified caged bearing
+    <Scene disk-caged-simplified: Rigid disk dropped on a simplified cageless bearing
       rotor: rigid_rotor
       amb: amb
       bearing: simplified_cageless

@@ -22,7 +22,7 @@ from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.file import load_scene
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler (cc, gcc)")
 

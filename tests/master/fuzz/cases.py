@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 
 import bases
+import fmpy
 import numpy as np
 from fmpy import platform as fmi_platform
 from fmpy import sharedLibraryExtension
@@ -125,9 +126,10 @@ def fmu(rng: Rng) -> list[str]:
     return ["scenes", "scene.ssp"]
 
 
+LIBRARY = Path(fmpy.__file__).parent / "logging" / fmi_platform / f"logging{sharedLibraryExtension}"
 FMU = {
     "modelDescription.xml": bases.DESCRIPTION.encode(),
-    f"binaries/{fmi_platform}/m{sharedLibraryExtension}": b"no library",
+    f"binaries/{fmi_platform}/m{sharedLibraryExtension}": LIBRARY.read_bytes(),
 }
 BEARINGS = ("simplified_caged", "simplified_cageless", "detailed_caged", "detailed_cageless", "bushing")
 RUN = tuple(f"run.{key}" for key in READERS)
