@@ -94,12 +94,12 @@ def simulate(
     record_to: Path | None = None,
     progress: Callable[[float, float], object] = lambda time, share: None,
     observers: Iterable[Observer] = (),
+    begin: Callable[[], object] = lambda: None,
 ) -> Outcome:
     """Initialise `system` and run it to the scene's end, or until an observer ends it.
 
-    progress(time from zero in s, residual over turnover) is called now and then; `observers` are told of
-    every macro step. Whatever ends the run, its recording is complete up to there; where that is not an
-    error of an observer's own, the outcome says how it ended, and why.
+    progress(time from zero in s, residual over turnover) is called now and then, begin() when nothing is
+    refused any more; `observers` are told of every macro step. The outcome says how it ended, and why.
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
@@ -109,7 +109,7 @@ def simulate(
         coupling = stepper(system, scene.run)
         with (
             _kept(scene, system, coupling) as ledger,
-            _recording(scene, now, record_to) as recording,
+            _recording(scene, now, record_to, begin) as recording,
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
             told = [judge, shortening, *observers, *recording]
@@ -284,12 +284,14 @@ class _Recording(Observer):
 
 
 @contextmanager
-def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[Observer]]:
+def _recording(
+    scene: Scene, now: Moment, path: Path | None, begin: Callable[[], object]
+) -> Generator[list[Observer]]:
     """The observer that records into a file at `path`, if there is one; the file is closed at the end."""
     if path is None:
         yield []
         return
-    recorder = Recorder(path, scene, now.system, now.steps + 1)
+    recorder = Recorder(path, scene, now.system, now.steps + 1, begin)
     try:
         recorder.append(-now.zero)
         yield [_Recording(recorder, scene.run.record_every)]

@@ -72,7 +72,7 @@ class System:
         bodies_first = list(reversed(self.order))
         for _ in range(2):  # bodies to bearings, and loads back
             for name in bodies_first:
-                self.feed(name)
+                self._feed_numbers(name)
                 self.components[name].pull()
         self._feed_constants()
         self.connections = used_modes(self.connections, self.components)
@@ -80,9 +80,20 @@ class System:
         for name in bodies_first:
             self.components[name].pull()
         for name in bodies_first:
-            self.feed(name)
+            self._feed_numbers(name)
             self.components[name].exit()
             self.components[name].pull()
+
+    def _feed_numbers(self, name: str) -> None:
+        """`feed`, but of numbers alone.
+
+        A component that will refuse its parameters gives none until it exits from initialisation;
+        those that are handed them would refuse, and be blamed, first.
+        """
+        self.take_inputs(name)
+        component = self.components[name]
+        if np.isfinite(component.inputs).all():
+            component.push()
 
     def feed(self, name: str) -> None:
         """Hand a component its inputs from the signals."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from tqdm.auto import tqdm
@@ -14,7 +15,7 @@ from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
-from touchdown.master.results.folder import TABLE, claimed
+from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
@@ -43,10 +44,9 @@ def run_scene(
     with interrupts_noted(), claimed(folder) as results:
         system = open_system(scene, in_process)
         try:
-            with _writing(folder):
-                results.begin(scene.resolved())
             with _Bar(scene, progress) as show:
-                outcome = simulate(scene, system, folder.absolute() / RECORDING, show)
+                begin = partial(_begin, results, scene)
+                outcome = simulate(scene, system, folder.absolute() / RECORDING, show, begin=begin)
             told = ending(system)
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
@@ -61,6 +61,12 @@ def run_scene(
             system.close()
     warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def _begin(results: ResultsFolder, scene: Scene) -> None:
+    """What an earlier run left goes: nothing is refused any more."""
+    with _writing(results.path):
+        results.begin(scene.resolved())
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import time as clock
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -27,11 +27,18 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 class Recorder:
     """Records what a scene asks for of a system, `most` rows at the most, into a file at `path`.
 
-    The file takes the place of one that was there, and may be read at any time. Raises TouchdownError where
-    it cannot be written, or where the scene names what is not there.
+    After begin() the file takes the place of one that was there; it may be read at any time. Raises
+    TouchdownError where it cannot be written, or where the scene names what is not there.
     """
 
-    def __init__(self, path: Path, scene: Scene, system: System, most: int) -> None:
+    def __init__(
+        self,
+        path: Path,
+        scene: Scene,
+        system: System,
+        most: int,
+        begin: Callable[[], object] = lambda: None,
+    ) -> None:
         self.path = path
         self._components = system.components
         self._chosen = choose(scene.run, system)
@@ -52,6 +59,7 @@ class Recorder:
         self._appended = self._written = -np.inf  # s of wall time: the last row, the last time on the disk
         self._patience = LOSS
         self._failed = False
+        begin()
         try:
             self._table = self._new(most)
         except OSError as error:

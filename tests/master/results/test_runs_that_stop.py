@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import h5py
 import pytest
@@ -20,6 +21,7 @@ from touchdown.master.common.errors import FAILED, STOPPED
 from touchdown.master.common.interrupts import ended_as_by_ctrl_c, interrupts_noted
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.recorder.table import CHUNK
+from touchdown.master.coupling.simulation import Outcome
 from touchdown.master.results import run as results_run
 
 PATIENCE = 120.0  # s; a test that waits longer has failed
@@ -247,6 +249,20 @@ def rows_in(path: Path) -> int:
         return len(file["time"])
 
 
+@pytest.mark.parametrize("mistake", ["bearing.clearance=0.25", "run.record=foo", "run.macro_step=20"])
+def test_a_run_that_is_refused_leaves_what_there_was(run: Command, tmp_path: Path, mistake: str) -> None:
+    run(SCENE, *SHORT)
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+    assert run(SCENE, *SHORT, "--set", mistake).status == FAILED
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+
+
+def test_what_a_bearing_refuses_is_said_through_its_fmu_too(command: Command, tmp_path: Path) -> None:
+    """It has no outputs then; the housing, which is handed them, is not to blame."""
+    refused = command("run", SCENE, *SHORT, "--set", "bearing.clearance=0.25", "--quiet", "-o", tmp_path)
+    assert "component bearing: clearance = 0.25 m is out of all proportion" in refused.line
+
+
 def test_what_an_earlier_run_left_goes_first(
     run: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -256,8 +272,15 @@ def test_what_an_earlier_run_left_goes_first(
     for name in ("orbit.png", "energy-bearing.png", "mine.png", "orbit-of-mine.png"):
         (out / name).touch()
     seen: list[str] = []
-    monkeypatch.setattr(
-        results_run, "simulate", lambda *_: seen.extend(path.name for path in out.iterdir()) or 1 / 0
-    )
+    simulate = results_run.simulate
+
+    def looked_at(*given: Any, begin: Callable[[], object]) -> Outcome:
+        def look() -> None:
+            begin()
+            seen.extend(path.name for path in out.iterdir())
+
+        return simulate(*given, begin=look)
+
+    monkeypatch.setattr(results_run, "simulate", looked_at)
     run(SCENE, *SHORT)
     assert sorted(seen) == [".touchdown.lock", "mine.png", "orbit-of-mine.png", "scene.json"]
