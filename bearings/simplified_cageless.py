@@ -61,7 +61,7 @@ from touchdown.bearings.rolling.declarations import (
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.micro_step import KickMemory, book, leapfrog, resolved_step
+from touchdown.bearings.rolling.micro_step import MICRO_STEP, KickMemory, book, leapfrog, step_limits
 from touchdown.bearings.rolling.pitch_circle import RollingResistance
 from touchdown.bearings.rolling.row import (
     MOST_STATES,
@@ -97,9 +97,10 @@ class Parameters(RollingParameters):
 
     interface: Interface = group(Interface, tolerance=2e-5)
     micro_step: float = real(
-        2.5e-6,
+        MICRO_STEP,
         "s",
-        "longest step inside, of the velocity Verlet method; 0: adaptive linearly implicit steps of the "
+        "longest step inside, of the velocity Verlet method; shorter ones follow below the default; "
+        "0: adaptive linearly implicit steps of the "
         "error interface.tolerance",
         minimum=0.0,
         maximum=1e-4,
@@ -154,6 +155,7 @@ class Derived(RollingDerived):
     run_radius: float = real(0.0, "m", "where ball centres run, unloaded: as (5.1) corrects it")
     run_share: float = real(0.0, "1", "of the rings' approach by which that radius grows")
     micro_step: float = real(0.0, "s", "longest step inside")
+    resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
     angles: tuple = array(MOST_BALLS)
 
 
@@ -237,6 +239,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m.p.balls.count, m.d.angles)
+    m.s.balls.cross[:] = 1.0
     m.s.kick = 0.5 * m.d.micro_step
     state_constants(m)
     seat.begin(react, report, m)
@@ -296,7 +299,7 @@ def derive(p: Parameters) -> Derived:
         touch_angle=b.touch_angle,
         run_radius=run_radius,
         run_share=run_share,
-        micro_step=resolved_step(p.micro_step, hit),
+        **step_limits(p.micro_step, hit),
         rest_x=rest_x,
         rest_y=rest_y,
         angles=tuple(b.angles() + [0.0] * (MOST_BALLS - b.count)),

@@ -28,6 +28,7 @@ from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, pre
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import ball_motion
+from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION
 from touchdown.bearings.seat.load import remember
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
@@ -37,7 +38,6 @@ MODULES = {"cageless": detailed_cageless, "caged": detailed_caged}
 IMPACT = 1.5e-3  # s
 STRETCH = 20e-3  # s, over which integrators are timed
 ALLOWED = 0.01  # error of the peaks
-KEPT = 2.5e-6  # s, the models' own step inside
 
 
 def released(module: ModuleType, falling: bool = False) -> Instance:
@@ -100,6 +100,7 @@ def kept(module: ModuleType) -> Callable:
         m = words.view(memory)[0]
         rows = work.ravel().view(scratch)[0].rows
         m.d.micro_step = step
+        m.d.resolution = RESOLUTION * min(step / MICRO_STEP, 1.0)
         m.s.kick = 0.5 * step
         m.p.interface.tolerance = max(tolerance, 1e-12)
         evaluations = 0
@@ -116,7 +117,7 @@ def kept(module: ModuleType) -> Callable:
 
 def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
     """(us per right-hand side, loaded balls) at the first impact's height."""
-    instance = Runner("", kept(module), KEPT).run(module, 4e-4)[0]
+    instance = Runner("", kept(module), MICRO_STEP).run(module, 4e-4)[0]
     rhs, memory, scratch = module.rhs, module.MEMORY, module.SCRATCH
 
     @numba.njit(error_model="numpy")
@@ -140,7 +141,7 @@ def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
 
 def race_times(module: ModuleType) -> tuple[float, float]:
     """us for both races: all balls at once, and one by one with those out of reach skipped."""
-    instance = Runner("", kept(module), KEPT).run(module, 4e-4)[0]
+    instance = Runner("", kept(module), MICRO_STEP).run(module, 4e-4)[0]
     layout = module.MEMORY
     one_race = one_by_one_at_a_race()
 
@@ -192,7 +193,7 @@ def one_by_one_at_a_race() -> Callable:
 
 def runners(module: ModuleType) -> list[Runner]:
     """The kept integrator and those that were tried, each over its range."""
-    steps = (0.5 * KEPT, KEPT, 2.0 * KEPT)
+    steps = (0.5 * MICRO_STEP, MICRO_STEP, 2.0 * MICRO_STEP)
     found = [Runner("leapfrog, friction implicit (kept)", kept(module), h) for h in steps]
     for label, tried in make(module).items():
         carry = carrier(module, tried)
@@ -222,7 +223,7 @@ def integrator_table(module: ModuleType, exact: np.ndarray, repeat: int) -> floa
             continue
         print(f"{100 * off[0]:>8.2g} %{100 * off[1]:>8.2g} %", end="")
         print(f"{runs[0][2] / STRETCH * 1e-6:>10.3g}{cost:>10.3g}")
-        if "kept" in runner.label and runner.step == KEPT:
+        if "kept" in runner.label and runner.step == MICRO_STEP:
             ours = cost
     return ours
 
@@ -290,7 +291,7 @@ def whole_drops(repeat: int) -> None:
     """5 s from the shutdown: monolithic in process, and through FMUs."""
     print(f"\nwhole drop of 5 s, wall time over simulated time, median of {repeat}")
     for name, module in MODULES.items():
-        runner = Runner("", kept(module), KEPT)
+        runner = Runner("", kept(module), MICRO_STEP)
         runner.run(module, 1e-5)
         mono = statistics.median(runner.run(module, 5.0, falling=True)[1] for _ in range(repeat)) / 5.0
         scene = load_scene(f"disk-{name}-detailed")

@@ -1,7 +1,8 @@
 """What a crossing of the FMI costs: time per FMU and macro step beyond its kernel.
 
 Runs a drop through FMUs and in process, in pairs, and times in the same run, per component, what the
-master spends on it (inputs, step, outputs) and what the compiled kernel alone takes.
+master spends on it (inputs, step, outputs) and what the compiled kernel alone takes. The last column is the
+same with this FMU, and no other, in a process of its own (`isolate`).
 
 The last lines set the whole run beside its kernels' own time, which one compiled program would need.
 
@@ -48,13 +49,22 @@ def fmu_times(scene: Scene) -> dict[str, float]:
     return _per_step(scene, system, spent)
 
 
+def isolated_times(scene: Scene) -> dict[str, float]:
+    """The same of each FMU when it, and no other, is in a process of its own."""
+    return {name: fmu_times(scene.set({f"{name}.isolate": True}))[name] for name in scene.components}
+
+
 def _time_calls(component: object, call: str, spent: dict[str, float], name: str) -> None:
     original = getattr(component, call)
+    first = call == "step"
 
     def timed(*arguments: float) -> None:
+        nonlocal first
         began = clock.perf_counter()
         original(*arguments)
         spent[name] += clock.perf_counter() - began
+        if first:  # up to here, a process of its own has loaded its machine code
+            spent[name], first = 0.0, False
 
     setattr(component, call, timed)
 
@@ -85,18 +95,22 @@ def main() -> None:
     if options.macro_step is not None:
         scene = scene.set({"run.macro_step": options.macro_step})
     kernel_times(scene), fmu_times(scene)  # compile and warm up
-    runs = [(kernel_times(scene), fmu_times(scene), whole_run(scene)) for _ in range(options.pairs)]
+    runs = [
+        (kernel_times(scene), fmu_times(scene), whole_run(scene), isolated_times(scene))
+        for _ in range(options.pairs)
+    ]
     step = scene.run.macro_step
     print(f"{scene.name}, macro step {1e6 * step:g} us, median of {options.pairs}")
-    print(f"{'component':<12}{'kernel [us]':>13}{'FMU [us]':>13}{'beyond [us]':>13}")
+    print(f"{'component':<12}{'kernel [us]':>13}{'FMU [us]':>13}{'beyond [us]':>13}{'isolated [us]':>15}")
     for name in runs[0][0]:
-        kernel = statistics.median(k[name] for k, _, _ in runs)
-        fmu = statistics.median(f[name] for _, f, _ in runs)
-        beyond = statistics.median(f[name] - k[name] for k, f, _ in runs)
-        print(f"{name:<12}{kernel:>13.2f}{fmu:>13.2f}{beyond:>13.2f}")
-    kernels = statistics.median(sum(k.values()) for k, _, _ in runs)
-    whole = statistics.median(w for _, _, w in runs)
-    ratio = statistics.median(w / sum(k.values()) for k, _, w in runs)
+        kernel = statistics.median(k[name] for k, _, _, _ in runs)
+        fmu = statistics.median(f[name] for _, f, _, _ in runs)
+        beyond = statistics.median(f[name] - k[name] for k, f, _, _ in runs)
+        isolated = statistics.median(i[name] for _, _, _, i in runs)
+        print(f"{name:<12}{kernel:>13.2f}{fmu:>13.2f}{beyond:>13.2f}{isolated:>15.2f}")
+    kernels = statistics.median(sum(k.values()) for k, _, _, _ in runs)
+    whole = statistics.median(w for _, _, w, _ in runs)
+    ratio = statistics.median(w / sum(k.values()) for k, _, w, _ in runs)
     print(f"whole run: {whole:.1f} us per macro step, its kernels {kernels:.1f} us: {ratio:.2f} times;")
     print(f"{1e-6 * whole / step:.2f} s per simulated s, the kernels alone {1e-6 * kernels / step:.2f}")
 

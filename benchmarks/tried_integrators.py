@@ -14,7 +14,7 @@ import numba
 from touchdown.bearings.contact.friction import slope
 from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.bodies.state import SPIN, drift, fastest
-from touchdown.bearings.rolling.micro_step import forecast
+from touchdown.bearings.rolling.micro_step import RESOLUTION, forecast
 from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
 
 
@@ -40,7 +40,10 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         rhs(0.0, m.q, rows[0], m)
-        return 1 + verlet.integrate(rhs, drift, unaware, fastest, observe, m, m.q, m.n, rows, span, step)[1]
+        steps = verlet.Steps(step, RESOLUTION)
+        return (
+            1 + verlet.integrate(rhs, drift, unaware, fastest, observe, m, m.q, m.n, rows, span, steps)[1]
+        )
 
     return tried
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import shutil
 import sys
 import tempfile
 import zipfile
@@ -17,7 +19,7 @@ from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import write_host, write_package, write_script
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import is_own, kept
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 
@@ -42,10 +44,34 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
 
 
 def cached(recipe: Recipe) -> Path:
-    """The FMU of a recipe and the present sources, built on first use."""
-    folder = user_cache() / "fmus" / recipe.content
-    path = folder / f"{recipe.name}.fmu"
-    return path if path.is_file() else build(recipe, folder)
+    """The FMU of a recipe and the present sources; built on first use, and where it is damaged.
+
+    Raises OSError where it cannot be written, not even into a temporary folder.
+    """
+    return kept(lambda folder: _sound(recipe, folder), "fmus", recipe.content)
+
+
+def _sound(recipe: Recipe, folder: Path) -> Path:
+    """The FMU in `folder` if it is as it was built, else a new one; its digest lies beside it."""
+    path, noted = folder / f"{recipe.name}.fmu", folder / f"{recipe.name}.sha256"
+    try:
+        if noted.read_text(encoding="ascii") == _line(path) and is_own(path.stat()):
+            return path
+    except (OSError, ValueError):
+        pass
+    for damaged in (path, noted):
+        if damaged.is_dir() and not damaged.is_symlink():
+            shutil.rmtree(damaged)
+    build(recipe, folder)
+    fresh = noted.with_suffix(f".{os.getpid()}")
+    fresh.write_text(_line(path), encoding="ascii")
+    fresh.replace(noted)
+    return path
+
+
+def _line(path: Path) -> str:
+    """Digest and name of a file, as `sha256sum` writes them and checks them."""
+    return f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n"
 
 
 def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes]:

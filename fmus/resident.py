@@ -1,46 +1,99 @@
 """Sources of touchdown-cosim inside an FMU.
 
-Compiled kernels are cached by the path of their source, and tools unpack FMUs into ever new folders.
-So these sources are run from one place per user, named by their content; the first FMU puts them
-there, and everyone after it starts with the machine code in the cache. Where that place cannot be
-written they are run from where they are.
+Tools unpack FMUs into ever new folders, where every start would compile the sources to bytecode again. So
+they are run from one place per user, named by their content, with their bytecode beside them; the first FMU
+puts them there. What is damaged there is put there anew. Where that cannot be they are run from here.
 """
 
 import contextlib
 import filecmp
-import os
+import hashlib
+import importlib.util
+import py_compile
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
 HELD: list = []  # globals of FMU scripts, see there
+DIGESTS = "bytecode.txt"  # digest and path of all bytecode
 
 
-def _user_cache() -> Path:
-    root = os.environ.get("TOUCHDOWN_CACHE")
-    if root:
-        return Path(root)
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return Path(base) / "touchdown-cosim"
+def _cache_folder(here: Path):
+    """The module that knows the cache, read before the package it is of can be imported."""
+    path = here / "modelkit" / "kernel" / "cache_folder.py"
+    spec = importlib.util.spec_from_file_location(f"{__name__}_cache_folder", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
-def _same(here: Path, there: Path) -> bool:
-    names = [str(path.relative_to(here)) for path in here.rglob("*.py")]
-    return not any(filecmp.cmpfiles(here, there, names, shallow=False)[1:])
+def _sources(folder: Path) -> list[str]:
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*.py"))
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _whole(here: Path, there: Path) -> bool:
+    """Whether `there` has the sources of `here`, and bytecode as it was made of them."""
+    names = _sources(here)
+    if any(filecmp.cmpfiles(here, there, names, shallow=False)[1:]):
+        return False
+    try:
+        lines = (there / DIGESTS).read_text(encoding="utf-8").splitlines()
+        noted = {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
+        return len(noted) == len(names) and all(noted[n] == _digest(there / n) for n in noted)
+    except (OSError, ValueError):
+        return False
+
+
+def _put(here: Path, there: Path) -> Path:
+    """Copy the sources and compile them to bytecode; what was there before goes."""
+    fresh = Path(tempfile.mkdtemp(prefix=".", dir=there.parent))
+    try:
+        copy = fresh / "copy"
+        shutil.copytree(here, copy, ignore=shutil.ignore_patterns("__pycache__"))
+        made = [_compiled(copy, name, there) for name in _sources(copy)]
+        lines = [f"{_digest(copy / name)}  {name}\n" for name in made]
+        (copy / DIGESTS).write_text("".join(lines), encoding="utf-8")
+        if not _whole(here, there):  # else another process was first
+            with contextlib.suppress(OSError):
+                there.rename(fresh / "before")
+                copy.rename(there)
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+    return there
+
+
+def _compiled(folder: Path, name: str, there: Path) -> str:
+    """Compile the source `name` in `folder`, which is to be run from `there`; returns the bytecode's name.
+
+    Unchecked, it is taken as it lies there, and never written again.
+    """
+    source = Path(name)
+    target = source.parent / "__pycache__" / f"{source.stem}.{sys.implementation.cache_tag}.pyc"
+    py_compile.compile(
+        str(folder / source),
+        cfile=str(folder / target),
+        dfile=str(there / source),
+        doraise=True,
+        invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH,
+    )
+    return str(target)
 
 
 def _resident() -> Path:
     here = Path(__file__).resolve().parent
-    there = _user_cache() / "sources" / here.name
     try:
-        if not there.is_dir():
-            there.parent.mkdir(parents=True, exist_ok=True)
-            fresh = Path(tempfile.mkdtemp(dir=there.parent))
-            shutil.copytree(here, fresh / here.name, ignore=shutil.ignore_patterns("__pycache__"))
-            with contextlib.suppress(OSError):  # another process may be first
-                (fresh / here.name).rename(there)
-            shutil.rmtree(fresh, ignore_errors=True)
-        return there if _same(here, there) else here
+        cache = _cache_folder(here)
+        there = cache.own_folder("sources", f"{here.name}-{sys.implementation.cache_tag}")
+        if not _whole(here, there):
+            there = cache.kept(lambda folder: _put(here, folder), "sources", there.name)
+        return there if _whole(here, there) else here
     except OSError:
         return here
 

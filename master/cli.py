@@ -4,27 +4,59 @@
 from __future__ import annotations
 
 import argparse
-import platform
+import errno
 import sys
+import warnings
 from collections.abc import Sequence
-from importlib import metadata
+from typing import NoReturn
 
 import argcomplete
 
-from touchdown.fmus.version import VERSION
 from touchdown.master import verbs
 from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.verbs.screen import broken_off, complain
+from touchdown.master.common.interrupts import ended_as_by_ctrl_c
+from touchdown.master.common.processes import watched
+from touchdown.master.verbs.fault import report_fault, versions
+from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
+
+UNSAID = (  # warnings of libraries that would say in lines of code what the command says, or shows, itself
+    (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
+    (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and its figures are none
+)
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit status. A user's mistake is one line on stderr."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    command = parser()
-    argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
-    options = command.parse_args(joined(given))
+    """Run the command; returns the exit status. What goes wrong is one line on stderr."""
+    show_any_text()
+    if arguments is not None:
+        return _run(list(arguments))
+    watched.allow_watching()
+    return watched.end(_run(sys.argv[1:]))
+
+
+def _run(given: list[str]) -> int:
+    """The exit status, all that was printed delivered."""
     try:
-        return options.run(options)
+        status = _executed(given)
+    except SystemExit as end:  # argparse's, after help, version, or what it could not read
+        if isinstance(end.code, str):
+            raise
+        raise SystemExit(_delivered(end.code or 0)) from None
+    return _delivered(status)
+
+
+def _executed(given: list[str]) -> int:
+    """The exit status of what is asked for."""
+    try:
+        command = parser()
+        argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
+        options = command.parse_args(joined(given))
+        with warnings.catch_warnings():
+            for kind, meant in UNSAID:
+                warnings.filterwarnings("ignore", meant, kind)
+            with ended_as_by_ctrl_c():
+                return options.run(options)
     except TouchdownError as error:
         complain(str(error))
         return FAILED
@@ -32,16 +64,44 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return broken_off()
     except BrokenPipeError:
         return 0
+    except MemoryError:
+        complain("it needs more memory than there is; ask for less of it")
+        return FAILED
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            return report_fault(error, given)
+        undelivered()  # or what is left to print would be refused, and said, again
+        what = error.filename or "what it has to say"
+        complain(f"cannot write {what}: {error.strerror}; make room for it")
+        return FAILED
+    except Exception as error:
+        return report_fault(error, given)
+
+
+def _delivered(status: int) -> int:
+    """The exit status, once all that was printed is out."""
+    why = undelivered()
+    if why:
+        complain(f"cannot write what it has to say: {why}; make room for it")
+    return FAILED if why else status
+
+
+class _Parser(argparse.ArgumentParser):
+    """Whose complaints are one line, too."""
+
+    def error(self, message: str) -> NoReturn:
+        complain(f"{message}; see {self.prog} --help")
+        raise SystemExit(FAILED)
 
 
 def parser() -> argparse.ArgumentParser:
     """What reads the command line; `run` of its result does what was asked for."""
-    command = argparse.ArgumentParser(
+    command = _Parser(
         prog="touchdown",
         description="Rotor drops onto touchdown bearings, co-simulated with FMUs.",
         epilog="`touchdown VERB --help` has the options of a verb, and examples.",
     )
-    command.add_argument("--version", action="version", version=_versions())
+    command.add_argument("--version", action="version", version=versions())
     added = command.add_subparsers(required=True, metavar="VERB")
     for verb in verbs.ALL:
         verb.add_to(added)
@@ -56,8 +116,3 @@ def joined(arguments: list[str]) -> list[str]:
             i = found.index(option)
             found[i : i + 2] = [f"{option}={found[i + 1]}"]
     return found
-
-
-def _versions() -> str:
-    numba = metadata.version("numba")
-    return f"touchdown-cosim {VERSION}, Python {platform.python_version()}, numba {numba}"

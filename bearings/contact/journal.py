@@ -27,6 +27,7 @@ class Touch(NamedTuple):
     journal_moment: float  # N m
     ring_moment: float
     normal: float  # N
+    elastic: float  # N, what of it is not damping
     indentation: float  # m; negative: the gap
     rate: float  # of the indentation, m/s
     loss: float  # W, heat
@@ -49,7 +50,8 @@ def place_in_bore(journal, ring, journal_radius, clearance):
 def touch_of(press, indentation, loss):
     """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m); loss: W."""
     c = press
-    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, indentation, c.rate, loss)
+    elastic = c.normal - c.damped
+    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, elastic, indentation, c.rate, loss)
 
 
 @kernel
@@ -62,7 +64,7 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
     place = place_in_bore(journal, ring, journal_radius, clearance)
     if place.indentation <= 0.0:
         _, rate = slip(journal, ring, place, INSIDE)
-        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
+        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
     pressed = press(journal, ring, place, INSIDE, law, friction, STILL)
     return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0))
 
@@ -95,12 +97,14 @@ class Touched:
     normal: float = real(0.0, "N", "normal force")
     indentation: float = real(0.0, "m", "indentation; negative: the gap")
     rate: float = real(0.0, "m/s", "of the indentation")
+    elastic: float = real(0.0, "N", "what of the normal force is not damping")
 
 
 @kernel
 def note(touched, contact):
     """Keep a `Touch` (N, m, m/s) in the record `touched` of `Touched`."""
-    touched.normal, touched.indentation, touched.rate = contact.normal, contact.indentation, contact.rate
+    touched.normal, touched.elastic = contact.normal, contact.elastic
+    touched.indentation, touched.rate = contact.indentation, contact.rate
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,9 @@ from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.variables import array, group, real
 
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
-STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step
+MICRO_STEP = 2.5e-6  # s, the default
+RESOLUTION = 0.8  # rad of the fastest contact, at most a step, at the default
+STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step, at the default
 
 
 @dataclass(frozen=True)
@@ -75,28 +77,31 @@ def book(dq, load, m):
 
 @inlined
 def leapfrog(rhs, drift, fastest, observe, m, work, span):
-    """Advance m.q by `span` (s) in steps of at most m.d.micro_step.
+    """Advance m.q by `span` (s) in steps of at most m.d.micro_step and m.d.resolution.
 
     The kernels are those of `verlet.integrate`; work: rows of scratch as long as the state. Returns
     (micro-step to try next (s), status, evaluations).
     """
     m.s.ahead[:] = 0.0
     book(work[0], seat.last_load(m), m)
+    steps = verlet.Steps(m.d.micro_step, m.d.resolution)
     status, evaluations = verlet.integrate(
-        rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, m.d.micro_step
+        rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, steps
     )
     return m.h, status, evaluations
 
 
-def resolved_step(longest: float, contacts: Sequence[tuple[ContactLaw, float]]) -> float:
-    """Longest step (s) of the leapfrog method: the one asked for, and short enough for every contact.
+def step_limits(longest: float, contacts: Sequence[tuple[ContactLaw, float]]) -> dict[str, float]:
+    """`micro_step` (s) and `resolution` (rad) of the leapfrog method: as asked for, and short enough.
 
+    Steps that contacts shorten are refined with the one asked for, so that all error falls with it;
     contacts: (law, mass in kg of the lighter body). A body that hits at the landing's speed v must not fly
     past the contact: it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
     """
+    finer = min(longest / MICRO_STEP, 1.0)
     steps = [longest]
     for law, mass in contacts:
         power = 1.0 / (law.exponent + 1.0)
         depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2 / law.stiffness) ** power
-        steps.append(STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE)
-    return min(steps)
+        steps.append(finer * STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE)
+    return {"micro_step": min(steps), "resolution": finer * RESOLUTION}

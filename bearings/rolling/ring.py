@@ -15,7 +15,7 @@ from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
 from touchdown.bearings.rolling.pitch_circle import Gap
-from touchdown.bearings.rolling.rubbing import Bore, Moved, Push, over_ring
+from touchdown.bearings.rolling.rubbing import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
@@ -124,9 +124,29 @@ def rub_journal(at, squeezed, friction, moved, m):
     t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -(moved.x * at.nx + moved.y * at.ny)))
     note(s.ring, t)
     s.rubbed = friction
-    elastic = squeezed.normal - squeezed.damped
-    s.brake.jx, s.brake.jy, s.brake.jm = t.fx + elastic * at.nx, t.fy + elastic * at.ny, t.journal_moment
+    s.brake.jx, s.brake.jy, s.brake.jm = (
+        t.fx + t.elastic * at.nx,
+        t.fy + t.elastic * at.ny,
+        t.journal_moment,
+    )
     return t
+
+
+@woven
+def rub_races(q, pressed, answers, inner, m):
+    """Friction of all balls at both races and of the journal in the bore, over the kick m.s.kick.
+
+    pressed: `Total` (N, N m) of the balls on the ring but for friction; answers: `Answers` of a ball;
+    inner: `Inner` (n,). The races' friction and heat are set in m.s.outer and m.s.inner. Returns the
+    journal's `Touch` (N, N m, m, W) and `Moved`: what the kick does to the ring.
+    """
+    s, n = m.s, len(inner.nx)
+    at, kick, squeezed = meet_journal(q, m)
+    around = Around(moved_before(m), push_on(at, squeezed, pressed, m), bore_line(at, kick, squeezed, m))
+    races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
+    law = curve(m.d.race_friction)
+    friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1])
+    return rub_journal(at, squeezed, friction, moved, m), moved
 
 
 @kernel

@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import curve
 from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
-from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
+from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
 from touchdown.bearings.rolling.side import heat_of, note, note_apart
 from touchdown.modelkit.angles import cosine_and_sine
 from touchdown.modelkit.kernel import inlined, kernel, woven
@@ -68,7 +67,6 @@ class Loads(NamedTuple):
     elastic: object  # N
     indentation: object  # m
     lever: object  # m
-    cross: object
     radius: object  # m
     along: object  # m/s2
     rate: object  # m/s
@@ -107,8 +105,8 @@ def raceway(m):
 @inlined
 def _loads_of(s, n):
     """`Loads` (n,) as views of `s` (RaceBalls)."""
-    ways = s.lever[:n], s.cross[:n], s.radius[:n]
-    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.along[:n], s.rate[:n], s.damped[:n], s.drag[:n])
+    ways = s.lever[:n], s.radius[:n], s.along[:n]
+    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.rate[:n], s.damped[:n], s.drag[:n])
 
 
 @woven
@@ -133,12 +131,23 @@ def _press_all(gap, way, before, gravity, course, loads, inner, outer):
         loads.elastic[b] = ball.elastic
         loads.indentation[b] = at.indentation
         loads.lever[b] = at.lever
-        loads.cross[b] = 1.0
         loads.radius[b] = at.radius
         loads.along[b] = -ball.held * by_mass - gravity * c
         inner.normal[b], outer.normal[b] = ball.force, ball.outer
         inner.sliding[b], outer.sliding[b] = -at.inner, -at.outer
         loads.rate[b], loads.damped[b], loads.drag[b] = at.rate, ball.force - ball.elastic, ball.drag
+
+
+@woven
+def _crowd(m):
+    """By how much more than one ball's force its mates' move the ring, so that much damping is stable.
+
+    Each takes the others' damping from the kick before; along any direction half of a full row counts.
+    """
+    loaded = 0.0
+    for b in range(m.p.balls.count):
+        loaded += 1.0 if m.s.inner.normal[b] > 0.0 else 0.0
+    return max(1.0, 0.5 * loaded)
 
 
 @woven
@@ -149,7 +158,7 @@ def press_balls(q, dq, m):
     angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
     _directions(angle, at.cosine[:n], at.sine[:n])
     moved = ring.moved_before(m)
-    before = Before(moved.x, moved.y, s.kick / m.p.ring.mass)
+    before = Before(moved.x, moved.y, _crowd(m) * s.kick / m.p.ring.mass)
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
     _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, _loads_of(at, n), inner, outer)
@@ -228,35 +237,22 @@ def rub_balls(q, dq, m):
 
     Returns the journal's `Touch` and the `Total` (N, N m, W) on the ring.
     """
-    d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
-    n = rounded(count)
+    d, s, h = m.d, m.s, m.s.kick
+    n = rounded(m.p.balls.count)
     share = m.p.as_printed * d.ball_radius / d.pitch_radius  # of (2.10) as printed
     _drive(dq, m)
-    at, kick, squeezed = ring.meet_journal(q, m)
     pressed = _pressing(m)
     answers = Answers(
         h * (1.0 + share) / d.mass,
         h * (1.0 - share) / d.mass,
         h * d.ball_radius * d.ball_radius / d.inertia,
     )
-    around = Around(
-        ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
-    )
     inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
-    friction, moved = rub(
-        h,
-        count,
-        curve(d.race_friction),
-        answers,
-        around,
-        inner,
-        rubbed_of(s.outer, n),
-        rubbed_of(s.inner, n),
-    )
+    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
     _rub(q, dq, share, moved, m)
     balls = _with_friction(pressed, m)
     s.brake.hx, s.brake.hy = pressed.fx - balls.fx, pressed.fy - balls.fy
-    return ring.rub_journal(at, squeezed, friction, moved, m), balls
+    return journal, balls
 
 
 @woven
@@ -321,5 +317,5 @@ def fastest(m):
         side = max(side, s.side.stiffness[b])
     below *= d.race.exponent
     if s.ring.indentation > 0.0:
-        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
+        below += m.p.contact.exponent * s.ring.elastic / s.ring.indentation
     return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * side / d.mass)), s.seat.fastest)

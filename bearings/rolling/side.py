@@ -35,7 +35,7 @@ def note(contacts, b, press, place, law):
     c.sliding[b], c.rate[b] = press.sliding, press.rate
     c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
     c.indentation[b] = place.indentation
-    c.stiffness[b] = law.exponent * press.normal / place.indentation
+    c.stiffness[b] = law.exponent * (press.normal - press.damped) / place.indentation
 
 
 @kernel

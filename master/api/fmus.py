@@ -16,6 +16,7 @@ from touchdown.master.common.several import several
 from touchdown.master.components.library import locate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
+from touchdown.master.scene.run_spec import CALL_TIMEOUT
 
 
 def build(
@@ -41,17 +42,23 @@ def build(
         raise TouchdownError(str(error)) from None
 
 
-def check(fmu: PathLike, role: str | None = None, names: Mapping[str, str] | None = None) -> Report:
+def check(
+    fmu: PathLike,
+    role: str | None = None,
+    names: Mapping[str, str] | None = None,
+    call_timeout: float = CALL_TIMEOUT,
+) -> Report:
     """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run.
 
     role: "bearing", "rotor", "amb" or "housing", whether it can stand in for one; names: what it calls the
-    variables of the contract. The report's `problems` are empty where all is well. Raises TouchdownError
+    variables of the contract. An FMU at a path runs in a process of its own, where each call may take
+    call_timeout (s). The report's `problems` are empty where all is well. Raises TouchdownError
     where there is nothing to check.
 
     >>> touchdown.check("bushing", role="bearing").problems
     []
     """
-    return check_fmu(os.fspath(fmu), role, names)
+    return check_fmu(os.fspath(fmu), role, names, call_timeout)
 
 
 def _recipe(name: str) -> Recipe:

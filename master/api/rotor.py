@@ -16,7 +16,7 @@ from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import kept
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written
@@ -106,14 +106,13 @@ class Rotor(Shaft):
 
     def __fspath__(self) -> str:
         """A file of it in the cache: what a scene takes."""
-        own = hashlib.sha256(self._text().encode()).hexdigest()[:16]
+        text = self._text()
+        own = hashlib.sha256(text.encode()).hexdigest()[:16]
         name = re.sub(r"\W+", "_", self.title, flags=re.ASCII).strip("_").lower() or "rotor"
-        path = user_cache() / "rotors" / f"{name}_{own}.toml"
-        if not path.is_file():
-            with writing_to(path.parent):
-                path.parent.mkdir(parents=True, exist_ok=True)
-            fresh = self.save(path.with_suffix(f".{os.getpid()}"))
-            fresh.replace(path)
+        try:
+            path = kept(lambda folder: _written(folder / f"{name}_{own}.toml", text.encode()), "rotors")
+        except OSError as error:
+            raise TouchdownError(f"cannot write {name}.toml: {error.strerror or error}") from None
         return str(path)
 
     def _text(self) -> str:
@@ -138,6 +137,15 @@ class Rotor(Shaft):
             f"<Rotor {self.title}: {len(self.elements)} elements, {self.nodes} nodes, {self.mass:.5g} kg, "
             f"{self.positions()[-1]:.5g} m, stations: {stations or 'none'}>"
         )
+
+
+def _written(path: Path, content: bytes) -> Path:
+    """The file at `path`, written where it does not hold `content`."""
+    if not path.is_file() or path.read_bytes() != content:
+        fresh = path.with_suffix(f".{os.getpid()}")
+        fresh.write_bytes(content)
+        fresh.replace(path)
+    return path
 
 
 class RotorPlot:

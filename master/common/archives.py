@@ -3,16 +3,34 @@
 from __future__ import annotations
 
 import os
+import re
 import stat
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-from touchdown.fmus.build import EPOCH
 from touchdown.master.common.errors import TouchdownError
+from touchdown.modelkit.kernel.cache_folder import is_own
 
-LARGEST = 2 * 1024**3  # bytes, unpacked
+LARGEST = 512 * 1024**2  # bytes, unpacked; VARIABLE says otherwise
+VARIABLE = "TOUCHDOWN_LARGEST_FMU"
 MOST = 20_000  # entries
+_SIZE = re.compile(r"\s*([0-9.]+(?:e[0-9]+)?)\s*(|k|M|G|T)(i?)B?\s*")
+_PIECE = 2**20  # bytes read at a time
+
+
+def largest() -> int:
+    """How many bytes an archive may unpack to. Raises TouchdownError for a setting that is no size."""
+    asked = os.environ.get(VARIABLE)
+    if not asked:
+        return LARGEST
+    found = _SIZE.fullmatch(asked)
+    try:
+        number, prefix, binary = found.groups() if found else ("", "", "")
+        return int(float(number) * (1024 if binary else 1000) ** " kMGT".index(prefix or " "))
+    except (ValueError, OverflowError):
+        raise TouchdownError(f"{VARIABLE} = {asked} is no size; write such as 2 GiB or 800 MB") from None
 
 
 def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
@@ -28,13 +46,40 @@ def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
             raise TouchdownError(f"{path} holds an entry {name!r} that leads out of its folder; refused")
         if stat.S_ISLNK(entry.external_attr >> 16):
             raise TouchdownError(f"{path} holds a link, {name!r}; refused")
-    size = sum(entry.file_size for entry in entries)
-    if size > LARGEST:
-        raise TouchdownError(
-            f"{path} would unpack to {size / 1e6:.0f} MB, more than {LARGEST / 1e6:.0f} MB; refused"
-        )
+    refuse_large(sum(entry.file_size for entry in entries), f"{path} would unpack to")
     if len(entries) > MOST:
         raise TouchdownError(f"{path} holds {len(entries)} entries, more than {MOST}; refused")
+
+
+def refuse_large(size: int, what: str) -> None:
+    """Raise TouchdownError where `size` (bytes) is more than an archive may have."""
+    if size > largest():
+        raise TouchdownError(
+            f"{what} {size / 1e6:.0f} MB, more than {largest() / 1e6:.0f} MB; refused (if that is right, "
+            f'set {VARIABLE} to such as "2 GiB")'
+        )
+
+
+def is_unpacked(archive: zipfile.ZipFile, folder: Path) -> bool:
+    """Whether `folder` has all files of the archive, of the sizes and with the checksums stated there."""
+    return all(
+        (folder / entry.filename).is_dir() if entry.is_dir() else _matches(folder / entry.filename, entry)
+        for entry in {entry.filename: entry for entry in archive.infolist()}.values()  # the last of a name
+    )
+
+
+def _matches(path: Path, entry: zipfile.ZipInfo) -> bool:
+    found = 0
+    try:
+        with path.open("rb") as file:
+            about = os.fstat(file.fileno())
+            if about.st_size != entry.file_size or not is_own(about):
+                return False
+            while piece := file.read(_PIECE):
+                found = zlib.crc32(piece, found)
+    except OSError:
+        return False
+    return found == entry.CRC
 
 
 def write_archive(path: Path, content: Mapping[str, bytes]) -> None:
@@ -42,6 +87,8 @@ def write_archive(path: Path, content: Mapping[str, bytes]) -> None:
 
     Fixed times and no compression. Raises TouchdownError where it cannot be written.
     """
+    from touchdown.fmus.build import EPOCH  # imports all models, which unpacking can do without
+
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -16,5 +16,5 @@ class Ended(Enum):
 
     COMPLETED = "completed"
     AS_WANTED = "as wanted"  # earlier, since what watched it had seen enough
-    INTERRUPTED = "interrupted"  # by Ctrl-C
+    INTERRUPTED = "interrupted"  # by Ctrl-C, SIGTERM, SIGHUP or SIGQUIT
     STOPPED = "stopped"  # it could not go on

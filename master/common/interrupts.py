@@ -1,38 +1,60 @@
-"""Ctrl-C noted, not raised: a run ends in order, between two macro steps."""
+"""Signals that ask for an end, noted and not raised: a run ends in order, between two macro steps."""
 
 from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 
-_noted: threading.Event | None = None  # while interrupts are noted; they are the process's, not a run's
+# From people, batch systems and containers, terminals that close, and people again.
+ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+
+
+class Interrupts:
+    """Whether a run was asked to end, and by what."""
+
+    def __init__(self) -> None:
+        self._by: signal.Signals | None = None
+
+    def is_set(self) -> bool:
+        """Whether it was."""
+        return self._by is not None
+
+    @property
+    def reason(self) -> str:
+        """For people: interrupted, or interrupted by SIGTERM."""
+        by = "" if self._by in (None, signal.SIGINT) else f" by {self._by.name}"
+        return f"interrupted{by}"
+
+    def note(self, number: int, _: object = None) -> None:
+        """A signal came. A second Ctrl-C raises KeyboardInterrupt: now, whatever it breaks."""
+        if self.is_set() and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        if not self.is_set():
+            self._by = signal.Signals(number)
+
+
+_noted: Interrupts | None = None  # while interrupts are noted; they are the process's, not a run's
 
 
 @contextmanager
-def interrupts_noted() -> Generator[threading.Event]:
+def interrupts_noted() -> Generator[Interrupts]:
     """Note Ctrl-C instead of raising: an exception in the middle of an FMU's call would break the FMU.
 
-    May be nested; what was noted outside is known inside. A second Ctrl-C raises KeyboardInterrupt at once.
+    So too SIGTERM, SIGHUP and SIGQUIT, where nobody else handles or ignores them. May be nested; what was
+    noted outside is known inside. A second Ctrl-C raises KeyboardInterrupt at once.
     """
     global _noted
     outer = _noted
     if outer is not None or threading.current_thread() is not threading.main_thread():
-        yield outer or threading.Event()
+        yield outer or Interrupts()
         return
-    _noted = noted = threading.Event()
-
-    def note(*_: object) -> None:
-        if noted.is_set():  # asked a second time: now, whatever it breaks
-            raise KeyboardInterrupt
-        noted.set()
-
-    before = signal.signal(signal.SIGINT, note)
+    _noted = noted = Interrupts()
     try:
-        yield noted
+        with _handled(noted.note, (signal.SIGINT, *filter(_free, ENDING[1:]))):
+            yield noted
     finally:
-        signal.signal(signal.SIGINT, before)
         _noted = None
 
 
@@ -42,8 +64,34 @@ def interrupts_ignored() -> Generator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with _handled(signal.SIG_IGN, (signal.SIGINT,)):
+        yield
+
+
+@contextmanager
+def ended_as_by_ctrl_c() -> Generator[None]:
+    """Meanwhile SIGTERM, SIGHUP and SIGQUIT raise KeyboardInterrupt, as Ctrl-C does, unless ignored."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    with _handled(_raise, filter(_free, ENDING[1:])):
+        yield
+
+
+def _raise(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _free(number: int) -> bool:
+    """Whether nobody else handles or ignores a signal (nohup ignores SIGHUP)."""
+    return signal.getsignal(number) in (signal.SIG_DFL, _raise)
+
+
+@contextmanager
+def _handled(handler: Callable[..., object] | signal.Handlers, numbers: Iterable[int]) -> Generator[None]:
+    before = {number: signal.signal(number, handler) for number in numbers}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, earlier in before.items():
+            signal.signal(number, earlier)

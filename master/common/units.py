@@ -53,3 +53,7 @@ def to_si(value: object, unit: str | None, name: str) -> float:
         return units.to_si(value, unit, name)
     except units.UnitError as error:
         raise TouchdownError(str(error)) from None
+    except OverflowError:  # an integer beyond what a real number can be
+        raise TouchdownError(
+            f"{name} is an integer of more than 308 digits; write a smaller number"
+        ) from None

@@ -84,10 +84,11 @@ class Component(ABC):
             ) from None
 
     def rename(self, names: Mapping[str, str]) -> None:
-        """Let variables go by other names: `names` gives the component's own for each.
+        """Let variables go by other names: `names` gives the component's own for each, or for a whole port.
 
         Raises TouchdownError where it has no such variable, or one that goes by the new name already.
         """
+        names = {new: own for name, own in names.items() for new, own in self._spelled_out(name, own)}
         owners = {self.variable(own).name: name for name, own in names.items()}
         for own, name in owners.items():
             if name in self.variables and name not in owners:
@@ -98,6 +99,13 @@ class Component(ABC):
         renamed = {owners.get(name, name): variable for name, variable in self.variables.items()}
         self.variables = {name: replace(variable, name=name) for name, variable in renamed.items()}
         self._own = dict(names)
+
+    def _spelled_out(self, name: str, own: str) -> list[tuple[str, str]]:
+        """A name for each variable of the port `own`, or for the variable of that name."""
+        inside = [v for v in self.variables if v.startswith(f"{own}.")]
+        if own in self.variables or not inside:
+            return [(name, own)]
+        return [(name + variable.removeprefix(own), variable) for variable in inside]
 
     def own_name(self, name: str) -> str:
         """What the component itself calls the variable `name`."""
@@ -162,8 +170,8 @@ class Component(ABC):
         """Free a saved state."""
 
     @abstractmethod
-    def close(self) -> None:
-        """Free what the component holds; nothing may be called after it."""
+    def close(self) -> str:
+        """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""
 
 
 def check_value(component: Component, variable: Variable, value: float) -> None:

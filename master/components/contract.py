@@ -37,7 +37,19 @@ MODE_LOAD = tuple(_declared(ports.ModeLoad))
 WORK, JUMP = _declared(ports.Account)  # what each side states of the energy that crossed
 UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.SeatLoad)
 
+REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
+    *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage", "speed"),
+    *("energy", "stress"),
+)
+SUPPLIED = "supplied"  # J, energy that a component brings in
+
 POSITION = ("x", "y")
 GAINS = ("inv_m", "inv_I", "k_over_m", "c_over_m")  # what a bearing carries a body by
 FORCE = ("fx", "fy")
 NEEDED = POSITION + FORCE  # no port works without them
+
+
+def reported(variable: str) -> bool:
+    """Whether a variable is an account at a port, or of those that figures and pictures read."""
+    group, last = variable.partition(".")[0], variable.rpartition(".")[2]
+    return group in REPORTS or variable == SUPPLIED or last in (WORK, JUMP)

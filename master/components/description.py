@@ -12,11 +12,19 @@ from touchdown.master.components.component import Kind
 from touchdown.modelkit.variables import Causality, Variability
 
 
+class DocumentTypeError(ValueError):
+    """An XML file that declares a document type."""
+
+
 def refuse_definitions(path: Path) -> None:
-    """Raise ValueError where an XML file defines entities: they may read files or grow without end."""
+    """Raise DocumentTypeError where an XML file could define entities: they read files or never end.
+
+    Found by a parser, in whatever encoding it stands. Raises ExpatError, ValueError or LookupError for what
+    is no XML, OSError for what cannot be read.
+    """
 
     def refuse(*_: Any) -> None:
-        raise ValueError("it has a document type definition, which FMI has no use for")
+        raise DocumentTypeError("it declares a document type, which FMI and SSP have no use for")
 
     parser = expat.ParserCreate()
     parser.StartDoctypeDeclHandler = refuse

@@ -1,4 +1,4 @@
-"""The one module that speaks FMI: a component that is an FMU, driven through fmpy.
+"""The one module that speaks FMI: a component that is an FMU in this process, driven through fmpy.
 
 Values travel through arrays allocated once, and the FMI functions are called with their addresses, so a
 call costs the crossing and nothing else.
@@ -9,12 +9,12 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from fmpy import calloc, free, read_model_description, sharedLibraryExtension
-from fmpy import platform as fmi_platform
+from fmpy import calloc, free
 from fmpy.fmi2 import (
     FMU2Slave,
     fmi2CallbackAllocateMemoryTYPE,
@@ -27,79 +27,29 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import BASE, Unit
-from touchdown.master.components.component import Component, Kind, Variable
-from touchdown.master.components.description import refuse_definitions, refuse_lies
+from touchdown.master.components.component import Component, Kind
+from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
-from touchdown.modelkit.variables import Causality, Variability
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
-
-
-def describe(path: Path, folder: Path) -> Any:
-    """fmpy's model description of an unpacked FMU that can be co-simulated here."""
-    try:
-        refuse_definitions(folder / "modelDescription.xml")
-        description = read_model_description(str(folder), validate=False)
-    except Exception as error:
-        first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({first})") from None
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        kind = "co-simulation" if description.coSimulation else "model exchange only"
-        raise TouchdownError(
-            f"{path} is FMI {description.fmiVersion}, {kind}; FMI 2.0 for co-simulation is needed"
-        )
-    identifier = description.coSimulation.modelIdentifier
-    refuse_lies(path, description)
-    if not (folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}").is_file():
-        there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
-        raise TouchdownError(
-            f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
-        )
-    if _by_pythonfmu(description):
-        _check_script(path, folder)
-    return description
-
-
-def _by_pythonfmu(description: Any) -> bool:
-    return "PythonFMU" in (description.generationTool or "")
-
-
-def _check_script(path: Path, folder: Path) -> None:
-    """pythonfmu's library ends the process where the script it is to run is missing."""
-    name = folder / "resources" / "slavemodule.txt"
-    module = name.read_bytes().decode("utf-8", "replace").strip() if name.is_file() else ""
-    if not module.isidentifier() or not (name.parent / f"{module}.py").is_file():
-        raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
-
-
-def variables_of(description: Any) -> dict[str, Variable]:
-    """Variables by name."""
-
-    def number(text: object) -> float | None:
-        try:
-            return None if text is None else float(str(text))
-        except ValueError:
-            return None
-
-    return {
-        v.name: Variable(
-            name=v.name,
-            reference=v.valueReference,
-            kind=Kind(v.type),
-            causality=Causality(v.causality or Causality.LOCAL),
-            variability=Variability(v.variability or Variability.CONTINUOUS),
-            unit=(v.unit or (v.declaredType.unit if v.declaredType else None))
-            if v.type == Kind.REAL
-            else "1",
-            minimum=number(v.min),
-            maximum=number(v.max),
-            start=number(v.start),
-            description=v.description or "",
-        )
-        for v in description.modelVariables
-    }
+CALLS = (  # what can be said of where an FMU is
+    "loading its library",
+    "fmi2Instantiate",
+    "fmi2SetupExperiment",
+    "fmi2EnterInitializationMode",
+    "fmi2ExitInitializationMode",
+    "fmi2SetReal",
+    "fmi2SetInteger",
+    "fmi2SetBoolean",
+    "fmi2DoStep",
+    "fmi2GetReal",
+    "fmi2GetFMUstate",
+    "fmi2SetFMUstate",
+    "fmi2FreeFMUstate",
+    "fmi2Terminate",
+    "fmi2FreeInstance",
+)
 
 
 def _resources(folder: Path, description: Any) -> str:
@@ -109,28 +59,22 @@ def _resources(folder: Path, description: Any) -> str:
     it crashes.
     """
     path = (folder / "resources").absolute()
-    if not _by_pythonfmu(description):
+    if not by_pythonfmu(description):
         return path.as_uri()
     if "%20" in str(path):
         raise TouchdownError(f"pythonfmu cannot read {path}: it has %20 in it; set another TOUCHDOWN_CACHE")
     return f"file://{path}"
 
 
-def units_of(description: Any) -> dict[str, Unit]:
-    """Units that the description defines by SI base units, by name."""
-    units: dict[str, Unit] = {}
-    for unit in description.unitDefinitions:
-        base = unit.baseUnit
-        if base is not None:
-            exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
-            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
-    return units
+def _release_interpreter(library: ctypes.CDLL) -> None:
+    """Have pythonfmu's library let go of the interpreter, which is not its own here.
 
-
-def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
-    """Variables and units of an FMU, which is not loaded."""
-    description = describe(path, unpack(path, cache))
-    return variables_of(description), units_of(description)
+    Its handle is released by a static destructor and again by a destructor of the library, which aborts
+    some processes when they end (NTNU-IHB/PythonFMU, issue 229); released now it is not there any more.
+    """
+    release = getattr(library, "finalizePythonInterpreter", None)
+    if release is not None:
+        release()
 
 
 class _Fetch(NamedTuple):
@@ -144,29 +88,51 @@ class _Fetch(NamedTuple):
     into: int  # address of `data`
 
 
-class FmuComponent(Component):
-    """An FMU that is stepped."""
+class ArchivedFmu(Component):
+    """A component that is an FMU in a file, wherever it is stepped."""
 
-    def __init__(self, name: str, path: Path, cache: Path, origin: str = "") -> None:
-        folder = unpack(path, cache)
-        description = describe(path, folder)
-        super().__init__(name, origin or str(path), variables_of(description))
-        self.can_save = bool(description.coSimulation.canGetAndSetFMUstate)
-        self._only_once = bool(description.coSimulation.canBeInstantiatedOnlyOncePerProcess)
-        self.path, self._cache = path, cache
-        self.units = units_of(description)
+    def __init__(self, name: str, path: Path, cache: Path, origin: str) -> None:
+        self.folder = unpack(path, cache)
+        self.description = describe(path, self.folder)
+        super().__init__(name, origin or str(path), variables_of(self.description))
+        self.can_save = bool(self.description.coSimulation.canGetAndSetFMUstate)
+        self.units = units_of(self.description)
+        self.path, self._cache, self._own_origin = path, cache, origin
+
+
+def untold(_: str) -> None:
+    """Nobody asks where the FMU is."""
+
+
+class FmuComponent(ArchivedFmu):
+    """An FMU that is stepped in this process.
+
+    `origin` names one of the project's own. told(call) hears, before rare calls, which of CALLS it is.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        path: Path,
+        cache: Path,
+        origin: str = "",
+        told: Callable[[str], object] = untold,
+    ) -> None:
+        super().__init__(name, path, cache, origin)
+        self._told = told
         self._messages: list[str] = []
-        self._open = False
+        self._open = self._stepping = False
         here = Path.cwd()
         try:
+            told("loading its library")
             self._fmu = FMU2Slave(
-                guid=description.guid,
-                modelIdentifier=description.coSimulation.modelIdentifier,
-                unzipDirectory=str(folder),
+                guid=self.description.guid,
+                modelIdentifier=self.description.coSimulation.modelIdentifier,
+                unzipDirectory=str(self.folder),
                 instanceName=name,
             )
             self._callbacks = self._make_callbacks()
-            self._instantiate(_resources(folder, description))
+            self._instantiate(_resources(self.folder, self.description))
         except Exception as error:
             os.chdir(here)  # fmpy leaves the library's folder current where loading fails
             raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
@@ -177,28 +143,32 @@ class FmuComponent(Component):
         self._out: tuple[int, int, int] = (0, 0, 0)
 
     def second(self) -> FmuComponent:
-        if self._only_once:
+        if self.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
             raise TouchdownError("its FMU can be loaded only once in a process")
-        second = FmuComponent(f"{self.name} (witness)", self.path, self._cache, self.origin)
+        second = type(self)(f"{self.name} (witness)", self.path, self._cache, self._own_origin)
         second.rename(self._own)
         return second
 
     def _instantiate(self, resources: str) -> None:
-        self._fmu.component = self._fmu.fmi2Instantiate(
-            self.name.encode(),
-            fmi2CoSimulation,
-            self._fmu.guid.encode(),
-            resources.encode("utf-8", "surrogateescape"),
-            ctypes.byref(self._callbacks),
-            fmi2False,
-            fmi2True,
-        )
+        self._told("fmi2Instantiate")
+        try:
+            self._fmu.component = self._fmu.fmi2Instantiate(
+                self.name.encode(),
+                fmi2CoSimulation,
+                self._fmu.guid.encode(),
+                resources.encode("utf-8", "surrogateescape"),
+                ctypes.byref(self._callbacks),
+                fmi2False,
+                fmi2True,
+            )
+        finally:
+            _release_interpreter(self._fmu.dll)
         if self._fmu.component is None:
             raise RuntimeError("it gave no instance")
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
-        def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes) -> None:
-            if status > OK:
+        def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes | None) -> None:
+            if status > OK and message:
                 self._messages.append(message.decode("utf-8", "replace").strip())
 
         callbacks = fmi2CallbackFunctions()
@@ -229,14 +199,15 @@ class FmuComponent(Component):
 
     def set(self, values: Mapping[str, float]) -> None:
         calls = (
-            (Kind.REAL, self._set_real, "f8"),
-            (Kind.INTEGER, self._set_integer, "i4"),
-            (Kind.ENUMERATION, self._set_integer, "i4"),
-            (Kind.BOOLEAN, self._set_boolean, "i4"),
+            (Kind.REAL, "fmi2SetReal", self._set_real, "f8"),
+            (Kind.INTEGER, "fmi2SetInteger", self._set_integer, "i4"),
+            (Kind.ENUMERATION, "fmi2SetInteger", self._set_integer, "i4"),
+            (Kind.BOOLEAN, "fmi2SetBoolean", self._set_boolean, "i4"),
         )
-        for kind, call, dtype in calls:
+        for kind, title, call, dtype in calls:
             names = [n for n in values if self.variable(n).kind is kind]
             if names:
+                self._told(title)
                 references = self._references(names)
                 data = np.array([values[n] for n in names]).astype(dtype)
                 self._check(
@@ -287,11 +258,14 @@ class FmuComponent(Component):
     # -- life cycle ----------------------------------------------------------------------------------
 
     def enter(self, start_time: float) -> None:
-        self._guard("initialising", lambda: self._fmu.setupExperiment(startTime=start_time))
-        self._guard("initialising", self._fmu.enterInitializationMode)
+        setup = partial(self._fmu.setupExperiment, startTime=start_time)
+        self._guard("initialising", "fmi2SetupExperiment", setup)
+        enter = self._fmu.enterInitializationMode
+        self._guard("initialising", "fmi2EnterInitializationMode", enter)
 
     def exit(self) -> None:
-        self._guard("initialising", self._fmu.exitInitializationMode)
+        self._guard("initialising", "fmi2ExitInitializationMode", self._fmu.exitInitializationMode)
+        self._stepping = True
 
     def step(self, time: float, step: float) -> None:
         status = self._do_step(self._component, time, step, 1)
@@ -300,41 +274,49 @@ class FmuComponent(Component):
 
     def save(self) -> object:
         state = ctypes.c_void_p()
-        self._guard(
-            "saving its state", lambda: self._fmu.fmi2GetFMUstate(self._component, ctypes.byref(state))
-        )
+        save = partial(self._fmu.fmi2GetFMUstate, self._component, ctypes.byref(state))
+        self._guard("saving its state", "fmi2GetFMUstate", save)
         return state
 
     def restore(self, state: object) -> None:
         assert isinstance(state, ctypes.c_void_p)
-        self._guard("restoring its state", lambda: self._fmu.fmi2SetFMUstate(self._component, state))
+        restore = partial(self._fmu.fmi2SetFMUstate, self._component, state)
+        self._guard("restoring its state", "fmi2SetFMUstate", restore)
 
     def release(self, state: object) -> None:
         assert isinstance(state, ctypes.c_void_p)
-        self._guard(
-            "freeing a state",
-            lambda: self._fmu.fmi2FreeFMUstate(self._component, ctypes.byref(state)),
-        )
+        release = partial(self._fmu.fmi2FreeFMUstate, self._component, ctypes.byref(state))
+        self._guard("freeing a state", "fmi2FreeFMUstate", release)
 
-    def close(self) -> None:
-        if self._open:
-            self._open = False
-            self._fmu.fmi2FreeInstance(self._component)
+    def close(self) -> str:
+        if not self._open:
+            return ""
+        self._open = False
+        problem = ""
+        try:
+            if self._stepping:
+                self._guard("terminating", "fmi2Terminate", self._fmu.terminate)
+        except TouchdownError as error:
+            problem = str(error)
+        self._told("fmi2FreeInstance")
+        self._fmu.fmi2FreeInstance(self._component)
+        return problem
 
     # -- failure -------------------------------------------------------------------------------------
 
-    def _guard(self, doing: str, call: Any) -> None:
+    def _guard(self, doing: str, name: str, call: Callable[[], object]) -> None:
+        self._told(name)
         try:
             call()
-        except TouchdownError:
-            raise
         except Exception as error:
+            self._stepping = False
             raise TouchdownError(
                 f"component {self.name}: {self._reason(str(error))} (while {doing})"
             ) from None
 
     def _check(self, status: int, doing: str) -> None:
         if status > WARNING:
+            self._stepping = False
             reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
             raise TouchdownError(f"component {self.name}: {reason} (at {doing})")
 

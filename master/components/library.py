@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import Recipe, names, recipe
+from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.processes.watched import watch
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
+from touchdown.master.components.foreign import ForeignFmu
+from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.components.twin import TwinComponent
-from touchdown.modelkit.kernel import user_cache
+from touchdown.master.scene.run_spec import CALL_TIMEOUT
+from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import ModelError
 
 
@@ -20,12 +26,14 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
 
     Relative paths start in `folder`. Raises TouchdownError where there is none, or it has a mistake.
     """
+    if "\0" in fmu:
+        raise TouchdownError(f"no FMU can be called {fmu!r}")
     if fmu.endswith(".toml"):
         try:
             return recipe(str(folder / fmu))
         except ModelError as error:
             raise TouchdownError(str(error)) from None
-    if fmu.endswith(".fmu") or os.sep in fmu:
+    if foreign(fmu):
         return folder / fmu
     known = names()
     if fmu not in known:
@@ -36,11 +44,41 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
     return recipe(fmu)
 
 
-def load_component(name: str, fmu: str, folder: Path = Path(), in_process: bool = False) -> Component:
+@dataclass(frozen=True)
+class Stepping:
+    """Where a component is stepped."""
+
+    in_process: bool = False  # the project's own: the model, without its FMU
+    isolate: bool = False  # an FMU: in a process of its own
+    call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
+
+
+def load_component(
+    name: str, fmu: str, folder: Path = Path(), stepping: Stepping = Stepping()
+) -> Component:
     """A component: an FMU, or, where asked for and possible, its model stepped in process."""
     source = locate(fmu, folder)
-    if isinstance(source, Path):
-        return FmuComponent(name, source, user_cache())
-    if in_process:
+    if isinstance(source, Recipe) and stepping.in_process:
         return TwinComponent(name, source.model)
-    return FmuComponent(name, cached(source), user_cache(), origin=fmu)
+    path, origin = (source, "") if isinstance(source, Path) else (built(source), fmu)
+    if stepping.isolate:
+        return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
+    if origin:
+        return FmuComponent(name, path, user_cache(), origin)
+    watch(f"code of others ran in it, such as that of {path}; isolate it to see where it ends")
+    return ForeignFmu(name, path, user_cache())
+
+
+def foreign(fmu: str) -> bool:
+    """Whether `fmu` is a file that brings code of its own, and none of the project's."""
+    return not fmu.endswith(".toml") and (fmu.endswith(".fmu") or os.sep in fmu)
+
+
+def built(recipe: Recipe) -> Path:
+    """The FMU of a recipe, built if it is not there. Raises TouchdownError where that cannot be written."""
+    try:
+        path = cached(recipe)
+    except OSError as error:
+        raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
+    tidy()
+    return path

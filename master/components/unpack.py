@@ -1,17 +1,23 @@
-"""Archives unpacked once, into folders named by their content."""
+"""Archives unpacked once, into folders named by their content; what is damaged there is unpacked anew."""
 
 from __future__ import annotations
 
 import hashlib
+import os
 import shutil
+import stat
 import tempfile
 import zipfile
 import zlib
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 
-from touchdown.master.common.archives import refuse_hostile
+from touchdown.master.common.archives import is_unpacked, refuse_hostile, refuse_large
 from touchdown.master.common.errors import TouchdownError
+from touchdown.modelkit.kernel import cache_folder
 
 
 @dataclass(frozen=True)
@@ -24,39 +30,68 @@ class Format:
 
 
 FMU = Format("an FMU", "modelDescription.xml", "`touchdown build` makes the project's own")
+BROKEN = (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, ValueError, zlib.error)
 
 
 def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
-    """Unpack an archive into a folder named by its content; returns the folder.
+    """Unpack an archive into a folder of `cache` named by its content; returns the folder.
 
-    Refuses what is not of that kind and entries that would leave the folder.
+    Refuses what is not of that kind, entries that would leave the folder, and what is too large. Where the
+    user's cache has no room, a temporary one takes its place.
     """
+    with _reading(path, kind) as file:
+        name = hashlib.file_digest(file, "sha256").hexdigest()[:24]
+        with zipfile.ZipFile(file) as archive:
+            refuse_hostile(path, archive)
+            if kind.heart not in archive.namelist():
+                raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
+            try:
+                if cache_folder.is_users(cache):
+                    return cache_folder.kept(lambda folder: _unpacked(archive, folder / name), "unpacked")
+                return _unpacked(archive, cache / "unpacked" / name)
+            except OSError as error:
+                raise TouchdownError(f"cannot unpack {path}: {error.strerror or error}") from None
+
+
+@contextmanager
+def _reading(path: Path, kind: Format) -> Generator[BufferedReader]:
+    """The archive's file. Raises TouchdownError where it cannot be read as one."""
     try:
-        content = path.read_bytes()
+        found = path.stat()
+        if not stat.S_ISREG(found.st_mode):
+            raise TouchdownError(f"{path} is not {kind.name}: it is no file")
+        refuse_large(found.st_size, f"{path} has")
+        with path.open("rb") as file:
+            yield file
     except FileNotFoundError:
         raise TouchdownError(f"there is no file {path}; {kind.maker}") from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
-    folder = cache / "unpacked" / hashlib.sha256(content).hexdigest()[:24]
-    if folder.is_dir():
-        return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    fresh = Path(tempfile.mkdtemp(dir=folder.parent))
-    try:
-        with zipfile.ZipFile(path) as archive:
-            refuse_hostile(path, archive)
-            if kind.heart not in archive.namelist():
-                raise TouchdownError(f"{path} is not {kind.name}: it has no {kind.heart}")
-            archive.extractall(fresh)
-        try:
-            fresh.rename(folder)
-        except OSError:
-            if not folder.is_dir():  # else another process was first
-                raise
-    except (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, OSError, zlib.error) as error:
+    except BROKEN as error:
         raise TouchdownError(
             f"{path} is damaged or not {kind.name} ({error}); build or download it again"
         ) from None
+
+
+def _unpacked(archive: zipfile.ZipFile, folder: Path) -> Path:
+    """`folder` with the archive's files. Raises OSError where they cannot be written."""
+    if folder.is_dir() and is_unpacked(archive, folder):
+        for compiled in folder.rglob("__pycache__"):  # what Python left there, the archive knows nothing of
+            shutil.rmtree(compiled, ignore_errors=True)
+        os.utime(folder)  # it is in use
+        return folder
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    fresh = Path(tempfile.mkdtemp(prefix=".", dir=folder.parent))
+    try:
+        archive.extractall(fresh / "content")
+        if folder.is_dir() and is_unpacked(archive, folder):
+            return folder  # another process was first
+        if folder.exists() or folder.is_symlink():
+            folder.rename(fresh / "before")
+        (fresh / "content").rename(folder)
+    except OSError:
+        if not (folder.is_dir() and is_unpacked(archive, folder)):  # or another process was first
+            raise
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
     return folder

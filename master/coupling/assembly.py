@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 
 from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
@@ -46,8 +47,12 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
     scheme = scene.run.scheme
     _check_zero(scene, components)
     settings: dict[tuple[str, str], float] = {}
+    left_out: list[str] = []
     for name, component in components.items():
-        values = _settings(component, scene.components[name], scheme)
+        spec = scene.components[name]
+        inherited = _inherited(component, spec)
+        left_out += _left_out(scene, component, [key for key in spec.inherited if key not in inherited])
+        values = _settings(component, spec, inherited, scheme)
         component.set(values)
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
@@ -55,13 +60,16 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
     if scheme.lead:
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
-    return System(components, attachments, connections, settings, every)
+    return System(components, attachments, connections, settings, every, left_out)
 
 
 def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
     """See that what times count from is a time, where it says so."""
     head, _, tail = (scene.zero or "").partition(".")
-    unit = components[head].variable(tail).unit if head in components else None
+    swapped = head in components and scene.components[head].instead_of
+    if head not in components or (swapped and _lacks(components[head], f"{head}.{tail}")):
+        return
+    unit = components[head].variable(tail).unit
     if unit not in (None, "", "s"):
         raise TouchdownError(
             f"zero = {scene.zero} is measured in {unit}; it must be a time, such as amb.shutdown_time"
@@ -81,11 +89,42 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     return connections
 
 
-def _settings(component: Component, spec: ComponentSpec, scheme: Scheme) -> dict[str, float]:
+def _inherited(component: Component, spec: ComponentSpec) -> dict[str, float]:
+    """What a swapped component takes over of the scene's settings for the one that went: what it can."""
+    values: dict[str, float] = {}
+    for key, value in spec.inherited.items():
+        with suppress(TouchdownError):  # not the user's mistake
+            values[key] = checked(component, key, value)
+    return values
+
+
+def _left_out(scene: Scene, component: Component, settings: Sequence[str]) -> list[str]:
+    """What a swapped component does not take over: a line, or none."""
+    spec = scene.components[component.name]
+    if not spec.instead_of:
+        return []
+    lost = [f"{component.name}.{key}" for key in settings]
+    if scene.zero is not None and _lacks(component, scene.zero):
+        lost.append(f"zero = {scene.zero}, so times count from the start")
+    if any(_lacks(component, name) for name in scene.energy_scale):
+        lost.append("energy_scale, so energies are in J only")
+    what = f"{component.name} is {spec.fmu} instead of {spec.instead_of}, and does not take over"
+    return [f"{what} {'; '.join(lost)}"] if lost else []
+
+
+def _lacks(component: Component, name: str) -> bool:
+    """Whether COMPONENT.VARIABLE is to be its, and is not there."""
+    head, _, tail = name.partition(".")
+    return head == component.name and tail not in component.variables
+
+
+def _settings(
+    component: Component, spec: ComponentSpec, inherited: Mapping[str, float], scheme: Scheme
+) -> dict[str, float]:
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
-    optional: dict[str, object] = {**(preset(spec.preset) if spec.preset else {}), **spec.inherited}
-    given = {key: value for key, value in optional.items() if key in component.variables}
-    values = {key: _checked(component, key, value) for key, value in {**given, **spec.set}.items()}
+    known = preset(spec.preset) if spec.preset else dict[str, float]()
+    optional = {key: value for key, value in known.items() if key in component.variables} | dict(inherited)
+    values = {key: checked(component, key, value) for key, value in {**optional, **spec.set}.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
         if key in spec.set:
             raise TouchdownError(f"{component.name}.{key} follows from the scheme; set run.scheme instead")
@@ -104,8 +143,8 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
             )
 
 
-def _checked(component: Component, name: str, given: object) -> float:
-    """A setting's value in SI, if the component can take it."""
+def checked(component: Component, name: str, given: object) -> float:
+    """A setting's value in SI. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
     if not variable.settable:
         raise TouchdownError(

@@ -158,7 +158,8 @@ class Way:
         kind = "motion" if variable in MOTION else "load"
         raise TouchdownError(
             f"{what}: {self.components[lacking.component].origin} has no variable {lacking.own(variable)}, "
-            f"which carries the {kind}; check the port's name or the FMU"
+            f"which carries the {kind}; check the port's name or the FMU (ports it has: "
+            f"{', '.join(_ports(self.components[lacking.component])) or 'none'})"
         )
 
     def _lacking(self, variable: str) -> Port | None:
@@ -167,6 +168,14 @@ class Way:
             if port.own(variable) not in self.components[port.component].variables:
                 return port
         return None
+
+
+def _ports(component: Component) -> list[str]:
+    """Names before the last dot under which a component has a position."""
+    names = {name.rpartition(".")[0] for name in component.variables if "[" not in name}
+    return sorted(
+        port for port in names if all(f"{port}.{axis}" in component.variables for axis in POSITION)
+    )
 
 
 def port_connections(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
@@ -13,9 +12,9 @@ from typing import Protocol
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.common.interrupts import Interrupts, interrupts_noted
 from touchdown.master.components.component import Component
-from touchdown.master.components.library import load_component
+from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
@@ -25,6 +24,8 @@ from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
+
+MOST_STEPS = 10**9  # macro steps of a run; days of work
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,14 @@ class Outcome:
     reason: str = ""  # why, where it did not complete
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
+    def after(self, problem: str) -> Outcome:
+        """The outcome where that came to light after the run; "": nothing did."""
+        if not problem or self.ended in (Ended.INTERRUPTED, Ended.STOPPED):
+            return self
+        return replace(self, ended=Ended.STOPPED, reason=problem)
+
     def raise_if_interrupted(self) -> None:
-        """Raise KeyboardInterrupt where Ctrl-C ended the run."""
+        """Raise KeyboardInterrupt where Ctrl-C, or a signal as it is one, ended the run."""
         if self.ended is Ended.INTERRUPTED:
             raise KeyboardInterrupt
 
@@ -65,7 +72,8 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
     def load_one(name: str, fmu: str) -> Component:
-        return load_component(name, fmu, scene.folder, in_process)
+        stepping = Stepping(in_process, scene.components[name].isolate, scene.run.call_timeout)
+        return load_component(name, fmu, scene.folder, stepping)
 
     return assemble(scene, load_one)
 
@@ -86,22 +94,22 @@ def simulate(
     record_to: Path | None = None,
     progress: Callable[[float, float], object] = lambda time, share: None,
     observers: Iterable[Observer] = (),
+    begin: Callable[[], object] = lambda: None,
 ) -> Outcome:
     """Initialise `system` and run it to the scene's end, or until an observer ends it.
 
-    progress(time from zero in s, residual over turnover) is called now and then; `observers` are told of
-    every macro step. Whatever ends the run, its recording is complete up to there; where that is not an
-    error of an observer's own, the outcome says how it ended, and why.
+    progress(time from zero in s, residual over turnover) is called now and then, begin() when nothing is
+    refused any more; `observers` are told of every macro step. The outcome says how it ended, and why.
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
-        zero = system.value(scene.zero) if scene.zero else 0.0
+        zero = zero_of(scene, system)
         now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
             _kept(scene, system, coupling) as ledger,
-            _recording(scene, now, record_to) as recording,
+            _recording(scene, now, record_to, begin) as recording,
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
             told = [judge, shortening, *observers, *recording]
@@ -141,7 +149,17 @@ def macro_steps(duration: float, step: float) -> int:
     """How many macro steps of `step` cover `duration` (s)."""
     if step > duration:
         raise TouchdownError(f"run.macro_step = {step:g} s is longer than the run of {duration:g} s")
+    refuse_endless(duration, step)
     return math.ceil(duration / step - 1e-6)
+
+
+def refuse_endless(duration: float, step: float) -> None:
+    """Raise TouchdownError where `duration` (s) takes more than MOST_STEPS macro steps of `step` (s)."""
+    if duration > MOST_STEPS * step:
+        raise TouchdownError(
+            f"{duration:g} s by macro steps of {step:g} s are more than {MOST_STEPS:g} of them; ask for "
+            "less time, or for longer steps"
+        )
 
 
 class Values(Protocol):
@@ -151,10 +169,32 @@ class Values(Protocol):
         """Value of COMPONENT.VARIABLE."""
         ...
 
+    def __contains__(self, name: str) -> bool:
+        """Whether there is COMPONENT.VARIABLE."""
+        ...
+
+
+def zero_of(scene: Scene, system: Values) -> float:
+    """The scene's zero on the simulation's clock (s); 0 where it has none, or one that went in a swap."""
+    if scene.zero is None or _swapped_away(scene, scene.zero, system):
+        return 0.0
+    zero = system.value(scene.zero)
+    if not math.isfinite(zero):
+        raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
+    return zero
+
 
 def energy_scale(scene: Scene, system: Values) -> float:
-    """Product of the scene's energy_scale variables (J); 0 where it names none."""
+    """Product of the scene's energy_scale variables (J); 0 where it names none, or one went in a swap."""
+    if any(_swapped_away(scene, name, system) for name in scene.energy_scale):
+        return 0.0
     return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
+
+
+def _swapped_away(scene: Scene, name: str, system: Values) -> bool:
+    """Whether COMPONENT.VARIABLE is not there because another FMU was put in for that component."""
+    spec = scene.components.get(name.partition(".")[0])
+    return spec is not None and bool(spec.instead_of) and name not in system
 
 
 def fall_energy(system: System) -> float:
@@ -186,7 +226,7 @@ class _Steps:
 
 
 def _loop(
-    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: threading.Event
+    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: Interrupts
 ) -> tuple[float, float]:
     """Take macro steps until the end, or until the run is to end.
 
@@ -199,7 +239,7 @@ def _loop(
     try:
         for number in range(now.steps):
             if interrupted.is_set():
-                now.stop(Ended.INTERRUPTED.value, Ended.INTERRUPTED)
+                now.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
             steps.take(number)
             now.move(number + 1, steps.length)
@@ -244,12 +284,14 @@ class _Recording(Observer):
 
 
 @contextmanager
-def _recording(scene: Scene, now: Moment, path: Path | None) -> Generator[list[Observer]]:
+def _recording(
+    scene: Scene, now: Moment, path: Path | None, begin: Callable[[], object]
+) -> Generator[list[Observer]]:
     """The observer that records into a file at `path`, if there is one; the file is closed at the end."""
     if path is None:
         yield []
         return
-    recorder = Recorder(path, scene, now.system.components, now.steps + 1)
+    recorder = Recorder(path, scene, now.system, now.steps + 1, begin)
     try:
         recorder.append(-now.zero)
         yield [_Recording(recorder, scene.run.record_every)]

@@ -25,6 +25,7 @@ class System:
     connections: list[Connection]
     settings: dict[tuple[str, str], float]
     every: dict[str, int]  # macro steps of the run that each component takes in one
+    left_out: Sequence[str] = ()  # what swapped components do not take over, a line each
     order: list[str] = field(init=False)  # bearings first
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
@@ -36,10 +37,10 @@ class System:
         self.order = [*bearings, *(name for name in self.components if name not in bearings)]
         self._lay_out()
 
-    def close(self) -> None:
-        """Free every component."""
-        for component in self.components.values():
-            component.close()
+    def close(self) -> str:
+        """End and free every component; returns what went wrong first, or ""."""
+        problems = [component.close() for component in self.components.values()]
+        return next(filter(None, problems), "")
 
     def value(self, name: str) -> float:
         """Value of COMPONENT.VARIABLE."""
@@ -71,7 +72,7 @@ class System:
         bodies_first = list(reversed(self.order))
         for _ in range(2):  # bodies to bearings, and loads back
             for name in bodies_first:
-                self.feed(name)
+                self._feed_numbers(name)
                 self.components[name].pull()
         self._feed_constants()
         self.connections = used_modes(self.connections, self.components)
@@ -79,9 +80,20 @@ class System:
         for name in bodies_first:
             self.components[name].pull()
         for name in bodies_first:
-            self.feed(name)
+            self._feed_numbers(name)
             self.components[name].exit()
             self.components[name].pull()
+
+    def _feed_numbers(self, name: str) -> None:
+        """`feed`, but of numbers alone.
+
+        A component that will refuse its parameters gives none until it exits from initialisation;
+        those that are handed them would refuse, and be blamed, first.
+        """
+        self.take_inputs(name)
+        component = self.components[name]
+        if np.isfinite(component.inputs).all():
+            component.push()
 
     def feed(self, name: str) -> None:
         """Hand a component its inputs from the signals."""

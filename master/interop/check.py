@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from fmpy.validation import validate_fmu
 
-from touchdown.fmus.build import cached
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component
-from touchdown.master.components.fmu import FmuComponent
-from touchdown.master.components.library import locate
+from touchdown.master.components.fmu import ArchivedFmu
+from touchdown.master.components.library import Stepping, foreign, load_component
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
-from touchdown.modelkit.kernel import user_cache
+from touchdown.master.scene.run_spec import CALL_TIMEOUT
 from touchdown.modelkit.variables import Causality
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
@@ -23,20 +21,26 @@ DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
 DRY_RUN_FORCE = 1e-2  # N, on a body
 
 
-def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | None = None) -> Report:
+def check_fmu(
+    name: str,
+    role: str | None = None,
+    names: Mapping[str, str] | None = None,
+    call_timeout: float = CALL_TIMEOUT,
+) -> Report:
     """Check the FMU at a path, or one of the project's own by name.
 
     With a role ("bearing", "rotor", "amb", "housing"), whether it can stand in for one; `names` gives what
-    it calls the variables of the contract. Raises TouchdownError where there is nothing to check
-    (missing, damaged, no co-simulation here).
+    it calls the variables of the contract. One at a path is stepped in a process of its own, and each call
+    may take `call_timeout` (s). Raises TouchdownError where there is nothing to check (missing, damaged, no
+    co-simulation here).
     """
-    source = locate(name)
-    path = source if isinstance(source, Path) else cached(source)
-    component = FmuComponent("checked", path, user_cache())
+    stepping = Stepping(isolate=foreign(name), call_timeout=call_timeout)
+    component = load_component("checked", name, stepping=stepping)
+    assert isinstance(component, ArchivedFmu)
     report = Report(name)
     try:
         component.rename(names or {})
-        complaints = validate_fmu(str(path))
+        complaints = validate_fmu(str(component.path))
         if not complaints:
             report.lines.append("valid FMI 2.0 for co-simulation")
         elif role is None:
@@ -48,7 +52,9 @@ def check_fmu(name: str, role: str | None = None, names: Mapping[str, str] | Non
             check_role(component, role, report)
         _dry_run(component, report)
     finally:
-        component.close()
+        problem = component.close()
+    if problem:
+        report.problems.append(f"at its end: {problem}")
     if role is not None:
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
@@ -72,21 +78,26 @@ def _dry_run(component: Component, report: Report) -> None:
         component.bind(fed, np.zeros(0), [])
         component.enter(0.0)
         component.exit()
-        values = component.read(outputs)
+        wrong = _not_finite(component, outputs)
         for k in range(DRY_RUN_STEPS):
             time = k * DRY_RUN_STEP
             component.inputs[:] = [_small(name, time) for name in fed]
             component.push()
             component.step(time, DRY_RUN_STEP)
-            values = component.read(outputs)
+            wrong |= _not_finite(component, outputs)
     except TouchdownError as error:
         report.problems.append(f"dry run: {error}")
         return
-    wrong = [n for n, value in zip(outputs, values, strict=True) if not math.isfinite(value)]
     if wrong:
         report.problems.append(f"dry run: {', '.join(wrong)} not finite")
     else:
         report.lines.append(f"dry run: {DRY_RUN_STEPS} steps of {DRY_RUN_STEP:g} s, outputs finite")
+
+
+def _not_finite(component: Component, names: Sequence[str]) -> dict[str, None]:
+    """Which of `names` are no finite numbers now; a dictionary keeps their order."""
+    values = zip(names, component.read(names), strict=True)
+    return {name: None for name, value in values if not math.isfinite(value)}
 
 
 def _small(name: str, time: float) -> float:

@@ -21,8 +21,8 @@ from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS
-from touchdown.master.components.fmu import FmuComponent
-from touchdown.master.coupling.simulation import open_system
+from touchdown.master.components.fmu import ArchivedFmu
+from touchdown.master.coupling.simulation import open_system, zero_of
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.variables import Causality
@@ -42,7 +42,7 @@ def write_container(scene: Scene, path: Path) -> Path:
     system = open_system(scene)
     try:
         _refuse_what_it_cannot(system)
-        zero = system.value(scene.zero) if scene.zero else 0.0
+        zero = zero_of(scene, system)
         system.initialise()
         with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
             container = toolbox.FMUContainer(re.sub(r"\W", "_", path.stem, flags=re.ASCII), folder)
@@ -89,7 +89,7 @@ def _fill(container: Any, system: System, sequential: bool) -> None:
     """
     for name in system.order if sequential else reversed(system.order):
         component = system.components[name]
-        assert isinstance(component, FmuComponent)
+        assert isinstance(component, ArchivedFmu)
         container.get_fmu(str(component.path.absolute()), f"{name}.fmu")
     linked: set[tuple[str, str]] = set()
     for c in system.connections:

@@ -22,10 +22,10 @@ from touchdown.fmus.link import (
     why_not_compiled,
 )
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.fmu import describe
+from touchdown.master.components.interface import describe
 from touchdown.master.components.unpack import unpack
 from touchdown.master.interop import trial
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache, why_temporary
 
 PATIENCE = 600.0  # s; a first step compiles for a minute at most
 
@@ -94,15 +94,10 @@ def _compiler() -> Finding:
 
 
 def _cache() -> Finding:
-    folder = user_cache()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        text = f"{folder} cannot be written ({error.strerror}); set TOUCHDOWN_CACHE to a folder that can"
-        return Finding("cache", text, False)
-    return Finding("cache", f"{folder}, can be written")
+    trouble = why_temporary()
+    if trouble:
+        return Finding("cache", f"cannot use {trouble}; set TOUCHDOWN_CACHE to a folder of yours", False)
+    return Finding("cache", f"{user_cache()}, can be written")
 
 
 def _patchelf() -> Finding:

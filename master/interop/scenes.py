@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.ssp.read import read
 from touchdown.master.scene import file
 from touchdown.master.scene.scene import Scene
@@ -14,4 +15,6 @@ def find_scene(name: str) -> Scene:
 
     Raises TouchdownError where there is none, or it has a mistake.
     """
+    if "\0" in name:
+        raise TouchdownError(f"no scene can be called {name!r}")
     return read(Path(name)) if name.endswith(".ssp") else file.load_scene(name)

@@ -41,8 +41,8 @@ def say(text: str) -> None:
 def callbacks() -> fmi2CallbackFunctions:
     """What the FMU may call."""
 
-    def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes) -> None:
-        if status > 1:
+    def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes | None) -> None:
+        if status > 1 and message:
             say(LOG + message.decode("utf-8", "replace"))
 
     functions = fmi2CallbackFunctions()

@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import replacing
 from touchdown.master.coupling.recorder import END, TIME
 
 
@@ -133,4 +134,5 @@ def write_csv(recording: Recording, path: Path) -> None:
     columns = recording.columns()
     data = np.column_stack([recording.time, *(recording[name] for name, _ in columns)])
     header = ",".join(["time [s]", *(f"{name} [{unit}]" for name, unit in columns)])
-    np.savetxt(path, data, delimiter=",", header=header, comments="", fmt="%.17g")
+    with replacing(path) as part:
+        np.savetxt(part, data, delimiter=",", header=header, comments="", fmt="%.17g")

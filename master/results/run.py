@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from tqdm.auto import tqdm
@@ -14,6 +15,7 @@ from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
+from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
@@ -39,24 +41,47 @@ def run_scene(
     if folder is None:
         scratch = Scratch()
         folder = scratch.path
-    make_writable(folder)
-    with interrupts_noted():
+    with interrupts_noted(), claimed(folder) as results:
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:
-                outcome = simulate(scene, system, folder / RECORDING, show)
+                begin = partial(_begin, results, scene)
+                outcome = simulate(scene, system, folder.absolute() / RECORDING, show, begin=begin)
             told = ending(system)
+            outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
-            drawn = _write_results(Finished(scene, told, recording), summary, folder, csv, pictures)
-        except OSError as error:
+            with _writing(folder, outcome.ended is not Ended.STOPPED):
+                drawn: list[Path] = []
+                try:
+                    drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
+                finally:
+                    results.finish(summary)
+        finally:
+            system.close()
+    warnings = [*system.left_out, *_warnings(outcome)]
+    return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def _begin(results: ResultsFolder, scene: Scene) -> None:
+    """What an earlier run left goes: nothing is refused any more."""
+    with _writing(results.path):
+        results.begin(scene.resolved())
+
+
+@contextmanager
+def _writing(folder: Path, matters: bool = True) -> Generator[None]:
+    """Raise TouchdownError where results cannot be written, unless it does not matter any more.
+
+    A run that stopped has its reason to tell, which is the same where the disk is full.
+    """
+    try:
+        yield
+    except OSError as error:
+        if matters:
             raise TouchdownError(
                 f"cannot write to {folder}: {error}; choose another folder with -o"
             ) from None
-        finally:
-            system.close()
-    warnings = _warnings(outcome)
-    return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 
 def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
@@ -68,22 +93,19 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
 
 
 def _warnings(outcome: Outcome) -> list[str]:
-    """What is to be said of a run beside its figures."""
+    """What is to be said of a run beside its figures; where it stopped, only why."""
+    if outcome.ended is Ended.STOPPED:
+        return []
     said = [f"not audited: {connection}" for connection in outcome.unaudited]
     if outcome.warning and outcome.ended is Ended.COMPLETED:
         said.append(outcome.warning)
     return said
 
 
-def _write_results(
-    run: Finished, summary: dict[str, object], folder: Path, csv: bool, pictures: bool
-) -> list[Path]:
-    """scene.json, summary.json, and on request result.csv and pictures, which are returned."""
-    resolved = json.dumps(run.scene.resolved(), indent=2, default=str)
-    (folder / "scene.json").write_text(resolved + "\n", encoding="utf-8")
-    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+def _show(run: Finished, folder: Path, csv: bool, pictures: bool) -> list[Path]:
+    """On request result.csv and pictures, which are returned."""
     if csv:
-        write_csv(run.recording, folder / "result.csv")
+        write_csv(run.recording, folder / TABLE)
     if not pictures:
         return []
     from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import

@@ -19,6 +19,7 @@ from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
 from touchdown.master.results.whirl.verdict import Episode, Whirl, classify
 from touchdown.master.scene.scene import Scene
+from touchdown.modelkit.variables import Causality
 
 STANDS_OUT = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
@@ -83,6 +84,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     figures: dict[str, object] = {
         "scene": scene.name,
         "completed": outcome.ended is Ended.COMPLETED,
+        "ended": outcome.ended.value,
     }
     if outcome.ended is not Ended.COMPLETED:
         figures["stopped_because"] = outcome.reason
@@ -102,7 +104,12 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     figures |= stress_figures(system, outcome)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
-    return figures
+    return {key: _finite(value) for key, value in figures.items()}
+
+
+def _finite(figure: object) -> object:
+    """A figure; None for one that is no finite number, which JSON has not."""
+    return None if isinstance(figure, float) and not math.isfinite(figure) else figure
 
 
 def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
@@ -142,7 +149,8 @@ def _orbit_figures(
     loaded = None
     if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
         last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
-        loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
+        if last.any():  # a full disk ends a recording before its run
+            loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
     figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
     return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
 
@@ -293,6 +301,22 @@ def energy_total(system: Readable, recording: Recording) -> np.ndarray | None:
     return np.sum(parts, axis=0) if parts else None
 
 
+def _not_recorded(scene: Scene, system: Readable, recording: Recording) -> str | None:
+    """Locals that are recorded on request only, counted; elements of arrays are always so."""
+    if scene.run.record:
+        return None
+    recorded = {name for name, _ in recording.columns()}
+    counts = {
+        name: sum(
+            v.causality is Causality.LOCAL and "[" not in v.name and f"{name}.{v.name}" not in recorded
+            for v in component.variables.values()
+        )
+        for name, component in system.components.items()
+    }
+    left = [f"{count} of {name}" for name, count in counts.items() if count]
+    return f"local variables, {', '.join(left)}; see run.record_also" if left else None
+
+
 def _run_figures(
     scene: Scene, system: Readable, outcome: Outcome, recording: Recording
 ) -> dict[str, object]:
@@ -312,6 +336,7 @@ def _run_figures(
         "energy_made_J": outcome.made,
         "energy_turnover_J": outcome.turnover,
         "not_audited": "; ".join(outcome.unaudited) or None,
+        "not_recorded": _not_recorded(scene, system, recording),
         "energy_balance_relative": balance,
         "energy_scale_J": scale if scale > 0.0 else None,
         "wall_time_s": outcome.wall_time,

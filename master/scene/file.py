@@ -17,6 +17,7 @@ macro_step = 2e-5     # s
 fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
 preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
 every = 2             # macro steps of the run that it takes in one (default: 1)
+isolate = true        # step its FMU in a process of its own (default: false)
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
@@ -45,10 +46,13 @@ from touchdown.master.scene.tables import (
     reference,
     references,
     refuse_unknown,
+    refuse_unusable,
+    switch,
     table,
     whole,
 )
 
+LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
 
@@ -103,15 +107,15 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
 def _component(value: object, where: str, folder: Path) -> ComponentSpec:
     """A table of [components]."""
     given = table(value, where)
-    refuse_unknown(given, ("fmu", "preset", "every", "set", "names"), where)
+    refuse_unknown(given, ("fmu", "preset", "every", "isolate", "set", "names"), where)
     if not isinstance(given.get("fmu"), str):
         raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
     settings = flat(table(given.get("set", {}), where))
     preset = checked_preset(given.get("preset"), where)
     every = whole(given.get("every", 1), f"{where} every")
-    return ComponentSpec(
-        given["fmu"], settings, preset, every, _names(given.get("names", {}), where, folder)
-    )
+    names = _names(given.get("names", {}), where, folder)
+    isolate = switch(given.get("isolate", False), f"{where} isolate")
+    return ComponentSpec(given["fmu"], settings, preset, every, names, isolate=isolate)
 
 
 def read_names(path: Path) -> dict[str, str]:
@@ -137,12 +141,25 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
 
 
 def _toml(path: Path, what: str) -> dict[str, Any]:
+    """The tables of a TOML file. Raises TouchdownError, as all that follows."""
+    where = f"{what} {path}"
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))  # some editors begin files with a mark
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
     except OSError as error:
-        raise TouchdownError(f"cannot read {what} {path}: {error.strerror}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise TouchdownError(f"{what} {path} is not valid TOML: {error}") from None
+        raise TouchdownError(f"cannot read {where}: {error.strerror}") from None
+    except ValueError as error:  # of a path that no file can have
+        raise TouchdownError(f"cannot read {what} {str(path)!r}: {error}") from None
+    if len(content) > LARGEST:
+        raise TouchdownError(f"{where} is larger than {LARGEST / 1e6:.0f} MB; it must be something else")
+    try:
+        data = tomllib.loads(content.decode("utf-8-sig"))  # some editors begin files with a mark
+    except RecursionError:
+        raise TouchdownError(f"{where} is not valid TOML: its values lie too deep in each other") from None
+    except ValueError as error:  # of TOML's syntax, of UTF-8, of an integer with thousands of digits
+        raise TouchdownError(f"{where} is not valid TOML: {error}") from None
+    refuse_unusable(data, where)
+    return data
 
 
 def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

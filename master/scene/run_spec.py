@@ -11,6 +11,8 @@ from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
 from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
 
+CALL_TIMEOUT = 60.0  # s
+
 
 @dataclass(frozen=True)
 class RunSpec:
@@ -21,10 +23,12 @@ class RunSpec:
     scheme: Scheme = SCHEMES[DEFAULT]
     tolerance: float = 1e-10  # m, of the interface per macro step, for schemes that repeat or divide it
     record_every: int = 5  # macro steps
-    record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that are recorded; none: all
+    record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that alone are recorded
+    record_also: tuple[str, ...] = ()  # the same, beside what is recorded anyway: also locals and elements
     record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
     warn_residual: float = 0.02  # ledger's residual over the turnover of a connection: say so
     stop_residual: float = 0.2  # the same: stop
+    call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take
     whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
 
 
@@ -65,6 +69,7 @@ def _count(value: object, name: str) -> int:
 READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
     "scheme": _scheme,
     "record": beginnings,
+    "record_also": beginnings,
     "record_arrays": switch,
     "duration": _above_zero("s"),
     "macro_step": _above_zero("s"),
@@ -72,5 +77,6 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "record_every": _steps_above_zero,
     "warn_residual": _above_zero("1"),
     "stop_residual": _above_zero("1"),
+    "call_timeout": _above_zero("s"),
     "whirl_halvings": _count,
 }

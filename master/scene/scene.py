@@ -11,7 +11,8 @@ from typing import NamedTuple
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale, plain
 from touchdown.master.scene.run_spec import RunSpec, with_changes
-from touchdown.master.scene.tables import whole
+from touchdown.master.scene.tables import switch, whole
+from touchdown.master.scene.titles import retitled
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,24 @@ class ComponentSpec:
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     """Variables of the contract, and what this FMU calls them."""
     inherited: Mapping[str, object] = field(default_factory=dict[str, object])
-    """Settings of the component it was swapped for; those it has are applied before `set`."""
+    """The scene's settings for what it was swapped for; those it can take are applied before `set`."""
+    isolate: bool = False  # its FMU is stepped in a process of its own
+    instead_of: str = ""  # what it was swapped for
+    own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
+
+    def swapped(self, fmu: str) -> ComponentSpec:
+        """What another FMU in its place starts from."""
+        theirs = {name: value for name, value in self.set.items() if name not in self.own}
+        return ComponentSpec(
+            fmu,
+            set={name: value for name, value in self.set.items() if name in self.own},
+            preset=self.preset if "preset" in self.own else None,
+            every=self.every,
+            isolate=self.isolate,
+            inherited={**self.inherited, **theirs},
+            instead_of=self.instead_of or self.fmu,
+            own=self.own,
+        )
 
 
 class Wire(NamedTuple):
@@ -44,7 +62,7 @@ class Scene:
 
     >>> scene = touchdown.load("disk-caged-simplified")
     >>> scene.set({"rotor.speed": "12000 rpm", "run.duration": "10 ms"}).swap(bearing="simplified_cageless")
-    <Scene disk-caged-simplified: Rigid disk dropped on a simplified caged bearing
+    <Scene disk-caged-simplified: Rigid disk dropped on a simplified cageless bearing
       rotor: rigid_rotor
       amb: amb
       bearing: simplified_cageless
@@ -68,9 +86,9 @@ class Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
 
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
-        catalogue, COMPONENT.every how many macro steps a component takes in one. Raises TouchdownError
-        where there is no such component, key or preset; a component's variables are looked up when a run
-        begins.
+        catalogue, COMPONENT.every how many macro steps a component takes in one, COMPONENT.isolate whether
+        its FMU is stepped in a process of its own. Raises TouchdownError where there is no such component,
+        key or preset; a component's variables are looked up when a run begins.
         """
         scene = self
         for name, value in settings.items():
@@ -85,28 +103,31 @@ class Scene:
             return replace(self, run=with_changes(self.run, {tail: value}))
         spec = self._component(head)
         if tail == "preset":
-            changed = replace(spec, preset=checked_preset(value, head))
+            changed = replace(spec, preset=checked_preset(value, head), own=_with(spec.own, tail))
         elif tail == "every":
             changed = replace(spec, every=whole(value, name))
+        elif tail == "isolate":
+            changed = replace(spec, isolate=switch(value, name))
         else:
-            changed = replace(spec, set={**spec.set, tail: plain(value)})
+            changed = replace(spec, set={**spec.set, tail: plain(value)}, own=_with(spec.own, tail))
         return replace(self, components={**self.components, head: changed})
 
     def swap(self, /, **fmus: str | os.PathLike[str]) -> Scene:
         """A copy with components made of other FMUs: swap(bearing="detailed_caged").
 
-        An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor. It
-        starts from its own defaults and takes over what the scene sets, as far as it has it. Names that the
-        scene gives belong to the FMU that goes; `with_names` gives the new one's. Raises TouchdownError
-        where there is no such component.
+        An FMU is one of the project's by name, or the path of an .fmu or of a rotor's .toml, or a Rotor;
+        paths start in the current directory. It starts from its own defaults and takes over what the scene
+        sets, as far as it can; a run says what it could not. What `set` gave stays, and it must have it.
+        Names that the scene gives belong to the FMU that goes; `with_names` gives the new one's. The title
+        names the new one. Raises TouchdownError where there is no such component.
         """
         scene = self
         for name, fmu in fmus.items():
             before = scene._component(name)
-            after = ComponentSpec(
-                _source(os.fspath(fmu)), every=before.every, inherited={**before.inherited, **before.set}
-            )
-            scene = replace(scene, components={**scene.components, name: after})
+            after = before.swapped(_source(os.fspath(fmu)))
+            others = [spec.fmu for other, spec in scene.components.items() if other != name]
+            title = retitled(scene.title, name, before.fmu, after.fmu, before.fmu not in others)
+            scene = replace(scene, title=title, components={**scene.components, name: after})
         return scene
 
     def with_names(self, name: str, names: Mapping[str, str]) -> Scene:
@@ -142,11 +163,14 @@ class Scene:
         return values
 
 
+def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:
+    return names if name in names else (*names, name)
+
+
 def _source(fmu: str) -> str:
     """Where an FMU comes from, told from wherever a scene lies: files of the user's by their whole path."""
-    path = Path(fmu)
-    there = path.suffix == ".fmu" or (path.suffix == ".toml" and path.is_file())
-    return str(path.absolute()) if there else fmu
+    is_file = fmu.endswith((".fmu", ".toml")) or os.sep in fmu
+    return str(Path(fmu).expanduser().absolute()) if is_file else fmu
 
 
 def checked_preset(name: object, where: str) -> str | None:

@@ -12,6 +12,8 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import to_si
 from touchdown.modelkit.units import NUMBER
 
+DEEPEST = 32
+
 
 def entries(value: object) -> Mapping[str, Any] | None:
     """A table of whatever is in it; None where it is no table."""
@@ -49,6 +51,28 @@ def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
         else:
             dotted[f"{prefix}{key}"] = value
     return dotted
+
+
+def refuse_unusable(table: Mapping[str, Any], where: str) -> None:
+    """Raise TouchdownError where values lie DEEPEST in each other, or a text holds a NUL.
+
+    No scene needs either; files, folders and recordings cannot have a NUL in their names.
+    """
+    level: list[object] = [table]
+    for _ in range(DEEPEST):
+        inner: list[object] = []
+        for value in level:
+            mapping, listed = entries(value), items(value)
+            if mapping is not None:
+                inner += [*mapping, *mapping.values()]
+            elif listed is not None:
+                inner += listed
+            elif isinstance(value, str) and "\0" in value:
+                raise TouchdownError(f"{where}: {value!r} holds a NUL character; remove it")
+        if not inner:
+            return
+        level = inner
+    raise TouchdownError(f"{where}: values lie {DEEPEST} deep in each other; no scene needs that")
 
 
 def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:

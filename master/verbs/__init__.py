@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from touchdown.master.verbs import run, scenes
-from touchdown.master.verbs.fmus import build, check, container, doctor, ssp
+from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
 from touchdown.master.verbs.studies import (
     advise,
     compare,
@@ -34,4 +34,5 @@ ALL: tuple[Verb, ...] = (
     container.VERB,
     check.VERB,
     doctor.VERB,
+    cache.VERB,
 )

@@ -16,6 +16,9 @@ from touchdown.master.verbs.completion import complete
 if TYPE_CHECKING:
     from touchdown.master.scene.scene import Scene
 
+MOST = 10_000  # of what is counted: runs, repetitions
+MOST_JOBS = 256  # processes, each of a hundred MB and more
+
 # -- declared ----------------------------------------------------------------------------------------
 
 
@@ -63,7 +66,7 @@ def add_output(verb: argparse.ArgumentParser, default: str | Path, what: str = "
 
 
 def add_jobs(verb: argparse.ArgumentParser) -> None:
-    """Add --jobs; `count` reads it."""
+    """Add --jobs; `chosen_jobs` reads it."""
     verb.add_argument("--jobs", default="2", metavar="N", help="runs at a time (default: 2)")
 
 
@@ -131,12 +134,19 @@ def assignment(text: str, option: str) -> tuple[str, str]:
     return name.strip(), value.strip()
 
 
-def count(text: str, option: str) -> int:
-    """A whole number above 0, given with `option`. Raises TouchdownError."""
+def count(text: str, option: str, most: int = MOST) -> int:
+    """A whole number above 0, at most `most`, given with `option`. Raises TouchdownError."""
     number = to_si(text, "1", option)
     if number < 1.0 or number != int(number):
         raise TouchdownError(f"{option} {text} must be a whole number above 0")
+    if number > most:
+        raise TouchdownError(f"{option} {text} must be at most {most}")
     return int(number)
+
+
+def chosen_jobs(options: argparse.Namespace) -> int:
+    """What --jobs gives. Raises TouchdownError."""
+    return count(options.jobs, "--jobs", MOST_JOBS)
 
 
 def above_zero(text: str | None, unit: str, option: str) -> float | None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from touchdown.master.common.errors import STOPPED
 from touchdown.master.verbs.arguments import add_output, add_quiet, add_scene, chosen_scene
-from touchdown.master.verbs.screen import BROKEN_OFF, complain, warn
+from touchdown.master.verbs.screen import BROKEN_OFF, complain, say_whose_code_runs, warn
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
@@ -22,6 +22,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
     add_scene(verb)
     add_output(verb, "runs/SCENE", "folder for the results")
     verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
+    verb.add_argument("--isolate", action="store_true", help="step each .fmu in a process of its own")
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="draw nothing")
     add_quiet(verb)
@@ -30,11 +31,16 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.ended import Ended
+    from touchdown.master.components.library import foreign
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
     from touchdown.master.results.whirl.evidence import evidence, hint
 
     chosen = chosen_scene(options)
+    files = [name for name, spec in chosen.components.items() if foreign(spec.fmu)]
+    if options.isolate:
+        chosen = chosen.set({f"{name}.isolate": True for name in files})
+    say_whose_code_runs({name: chosen.components[name].isolate for name in files})
     result = run_scene(
         chosen,
         options.output or Path("runs") / chosen.name,

@@ -6,33 +6,41 @@ Undamped contacts neither gain nor lose energy in the long run (Hairer, Lubich, 
 Integration, 2nd ed., section I.1.4). Between two drifts the velocities get one kick, a' over half of either
 step; a' is evaluated with those before it, and a model may take what depends on velocity implicitly.
 
-The step is bounded from above, and by the fastest contact: h w <= `RESOLUTION`, w its angular frequency
-(the method is stable up to 2).
+The step is bounded from above, and by the fastest contact: h w at most `Steps.resolution`, w its angular
+frequency (the method is stable up to 2).
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP
 from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
-RESOLUTION = 0.8
-OVERRUN = 1.25  # of the resolution, up to which a step keeps the length that its kick was for
+OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
 SLIVER = 1e-6  # of a step; what is left of a span by rounding
 
 
+class Steps(NamedTuple):
+    """How long a step may be."""
+
+    longest: float  # s
+    resolution: float  # rad, of the fastest contact
+
+
 @inlined
-def step_length(frequency, left, longest):
+def step_length(frequency, left, steps):
     """The next step (s) for contacts up to `frequency` (rad/s): even ones over what is `left` (s)."""
-    h = longest if frequency * longest <= RESOLUTION else RESOLUTION / frequency
+    slow = frequency * steps.longest <= steps.resolution  # a NaN is not
+    h = steps.longest if slow else steps.resolution / frequency
     return left if h >= left else left / math.ceil(left / h - 1e-6) if h > 0.0 else 0.0
 
 
 @inlined
-def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longest):
-    """Advance the state q[:n] over `span` (s) in place, in steps of at most `longest` (s).
+def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps):
+    """Advance the state q[:n] over `span` (s) in place, in `Steps`.
 
     rhs(t, q, dq, m) and observe(t, q, m) as for `dopri.integrate`. drift(trial, q, v, h, m) sets each
     position in `trial` to that in q plus h (s) times its velocity in v. forecast(trial, dq, h, kick, m) may
@@ -44,13 +52,14 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
     """
     t = 0.0
     status = OK
-    steps = 0
+    taken = 0
     f, f_new = work[0], work[1]  # dq at both ends of a step
     half, trial = work[2], work[3]  # q with the velocities of the middle; trial state
-    h = step_length(fastest(m), span, longest)
+    frequency = fastest(m)
+    h = step_length(frequency, span, steps)
     while t < span:
-        steps += 1
-        if steps > MOST_STEPS:
+        taken += 1
+        if taken > MOST_STEPS:
             status = TOO_MANY_STEPS
             break
         if not h >= SMALLEST_STEP:  # a NaN is not
@@ -59,7 +68,7 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
         left = span - t - h
         following = 0.0
         if left > SLIVER * h:
-            following = step_length(fastest(m), left, longest)
+            following = step_length(frequency, left, steps)
             t += h
         else:
             t = span
@@ -75,7 +84,7 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, longe
         for i in range(n):
             f[i] = f_new[i]
         observe(t, q, m)
-        h = following
-        if fastest(m) * following > OVERRUN * RESOLUTION:  # a hit found only now needs a shorter one
-            h = min(following, step_length(fastest(m), span - t, longest))
-    return status, steps
+        h, frequency = following, fastest(m)
+        if frequency * following > OVERRUN * steps.resolution:  # a hit found only now needs a shorter one
+            h = min(following, step_length(frequency, span - t, steps))
+    return status, taken

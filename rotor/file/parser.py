@@ -16,7 +16,9 @@ def parse(text: str, file: str) -> Shaft:
     """The rotor that `text` describes; `file` is what to call it in messages. Raises RotorFileError."""
     try:
         top = Table(file, "", tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError:
+        raise RotorFileError(f"{file}: is not valid TOML: its values lie too deep in each other") from None
+    except ValueError as error:  # of TOML's syntax, or of an integer with thousands of digits
         raise RotorFileError(f"{file}: is not valid TOML: {error}") from None
     top.only("title", "about", "damping_ratio", "material", "element", "disc", "point_mass", "unbalance",
              "stations", "sensors", "levitated_at")  # fmt: skip
@@ -85,7 +87,7 @@ def _levitated(top: Table) -> tuple[str, ...]:
     names = top.get("levitated_at", list, 'a list of stations, such as ["amb_A", "amb_B"]', [])
     there = top.values.get("stations", {})
     for name in names:
-        if name not in there:
+        if not isinstance(name, str) or name not in there:
             listed = ", ".join(there) or "none"
             raise top.error("levitated_at", f"names {name!r}, which is no station; there are: {listed}")
     return tuple(names)

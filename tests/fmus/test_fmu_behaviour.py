@@ -102,8 +102,14 @@ def test_runs_on_a_host_that_never_saw_it(alone: Alone, unpacked: Mapping[str, P
 
 
 def test_runs_where_nothing_can_be_cached(alone: Alone, unpacked: Mapping[str, Path], tmp_path: Path):
+    """In a temporary cache, which one line says."""
     (tmp_path / "file").write_text("no folder")
-    found = answer(alone(ALONE, unpacked["housing"], TOUCHDOWN_CACHE=str(tmp_path / "file" / "cache")))
+    done = alone(ALONE, unpacked["housing"], TOUCHDOWN_CACHE=str(tmp_path / "file" / "cache"))
+    found = answer(done, warned=True)
+    assert done.stderr.startswith(
+        f"touchdown: warning: cannot use the cache {tmp_path / 'file' / 'cache'} "
+    )
+    assert done.stderr.count("\n") == 1
     assert found["loaded"] == []
     assert found["outputs"] == answer(alone(ALONE, unpacked["housing"]))["outputs"]
 

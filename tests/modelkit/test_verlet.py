@@ -11,6 +11,7 @@ from touchdown.modelkit.integrators import verlet
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import STEP_UNDERFLOW
 
+RESOLUTION = 0.8  # rad
 STIFFNESS, FRICTION, KICK, FASTEST, LATER, KICKS = range(6)
 
 
@@ -49,7 +50,9 @@ def observe(t, q, m):
 @kernel
 def run(q, m, work, span, longest):
     rhs(0.0, q, work[0], m)
-    return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, longest)
+    return verlet.integrate(
+        rhs, drift, forecast, fastest, observe, m, q, 3, work, span, verlet.Steps(longest, RESOLUTION)
+    )
 
 
 def parameters(stiffness: float, friction: float, fastest: float) -> np.ndarray:
@@ -98,7 +101,7 @@ def test_friction_is_the_law_itself_for_short_steps() -> None:
 
 def test_the_fastest_contact_bounds_the_step() -> None:
     _, evaluations = advanced(1.0, 1.0, 1.0, fastest=100.0)
-    assert evaluations == pytest.approx(100.0 / verlet.RESOLUTION + 1.0, abs=1.0)
+    assert evaluations == pytest.approx(100.0 / RESOLUTION + 1.0, abs=1.0)
 
 
 def test_each_kick_is_half_of_the_steps_beside_it() -> None:
@@ -107,7 +110,7 @@ def test_each_kick_is_half_of_the_steps_beside_it() -> None:
         q, m = np.array([1.0, 0.0, 0.0]), parameters(1.0, 0.0, early)
         m[LATER] = later
         run(q, m, np.zeros((8, 3)), 1.0, 0.013)
-        longest = min(0.013, verlet.RESOLUTION / early) if early else 0.013
+        longest = min(0.013, RESOLUTION / early) if early else 0.013
         first = 1.0 / math.ceil(1.0 / longest)
         assert 0.5 * first + m[KICKS] == pytest.approx(1.0, rel=1e-12)
 

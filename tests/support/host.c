@@ -1,7 +1,9 @@
 /* A bare FMI 2.0 host without Python: loads the library of one FMU and does what stdin says.
 
-   host LIBRARY GUID RESOURCES     stdin:  set REFERENCE VALUE | start | step TIME STEP | get REFERENCE | leave
+   host LIBRARY GUID RESOURCES
+   stdin:  set REFERENCE VALUE | start | step TIME STEP | get REFERENCE | renew | memory | leave
 
+   `renew` frees the instance and makes another one; `memory` gives what is resident, in kB.
    Values go in and out as hexadecimal floating point, so that nothing is rounded. What the FMU logs goes
    to stderr. Exit status 1: the library cannot be loaded; 2: no instance; 3: a call was not answered OK. */
 
@@ -9,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef void *Component;
 typedef struct {
@@ -35,6 +38,16 @@ static void *function(const char *name)
         exit(1);
     }
     return found;
+}
+
+static double resident(void)
+{
+    long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (!file || fscanf(file, "%*d %ld", &pages) != 1)
+        exit(3);
+    fclose(file);
+    return 1e-3 * (double)pages * (double)sysconf(_SC_PAGESIZE);
 }
 
 int main(int count, char **arguments)
@@ -79,6 +92,14 @@ int main(int count, char **arguments)
             status = setup(fmu, 0, 0.0, 0.0, 0, 0.0);
             status = status > 1 ? status : enter(fmu);
             status = status > 1 ? status : leave(fmu);
+        } else if (!strcmp(word, "renew")) {
+            terminate(fmu);
+            release(fmu);
+            fmu = instantiate("hosted", 1, arguments[2], arguments[3], &callbacks, 0, 1);
+            if (!fmu)
+                return 2;
+        } else if (!strcmp(word, "memory")) {
+            printf("%a\n", resident());
         } else if (!strcmp(word, "leave")) {
             return 0; /* without freeing anything */
         } else {

@@ -8,6 +8,8 @@ import numpy as np
 class Dataset:
     attrs: Any
     dims: Any
+    id: Any
+    ref: Any
     shape: tuple[int, ...]
     name: str
 
@@ -31,6 +33,7 @@ class Group:
         chunks: tuple[int, ...] = ...,
         compression: str = ...,
         compression_opts: int = ...,
+        fill_time: str = ...,
     ) -> Dataset: ...
     def require_group(self, name: str) -> Group: ...
     def get(self, name: str, default: Any = ...) -> Any: ...
@@ -46,7 +49,15 @@ class Group:
 class File(Group):
     filename: str
 
-    def __init__(self, name: str | Path, mode: str = ..., libver: str = ...) -> None: ...
+    def __init__(
+        self,
+        name: str | Path | object,  # a file object
+        mode: str = ...,
+        libver: str | tuple[str, str] = ...,
+        rdcc_nbytes: int = ...,
+        alignment_threshold: int = ...,
+        alignment_interval: int = ...,
+    ) -> None: ...
     def flush(self) -> None: ...
     def close(self) -> None: ...
     def __enter__(self) -> File: ...

@@ -20,7 +20,7 @@ from touchdown.bearings.rolling.declarations import (
     race_stiffness,
 )
 from touchdown.bearings.rolling.declarations import problem as rolling_problem
-from touchdown.bearings.rolling.micro_step import KickMemory, resolved_step
+from touchdown.bearings.rolling.micro_step import MICRO_STEP, KickMemory, step_limits
 from touchdown.bearings.rolling.side import SideContacts
 from touchdown.modelkit.variables import array, group, groups, integer, real
 
@@ -30,9 +30,10 @@ class BallBodiesParameters(RollingParameters):
     """What both detailed models share."""
 
     micro_step: float = real(
-        2.5e-6,
+        MICRO_STEP,
         "s",
-        "longest step inside, of the velocity Verlet method; 0: adaptive Dormand-Prince steps of the "
+        "longest step inside, of the velocity Verlet method; shorter ones follow below the default; "
+        "0: adaptive Dormand-Prince steps of the "
         "error interface.tolerance",
         minimum=0.0,
         maximum=1e-4,
@@ -90,6 +91,7 @@ class BallBodiesDerived(RollingDerived):
     ball_radius: float = real(0.0, "m", "of a ball")
     outer_radius: float = real(0.0, "m", "outer race")
     micro_step: float = real(0.0, "s", "longest step inside")
+    resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
     searched: int = integer(0, "1: contacts with races are searched for")
     cage_answer: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
     x: tuple = array(MOST_BALLS)  # where the balls start, from the middle
@@ -133,7 +135,7 @@ def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[s
         "stiffness": race_stiffness(b),
         "inner": inner,
         "outer": outer,
-        "micro_step": resolved_step(p.micro_step, hit),
+        **step_limits(p.micro_step, hit),
         "mass": b.ball_mass,
         "inertia": b.ball_inertia,
         "ball_radius": b.ball_radius,

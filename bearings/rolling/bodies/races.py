@@ -10,7 +10,6 @@ known, they rub (`rub_races`).
 from __future__ import annotations
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import curve
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import part, rounded
@@ -26,7 +25,7 @@ from touchdown.bearings.rolling.bodies.race import (
     with_friction,
 )
 from touchdown.bearings.rolling.bodies.state import ANGLE, SPIN, VX, VY, X, Y, balls_of
-from touchdown.bearings.rolling.rubbing import Answers, Around, Inner, rub, rubbed_of
+from touchdown.bearings.rolling.rubbing import Answers, Inner
 from touchdown.modelkit.kernel import woven
 from touchdown.modelkit.ports import Motion
 
@@ -86,30 +85,17 @@ def rub_races(q, dq, m):
     d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
     n = rounded(count)
     _drive(dq, m)
-    at, kick, squeezed = ring.meet_journal(q, m)
     pressed = pressing(s.inner, OUTSIDE, count)
     answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
-    around = Around(
-        ring.moved_before(m), ring.push_on(at, squeezed, pressed, m), ring.bore_line(at, kick, squeezed, m)
-    )
     inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
-    friction, moved = rub(
-        h,
-        count,
-        curve(d.race_friction),
-        answers,
-        around,
-        inner,
-        rubbed_of(s.outer, n),
-        rubbed_of(s.inner, n),
-    )
+    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
     _rub(dq, moved, m)
     on_inner = with_friction(pressed, s.inner, count)
     pressed_out = pressing(s.outer, INSIDE, count)
     on_outer = with_friction(pressed_out, s.outer, count)
     s.outer_moment = on_outer.moment
     s.brake.hx, s.brake.hy = on_outer.fx - pressed_out.fx, on_outer.fy - pressed_out.fy
-    return ring.rub_journal(at, squeezed, friction, moved, m), on_inner, on_outer
+    return journal, on_inner, on_outer
 
 
 @woven
@@ -142,5 +128,6 @@ def _rub(dq, moved, m):
         dx, dy = h * ax[b], h * ay[b]
         into_outer = dx * outer.nx[b] + dy * outer.ny[b]
         into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
+        into_inner -= moved.spin * inner.across[b]
         outer.loss[b] += outer.damped[b] * (outer.rate[b] + 0.5 * into_outer)
         inner.loss[b] += inner.damped[b] * (inner.rate[b] + 0.5 * into_inner)

@@ -84,7 +84,7 @@ def fastest(m):
         side = max(side, s.side.stiffness[b])
         sides += s.side.stiffness[b]
     if s.ring.indentation > 0.0:
-        below += m.p.contact.exponent * s.ring.normal / s.ring.indentation
+        below += m.p.contact.exponent * s.ring.elastic / s.ring.indentation
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
     return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 

@@ -13,21 +13,21 @@ from pathlib import Path
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale, Unit, scaled, then
 from touchdown.master.components.component import Variable
-from touchdown.master.components.fmu import interface
+from touchdown.master.components.interface import interface
 from touchdown.master.components.unpack import Format, unpack
 from touchdown.master.interop.ssp import structure
 from touchdown.master.interop.ssp.bindings import Value
 from touchdown.master.interop.ssp.names import HEART
 from touchdown.master.interop.ssp.structure import Link, Structure
 from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
-from touchdown.modelkit.kernel import user_cache
+from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene")
 
 
 RUN_KEYS = (
-    "scheme", "tolerance", "record_every", "record", "record_arrays", "warn_residual", "stop_residual",
-    "whirl_halvings",
+    "scheme", "tolerance", "record_every", "record", "record_also", "record_arrays", "warn_residual",
+    "stop_residual", "whirl_halvings",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 

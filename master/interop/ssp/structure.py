@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale, Unit
+from touchdown.master.coupling.simulation import MOST_STEPS
 from touchdown.master.interop.ssp import bindings, xml
 from touchdown.master.interop.ssp.bindings import Value
 from touchdown.master.interop.ssp.names import HEART, SCENE_ANNOTATION, STEP_ANNOTATION
@@ -65,9 +66,15 @@ class Structure:
     names: Mapping[str, Mapping[str, str]]  # by component: variables of the contract, and its own
 
     def every(self, name: str) -> int:
-        """How many of the system's macro steps the component `name` takes in one."""
+        """How many of the system's macro steps the component `name` takes in one. Raises TouchdownError."""
         step = self.parts[name].step
-        return max(1, round(step / self.macro_step)) if step and self.macro_step else 1
+        ratio = step / self.macro_step if step and self.macro_step else 1.0
+        if not ratio < MOST_STEPS:
+            raise TouchdownError(
+                f"component {name} asks for steps of {step:g} s, {ratio:g} of the package's macro steps; "
+                f"less than {MOST_STEPS:g} are possible"
+            )
+        return max(1, round(ratio))
 
 
 def read(folder: Path, where: str) -> Structure:

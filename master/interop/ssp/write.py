@@ -18,7 +18,7 @@ from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import Unit
 from touchdown.master.components.component import Component, Kind
-from touchdown.master.components.fmu import FmuComponent
+from touchdown.master.components.fmu import ArchivedFmu
 from touchdown.master.coupling.connections import Connection
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
@@ -73,7 +73,7 @@ def _resources(system: System) -> dict[str, tuple[str, Path]]:
     places: dict[bytes, str] = {}
     files: dict[str, tuple[str, Path]] = {}
     for name, component in system.components.items():
-        assert isinstance(component, FmuComponent)
+        assert isinstance(component, ArchivedFmu)
         content = component.path.read_bytes()
         if content not in places:
             stem = component.path.stem
@@ -242,6 +242,7 @@ def _experiment(root: Element, scene: Scene, zero: float) -> None:
         "tolerance": repr(run.tolerance),
         "record_every": str(run.record_every),
         "record": ",".join(run.record),
+        "record_also": ",".join(run.record_also),
         "record_arrays": str(run.record_arrays).lower(),
         "warn_residual": repr(run.warn_residual),
         "stop_residual": repr(run.stop_residual),

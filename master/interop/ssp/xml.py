@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from urllib.parse import unquote
 from xml.etree.ElementTree import Element, ParseError, fromstring
+from xml.parsers.expat import ExpatError
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Scale, Unit
+from touchdown.master.components.description import DocumentTypeError, refuse_definitions
 from touchdown.master.interop.ssp.names import NAMESPACES
 
 CHOICES = ("BooleanMapping", "IntegerMapping", "EnumerationMapping")  # transformations that are not read
@@ -32,14 +35,13 @@ def child(element: Element, path: str) -> Element | None:
 def read_xml(path: Path, where: str, root: str) -> Element:
     """The root element of a file, which must be `root` (PREFIX:NAME). Raises TouchdownError."""
     try:
-        content = path.read_bytes()
+        refuse_definitions(path)
+        element = fromstring(path.read_bytes())
     except OSError as error:
         raise TouchdownError(f"{where}: cannot read it ({error.strerror})") from None
-    if b"<!DOCTYPE" in content:
-        raise TouchdownError(f"{where}: it declares a document type, which SSP does not; refused")
-    try:
-        element = fromstring(content)
-    except (ParseError, ValueError, LookupError) as error:
+    except DocumentTypeError as error:
+        raise TouchdownError(f"{where}: {error}; refused") from None
+    except (ParseError, ExpatError, ValueError, LookupError) as error:
         raise TouchdownError(f"{where}: it is not valid XML ({error})") from None
     if element.tag != tag(root):
         raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP 1.0")
@@ -61,9 +63,12 @@ def number(element: Element, name: str, where: str, default: float | None = None
         return default
     text = required(element, name, where)
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
         raise TouchdownError(f"{where}: {name} = {text!r} is not a number") from None
+    if not math.isfinite(value):
+        raise TouchdownError(f"{where}: {name} = {text!r} is not a finite number")
+    return value
 
 
 def switch(element: Element, name: str, where: str) -> bool:

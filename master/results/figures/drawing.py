@@ -10,6 +10,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from touchdown.master.common.files import replacing
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.contacts import contacts, has_contacts
@@ -47,6 +48,9 @@ OF_BEARING = [
     OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),
 ]
 
+NAMES = (*(picture.name for picture in OF_BEARING), "orbits", "stress", "energy")
+"""Of all files, before the component that some have at the end."""
+
 
 def draw_all(run: Finished, folder: Path) -> list[Path]:
     """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files."""
@@ -56,7 +60,8 @@ def draw_all(run: Finished, folder: Path) -> list[Path]:
             figure = sheet()
             draw(figure)
             path = folder / f"{name}.png"
-            figure.savefig(path, dpi=110)
+            with replacing(path) as part:
+                figure.savefig(part, dpi=110, format="png")
             made.append(path)
     return made
 

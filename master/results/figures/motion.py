@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.simulation import zero_of
 from touchdown.master.results.ending import Finished, Readable, housing_port
 from touchdown.master.results.figures.style import (
     BLACK,
@@ -157,7 +158,7 @@ def _cage(recording: Recording, a: Attachment) -> list[Track]:
 
 def _sync(run: Finished, a: Attachment) -> float:
     """When the ring first turned with the rotor (s from the zero); the run's end where it did not."""
-    zero = run.system.value(run.scene.zero) if run.scene.zero else 0.0
+    zero = zero_of(run.scene, run.system)
     sync = run.system.value(f"{a.bearing}.ring.sync_time") - zero
     return sync if sync > 0.0 else float(run.recording.time[-1])
 

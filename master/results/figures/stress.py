@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
+from touchdown.master.coupling.simulation import zero_of
 from touchdown.master.results.ending import Finished, Readable, Teller
 from touchdown.master.results.figures.style import (
     BLUE,
@@ -36,7 +37,7 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     whole run. Over time: the largest resultant anywhere, and the instant that was kept.
     """
     component = run.system.components[name]
-    zero = run.system.value(run.scene.zero) if run.scene.zero else 0.0
+    zero = zero_of(run.scene, run.system)
     kept = kept_instant(component)
     grid = sized(figure, 13, 8.4).subplots(2, len(KINDS), sharex="row")
     for kind, axial, timed in zip(KINDS, *grid, strict=True):

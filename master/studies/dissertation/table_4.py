@@ -14,7 +14,7 @@ from pathlib import Path
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.processes import run_all
+from touchdown.master.common.processes.pool import run_all
 from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.twin import TwinComponent
-from touchdown.master.coupling.simulation import open_system
+from touchdown.master.coupling.simulation import open_system, zero_of
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
@@ -44,7 +44,7 @@ class Monolith:
                     "equations to join, and there is no monolithic reference without them"
                 )
             self._twins[name] = component
-        self.zero = system.value(scene.zero) if scene.zero else 0.0
+        self.zero = zero_of(scene, system)
         self._switches = _switches(system) | {self.zero}
         system.initialise()
         bearings = {a.bearing for a in system.attachments}

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.coupling.simulation import opened, refuse_endless, simulate
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.first_impact import LEAST, Peaks, Stop, Trace, run_watched
@@ -107,6 +107,7 @@ def compare_models(
     begin(what) is called before the scene and before each variant. Raises TouchdownError where the scene
     itself does not land or stops; a variant says so in its row.
     """
+    refuse_endless(duration or LONGEST, scene.run.macro_step)
     scene = _unjudged(scene)
     begin("the scene as it is")
     exact, end = _dropped(scene, Stop(LONGEST if duration is None else duration, early=False))

@@ -15,7 +15,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Component
-from touchdown.master.coupling.simulation import open_system, opened
+from touchdown.master.coupling.simulation import open_system, opened, refuse_endless
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import Scene
@@ -140,12 +140,12 @@ def compare_modes(
     of modes cannot be, nothing touches, or a run stops.
     """
     rotor = _rotor(scene)
+    refuse_endless(duration or LONGEST, macro_step)
     scene = scene.set({"run.macro_step": macro_step})
     _check_modes(_basis(scene, rotor, max(modes), 1, 1))
     whole = _basis(scene, rotor, 0, 0, 0)
-    fine = whole.set({"run.macro_step": 0.5 * macro_step})
     stop = Stop(LONGEST if duration is None else duration, early=duration is None, every=2)
-    exact = _run(fine, rotor, stop)
+    exact = _run(whole.set({"run.macro_step": 0.5 * macro_step}), rotor, stop)
     impacts = {seat: impact for seat, t in exact.traces.items() if (impact := t.first_impact())}
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")

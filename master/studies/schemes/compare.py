@@ -17,12 +17,13 @@ from enum import StrEnum
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.coupling.simulation import opened, refuse_endless, simulate
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES
 from touchdown.master.studies.drop.first_impact import CONTACT, INSIDE
 from touchdown.master.studies.drop.measured import (
     FINE,
+    LONGEST,
     Landing,
     Plan,
     Sampler,
@@ -185,6 +186,7 @@ def compare_schemes(
     limits = scene.run.warn_residual, scene.run.stop_residual
     scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
     begin("fine steps")
+    refuse_endless(max(asked.duration or LONGEST, asked.timed or 0.0), min(asked.steps))
     landing = land(scene, asked.duration)
     looks = plan(landing, (*asked.steps, 2.0 * FINE))
     scene = scene.set({"run.duration": landing.end})

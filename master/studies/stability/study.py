@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.common.processes import TaskOutcome, run_all
+from touchdown.master.common.processes.pool import TaskOutcome, run_all
 from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.studies.stability.report import Study, write_tables
 from touchdown.master.studies.stability.trials import Case, Finding, Right, examine, reference
@@ -36,7 +36,7 @@ def study_stability(
     """Examine every case with every scheme, and write tables and picture into `folder`.
 
     done() after each reference and each finding. After Ctrl-C what is there is written, and the rest is
-    INTERRUPTED. Starts processes: see `touchdown.master.common.processes`.
+    INTERRUPTED. Starts processes: see `touchdown.master.common.processes.pool`.
     """
     rights, failed = _parted([case.name for case in cases], run_all(carrying(reference), cases, jobs, done))
     tasks: list[Task] = []

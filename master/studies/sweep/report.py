@@ -10,7 +10,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.errors import one_of
+from touchdown.master.common.files import replacing, writing_to
 from touchdown.master.studies.sweep.variation import number_and_unit
 
 PICKS = (  # shown beside the verdicts where none are asked for
@@ -31,6 +32,7 @@ class Member:
     summary: Mapping[str, object]
     failed: str = ""  # why, or ""
     ended: Ended = Ended.COMPLETED
+    kept: bool = False  # whether it was there, finished, before the sweep, and was not run again
 
 
 def keys(members: Sequence[Member]) -> list[str]:
@@ -87,22 +89,22 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
 
 
 def write_table(members: Sequence[Member], path: Path) -> None:
-    """All figures of all members; a varied number stands in the unit its column names, or SI."""
+    """All figures of all members; a varied number stands in the unit its column names, or SI.
+
+    An older table is replaced when the new one is whole.
+    """
     names, figures = list(members[0].settings), keys(members)
     columns = {name: _column(name, [m.settings[name] for m in members]) for name in names}
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
-            for i, m in enumerate(members):
-                cells = [counted(m.summary.get(key)) for key in figures]
-                writer.writerow(
-                    [m.number, *(values[i] for _, values in columns.values()), *cells, m.failed]
-                )
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write {path}: {error.strerror}; choose another folder with -o"
-        ) from None
+    with (
+        writing_to(path.parent),
+        replacing(path) as part,
+        part.open("w", newline="", encoding="utf-8") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
+        for i, m in enumerate(members):
+            cells = [counted(m.summary.get(key)) for key in figures]
+            writer.writerow([m.number, *(values[i] for _, values in columns.values()), *cells, m.failed])
 
 
 def _column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:

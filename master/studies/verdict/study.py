@@ -15,7 +15,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.progress import UNSEEN, Progress
-from touchdown.master.coupling.simulation import opened
+from touchdown.master.coupling.simulation import opened, refuse_endless
 from touchdown.master.coupling.system import System
 from touchdown.master.results.run import make_writable
 from touchdown.master.results.summary import touchdown_seats
@@ -28,7 +28,7 @@ from touchdown.master.studies.verdict.phases import CIRCLE, grid, refinement, tu
 
 GRID = 12.0  # deg; windows of rotor I are 16 to 20 wide
 RESOLUTION = 4.0  # deg
-LEAST = 0.01  # deg; nothing turns about that exactly
+LEAST = 0.1  # deg; nothing turns about that exactly, and a circle has thousands of runs by then
 REFERENCE = 5e-6  # s
 NEVER = 1e9  # a residual of the ledger at which no run stops: how many would have is counted
 
@@ -105,7 +105,7 @@ def study_verdict(
     Each run leaves its summary.json in `folder`/STEPS/PHASE. Several unbalanced rotors are turned together.
     The energy ledger stops no run. After Ctrl-C the study has what is there, and is `interrupted`. Raises
     TouchdownError where there is nothing to turn, or nothing that a verdict could be given on. Starts
-    processes: see `touchdown.master.common.processes`.
+    processes: see `touchdown.master.common.processes.pool`.
     """
     if running.jobs < 1:
         raise TouchdownError(f"a study needs at least one job, not {running.jobs}")
@@ -166,6 +166,7 @@ def _turned(angles: Mapping[str, float], by: float) -> dict[str, object]:
 
 def _with_step(scene: Scene, step: float) -> _Stepped:
     """At a macro step (s), recorded as often as the scene is, so that verdicts are told from the same."""
+    refuse_endless(scene.run.duration, step)
     every = max(1, round(scene.run.record_every * scene.run.macro_step / step))
     changes: dict[str, object] = {"run.macro_step": step, "run.record_every": every}
     name = f"{1e6 * step:g}us"

@@ -12,6 +12,7 @@ from touchdown.master.verbs.arguments import (
     add_phases,
     add_quiet,
     angle,
+    chosen_jobs,
     count,
     results_folder,
 )
@@ -39,7 +40,7 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.studies.verdict.study import Plan
 
     members = count(options.ensemble, "--ensemble")
-    jobs = count(options.jobs, "--jobs")
+    jobs = chosen_jobs(options)
     plan = Plan(angle(options.grid, "--grid"), angle(options.resolution, "--resolution"))
     folder = results_folder(options)
     with growing_bar("drops", options.quiet) as progress:

@@ -8,7 +8,7 @@ from pathlib import Path
 from touchdown.master.common.errors import STOPPED, TouchdownError
 from touchdown.master.common.progress import bar_over
 from touchdown.master.scene.schemes import SCHEMES, scheme
-from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, count, results_folder
+from touchdown.master.verbs.arguments import add_jobs, add_output, add_quiet, chosen_jobs, results_folder
 from touchdown.master.verbs.screen import broken_off, complain
 from touchdown.master.verbs.verb import Verb
 
@@ -33,7 +33,7 @@ def execute(options: argparse.Namespace) -> int:
 
     cases = chosen(_names(options.cases, "--cases"), options.long)
     schemes = [scheme(name).name for name in _names(options.schemes, "--schemes")] or list(SCHEMES)
-    jobs = count(options.jobs, "--jobs")
+    jobs = chosen_jobs(options)
     folder = results_folder(options)
     with bar_over(size(cases, schemes), "searches", options.quiet) as bar:
         study = study_stability(cases, schemes, folder, jobs, bar.update)

@@ -13,7 +13,7 @@ from touchdown.master.verbs.arguments import (
     add_quiet,
     add_scene_name,
     add_settings,
-    count,
+    chosen_jobs,
     settings,
 )
 from touchdown.master.verbs.screen import broken_off, complain, warn
@@ -60,13 +60,15 @@ def execute(options: argparse.Namespace) -> int:
     if options.duration is not None:
         chosen = chosen.set({"run.duration": options.duration})
     variations = parse_all(options.vary)
-    jobs = count(options.jobs, "--jobs")
+    jobs = chosen_jobs(options)
     folder = options.output or Path("runs") / f"sweep-{chosen.name}"
     execution = Execution(options.in_process, options.keep)
     with bar_over(size(variations), "runs", options.quiet) as bar:
         members = sweep(chosen, variations, folder, jobs, execution, bar.update)
     figures, complaints = picked(members, options.pick)
     print("\n".join([table(members, figures), *verdict_lines(members)]))
+    if there := sum(member.kept for member in members):
+        print(f"{there} of {len(members)} were finished before and not run again")
     print(f"results in {folder}")
     failed = [m for m in members if m.failed]
     if any(m.ended is Ended.INTERRUPTED for m in failed):

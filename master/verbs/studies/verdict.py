@@ -16,7 +16,7 @@ from touchdown.master.verbs.arguments import (
     add_scene_name,
     add_settings,
     angle,
-    count,
+    chosen_jobs,
     settings,
     several_above_zero,
 )
@@ -64,7 +64,7 @@ def execute(options: argparse.Namespace) -> int:
         macro_steps=several_above_zero(options.macro_steps, "s", "--macro-steps"),
         reference=above_zero(options.reference, "s", "--reference"),
     )
-    running = Running(count(options.jobs, "--jobs"), options.in_process)
+    running = Running(chosen_jobs(options), options.in_process)
     folder = options.output or Path("runs") / f"verdict-{chosen.name}"
     with growing_bar("runs", options.quiet) as progress:
         study = study_verdict(chosen, plan, folder, running, progress)

@@ -17,6 +17,7 @@ from touchdown.bearings.rolling import ring, row
 from touchdown.bearings.rolling.ball_state import BALLS, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS
 from touchdown.bearings.rolling.bodies import state as bodies
+from touchdown.bearings.rolling.micro_step import RESOLUTION
 from touchdown.bearings.rolling.rubbing import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import Load
@@ -331,7 +332,7 @@ def go_on(instance: Instance, words: np.ndarray, step: float, span: float) -> np
     """State (n,) after `span` (s) in steps of `step` (s), 0: adaptive, from a memory of the instance."""
     instance.words[:] = words
     m = instance.record
-    m["d"]["micro_step"], m["s"]["kick"] = step, 0.5 * step
+    m["d"]["micro_step"], m["d"]["resolution"], m["s"]["kick"] = step, RESOLUTION, 0.5 * step
     if span > 0.0:
         instance.step(0.0, span)
     return m["q"][: int(m["n"])].copy()

@@ -40,10 +40,10 @@ def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.Monke
     """What the check says of a bearing in millimetres without a vertical force."""
     from touchdown.master.interop import check
 
-    original = check.FmuComponent
+    original = check.load_component
 
-    def spoiled(*arguments: object) -> object:
-        component = original(*arguments)  # type: ignore[arg-type]
+    def spoiled(*arguments: object, **options: object) -> object:
+        component = original(*arguments, **options)  # type: ignore[arg-type]
         variables = dict(component.variables)
         x = variables["journal.x"]
         variables["journal.x"] = Variable(**{**vars(x), "unit": "mm"})
@@ -51,7 +51,7 @@ def test_a_wrong_unit_and_a_missing_variable_are_named(monkeypatch: pytest.Monke
         component.variables = variables
         return component
 
-    monkeypatch.setattr(check, "FmuComponent", spoiled)
+    monkeypatch.setattr(check, "load_component", spoiled)
     problems = check_fmu("bushing").problems
     assert "journal.x is in mm, not in m" in problems
     assert any("journal.fy is missing" in problem for problem in problems)

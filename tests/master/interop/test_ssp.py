@@ -324,6 +324,17 @@ REFUSED = {
 }
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-16-le"])
+def test_a_document_type_is_refused_in_every_encoding(encoding: str, tmp_path: Path) -> None:
+    text = '<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]>' + foreign().partition("?>")[2]
+    path = tmp_path / "foreign.ssp"
+    with zipfile.ZipFile(path, "w") as archive:
+        mark = "\ufeff" if encoding == "utf-16-le" else ""
+        archive.writestr(HEART, (mark + text).encode(encoding))
+    with pytest.raises(TouchdownError, match="declares a document type"):
+        find_scene(str(path))
+
+
 @pytest.mark.parametrize("expected", REFUSED)
 def test_what_cannot_be_run_is_refused_in_one_line(pack: Pack, expected: str) -> None:
     path = pack(REFUSED[expected])

@@ -117,5 +117,5 @@ def test_a_component_cannot_take_the_file_s_own_names(name: str, tmp_path: Path)
     with opened(SCENE, in_process=True) as system:
         system.components[name] = system.components["housing"]
         with pytest.raises(TouchdownError, match=f"cannot be called {name}"):
-            Recorder(tmp_path / "result.h5", SCENE, system.components, 1)
+            Recorder(tmp_path / "result.h5", SCENE, system, 1)
         del system.components[name]

@@ -63,7 +63,18 @@ def test_a_bad_scene_file(old: str, new: str, named: str, run: Command, tmp_path
 
 @pytest.mark.parametrize(
     ("content", "named"),
-    [(b"", "[components]"), (b"\xff\xfe\x00", "not valid TOML"), (b"components = 3", "[components]")],
+    [
+        (b"", "[components]"),
+        (b"\xff\xfe\x00", "not valid TOML"),
+        (b"components = 3", "[components]"),
+        (b"x = " + 3000 * b"[" + 3000 * b"]", "too deep in each other"),
+        (b"[" + b".".join(3000 * [b"a"]) + b"]", "32 deep in each other"),
+        (b'extends = "disk-caged-simplified"\n[components.amb' + 99 * b".a" + b"]", "32 deep"),
+        (b"x = 1" + 5000 * b"0", "not valid TOML: Exceeds the limit"),
+        (b'extends = "a\\u0000b.toml"', "holds a NUL character"),
+        (b'[components."a\\u0000b"]', "holds a NUL character"),
+        (b'extends = "disk-caged-simplified"\n[components.rotor.set]\nmass = 1' + 400 * b"0", "308 digits"),
+    ],
 )
 def test_a_file_that_is_no_scene(content: bytes, named: str, run: Command, tmp_path: Path):
     path = tmp_path / "mine.toml"

@@ -16,7 +16,7 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import FAILED, STOPPED
-from touchdown.master.common.processes import INTERRUPTED, TaskOutcome
+from touchdown.master.common.processes.pool import INTERRUPTED, TaskOutcome
 from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -12,14 +13,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from places import COMMAND, ROOT
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
 from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.sweep.kept import identity, origins
 from touchdown.master.studies.sweep.report import Member, picked, table, verdict_lines
 from touchdown.master.studies.sweep.sweep import Execution, sweep
 from touchdown.master.studies.sweep.variation import parse, parse_all
+from touchdown.rotor.file import shipped
 
 SCENE = "disk-caged-simplified"
 ANGLE = "bearing.balls.first_angle"
@@ -161,6 +165,89 @@ def test_a_sweep_from_python_with_the_fmus(tmp_path: Path) -> None:
         sweep(scene, {"rotor.mass": [1.0]}, tmp_path, jobs=0)
     with pytest.raises(TouchdownError, match=r"rotor\.mass has no values"):
         sweep(scene, {"rotor.mass": []}, tmp_path)
+
+
+def masses(folder: Path) -> dict[str, float]:
+    """By folder of a finished member: the rotor's mass that it was run with."""
+    scenes = [mark.parent / "scene.json" for mark in folder.glob("*/member.json")]
+    ran = {path.parent.name: json.loads(path.read_text(encoding="utf-8")) for path in scenes}
+    return {name: scene["components"]["rotor"]["set"]["mass"] for name, scene in ran.items()}
+
+
+@pytest.mark.long
+def test_finished_members_are_not_run_again(tmp_path: Path) -> None:
+    """Known by their scene, they move to where they are wanted; those not asked for stay, elsewhere."""
+    scene = load_scene(SCENE).set({"run.duration": 2e-3})
+
+    def swept(*given: float) -> list[Member]:
+        return sweep(scene, {"rotor.mass": given}, tmp_path, execution=Execution(in_process=True))
+
+    first = swept(1.0, 2.0)
+    assert [m.kept for m in first] == [False, False]
+    more = swept(2.0, 3.0, 1.0)
+    assert [m.kept for m in more] == [True, False, True]
+    assert [m.summary for m in (more[2], more[0])] == [m.summary for m in first]
+    assert [row["rotor.mass"] for row in rows(tmp_path)] == ["2.0", "3.0", "1.0"]
+    assert masses(tmp_path) == {"001": 2.0, "002": 3.0, "003": 1.0}
+    assert [m.kept for m in swept(3.0)] == [True]
+    assert masses(tmp_path)["001"] == 3.0
+    assert sorted(masses(tmp_path).values()) == [1.0, 2.0, 3.0]
+    assert len(rows(tmp_path)) == 1
+    (tmp_path / "001" / "summary.json").write_text("{")
+    assert [m.kept for m in swept(3.0)] == [False]
+
+
+def test_a_member_is_known_by_all_that_changes_its_numbers(tmp_path: Path) -> None:
+    rotor = tmp_path / "rotor.toml"
+    text = shipped()["rotor_I"].read_text(encoding="utf-8")
+    rotor.write_text(text, encoding="utf-8")
+    scene = load_scene("rotor1-9000").swap(rotor=rotor)
+
+    def known(one: Scene, in_process: bool = True) -> str:
+        return identity(one, origins(one), in_process)
+
+    own = known(scene)
+    assert known(load_scene("rotor1-9000").swap(rotor=rotor)) == own
+    others = [known(scene.set({name: 3e-5})) for name in ("run.macro_step", "rotor.eccentricity")]
+    others += [known(scene, in_process=False), known(scene.set({"run.scheme": "hold"}))]
+    rotor.write_text(f"# the same, in other words\n{text}", encoding="utf-8")
+    others.append(known(scene))
+    assert len({own, *others}) == 6
+
+
+def test_a_sweep_that_is_too_large_is_refused_before_it_is_listed(tmp_path: Path) -> None:
+    many = {f"rotor.{name}": range(10**6) for name in ("mass", "speed", "x", "y")}
+    with pytest.raises(TouchdownError, match=f"1{24 * '0'} members is too large, at most 10000"):
+        sweep(load_scene(SCENE), many, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.long
+def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path: Path) -> None:
+    """SIGKILL leaves no process, and loses only what was under way."""
+    arguments = [*COMMAND, "sweep", SCENE, "--in-process", "--quiet", "-o", str(tmp_path)]
+    arguments += ["--duration", "0.05 s", "--vary", "rotor.mass=1:2:8 kg"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    running = subprocess.Popen(arguments, env=environment, start_new_session=True)
+    deadline = time.monotonic() + PATIENCE
+    try:
+        while len(masses(tmp_path)) < 2:
+            assert running.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+    finally:
+        running.kill()
+    running.wait()
+    while left := processes_of_session(running.pid):
+        assert time.monotonic() < deadline, left
+        time.sleep(0.01)
+    there = len(masses(tmp_path))
+    assert 0 < len(rows(tmp_path)) <= there < 8
+    again = subprocess.run(
+        arguments, env=environment, capture_output=True, text=True, timeout=PATIENCE, check=True
+    )
+    assert f"{there} of 8 were finished before and not run again" in again.stdout
+    assert [row["failed"] for row in rows(tmp_path)] == 8 * [""]
 
 
 @pytest.mark.long

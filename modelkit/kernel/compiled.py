@@ -1,20 +1,23 @@
-"""The one decorator behind every compiled kernel.
+"""How kernels are compiled.
 
-numba keeps machine code per source file, so a file that inlines a piece of another one would go on
-using the old piece after that one changed. Here the cache folder is named by a hash over the sources
-of all physics packages: any edit starts a fresh folder, and nothing stale is ever run.
+A kernel's machine code holds pieces of other kernels, inlined, and would go on using them after they
+changed. So the folder it is kept in (`machine_code`) is named by a hash over the sources of all physics
+packages: any edit starts a fresh folder, and nothing stale is ever run.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.dispatcher import Dispatcher
+
+from touchdown.modelkit.kernel.cache_folder import own_folder
+from touchdown.modelkit.kernel.machine_code import KernelCache
 
 
 @cache
@@ -32,19 +35,10 @@ PHYSICS_PACKAGES = ("modelkit", "rotor", "bearings")
 F = TypeVar("F", bound=Callable[..., object])
 
 
-def user_cache() -> Path:
-    """Folder for machine code, built and unpacked FMUs (``TOUCHDOWN_CACHE`` overrides it)."""
-    root = os.environ.get("TOUCHDOWN_CACHE")
-    if root:
-        return Path(root)
-    base = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
-    return Path(base) / "touchdown-cosim"
-
-
 @cache
 def source_hash(packages: tuple[str, ...] = PHYSICS_PACKAGES) -> str:
-    """Hash (16 hex digits) over the Python sources of `packages`, which stand beside this one."""
-    root = Path(__file__).resolve().parents[1]
+    """Hash (16 hex digits) over the Python sources of `packages`, which stand beside `modelkit`."""
+    root = Path(__file__).resolve().parents[2]
     digest = hashlib.sha256()
     for package in packages:
         for path in sorted((root / package).rglob("*.py")):
@@ -71,23 +65,20 @@ def woven(function: F) -> F:
 
 
 def _compiled(function: F, forceinline: bool) -> F:
-    before = numba.config.CACHE_DIR  # type: ignore[attr-defined]
-    numba.config.CACHE_DIR = _machine_code_folder()  # type: ignore[attr-defined]
-    try:
-        return cast(F, numba.njit(cache=True, error_model="numpy", forceinline=forceinline)(function))
-    finally:
-        numba.config.CACHE_DIR = before  # type: ignore[attr-defined]
+    compiled = numba.njit(error_model="numpy", forceinline=forceinline)(function)
+    folder = _machine_code_folder()
+    if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
+        cast(Any, compiled)._cache = KernelCache(function, folder)
+    return cast(F, compiled)
 
 
 @cache
-def _machine_code_folder() -> str:
-    """The cache folder, or "" (numba's own choice, beside the source) where none can be written."""
-    folder = user_cache() / "machine-code" / source_hash()
+def _machine_code_folder() -> Path | None:
+    """Where machine code of these sources is kept; None where nothing can be."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        return own_folder("machine-code", source_hash())
     except OSError:
-        return ""
-    return str(folder) if os.access(folder, os.W_OK) else ""
+        return None
 
 
 def inlined(function: F) -> F:

@@ -17,6 +17,7 @@ from typing import Any, Generic, TypeVar
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_ignored
+from touchdown.master.common.processes.orphans import die_with_parent
 
 GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
 
@@ -36,25 +37,39 @@ class TaskOutcome(Generic[Value]):
 INTERRUPTED = TaskOutcome[Any](None, Ended.INTERRUPTED, Ended.INTERRUPTED.value)
 
 
-def run_all(
-    work: Callable[[Task], Value], tasks: Sequence[Task], jobs: int, done: Callable[[], object]
-) -> list[TaskOutcome[Value]]:
-    """How each task ended, `jobs` at a time in processes that import `work`; done() after each.
+def _unheard(place: int, outcome: TaskOutcome[Any]) -> None:
+    pass
 
-    A task that raises has failed, and one whose process dies; the others go on. After Ctrl-C those that
-    have not ended are INTERRUPTED. A script that calls it needs `if __name__ == "__main__":`.
+
+def run_all(
+    work: Callable[[Task], Value],
+    tasks: Sequence[Task],
+    jobs: int,
+    done: Callable[[], object],
+    heard: Callable[[int, TaskOutcome[Value]], object] = _unheard,
+) -> list[TaskOutcome[Value]]:
+    """How each task ended, `jobs` at a time in processes that import `work`.
+
+    After each that ended, heard(place of the task, how) and done(). A task that raises has failed, and one
+    whose process dies; the others go on. After Ctrl-C those that have not ended are INTERRUPTED. The
+    processes end with this one, however it ends. A script that calls it needs
+    `if __name__ == "__main__":`.
     """
     _refuse_importing_script()
     ended: dict[int, TaskOutcome[Value]] = {}
-    jobs = max(1, min(jobs, len(tasks)))
+
+    def note(place: int, outcome: TaskOutcome[Value]) -> None:
+        ended[place] = outcome
+        heard(place, outcome)
+        done()
+
+    left = dict(enumerate(tasks))
     try:
-        _run_pool(work, dict(enumerate(tasks)), jobs, ended, done)
-        for place, task in enumerate(tasks):
-            if place not in ended:  # a process that dies takes its pool along: which one shows alone
-                _run_pool(work, {place: task}, 1, ended, done)
-                if place not in ended:
-                    ended[place] = TaskOutcome(None, Ended.STOPPED, "its process died")
-                    done()
+        while left:
+            for place in _run_pool(work, left, jobs, note):  # which one it was shows alone
+                if _run_pool(work, {place: left[place]}, 1, note):
+                    note(place, TaskOutcome(None, Ended.STOPPED, "its process died"))
+            left = {place: task for place, task in left.items() if place not in ended}
     except KeyboardInterrupt:
         pass
     return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
@@ -77,23 +92,30 @@ def _run_pool(
     work: Callable[[Any], Value],
     tasks: Mapping[int, Any],
     jobs: int,
-    ended: dict[int, TaskOutcome[Value]],
-    done: Callable[[], object],
-) -> None:
-    """Run tasks and note how they ended; those of a pool that broke are left out."""
+    note: Callable[[int, TaskOutcome[Value]], object],
+) -> list[int]:
+    """Run tasks and note how they ended.
+
+    A process that dies takes its pool along: returned are those that were under way then, else nothing.
+    """
     others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn"))
+    context, jobs = multiprocessing.get_context("spawn"), max(1, min(jobs, len(tasks)))
+    pool = ProcessPoolExecutor(jobs, context, die_with_parent, (os.getpid(),))
     waiting = list(tasks)
     running: dict[Future[Value], int] = {}
+    begun: set[int] = set()  # and not ended
     try:
         while waiting or running:
             while waiting and len(running) < jobs:  # a queue in the pool would go on after Ctrl-C
                 place = waiting.pop(0)
+                begun.add(place)
                 with interrupts_ignored():
                     running[pool.submit(work, tasks[place])] = place
             for future in wait(running, return_when=FIRST_COMPLETED).done:
-                ended[running.pop(future)] = _outcome(future)
-                done()
+                outcome = _outcome(future)
+                place = running.pop(future)
+                begun.remove(place)
+                note(place, outcome)
     except BrokenProcessPool:
         pass
     except BaseException:
@@ -101,6 +123,7 @@ def _run_pool(
         _end([child for child in multiprocessing.active_children() if child not in others])
         raise
     pool.shutdown()
+    return sorted(begun)
 
 
 def _outcome(future: Future[Value]) -> TaskOutcome[Value]:
@@ -129,7 +152,7 @@ def _end(processes: Sequence[BaseProcess]) -> None:
         _join(processes)
     finally:
         for process in processes:
-            process.terminate()
+            process.kill()  # a run would only note SIGTERM
 
 
 def _join(processes: Sequence[BaseProcess]) -> None:

@@ -1,0 +1,115 @@
+"""What the cache holds, and what of it may go: what was not used for long, and the oldest above a size.
+
+What goes is made again when it is missed, so nothing is lost but time. What stands in the folder and
+is none of the cache's own kinds is left alone, always.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from touchdown.modelkit.kernel.cache_folder import KINDS, TAG, is_cache, user_cache
+
+AGE = 30.0  # days without use after which an entry goes
+LIMIT = 2 * 1024**3  # bytes, of all entries
+RECENT = 1.0  # days within which an entry is taken to be in use
+PAUSE = 3600.0  # s between two looks at the whole cache, unasked
+DAY = 86400.0  # s
+ABOUT = {  # of the kinds, for people
+    "machine-code": "compiled kernels, by version",
+    "fmus": "the project's own FMUs, by version",
+    "sources": "what these run, by version",
+    "unpacked": "unpacked FMUs and SSP packages",
+    "rotors": "rotor files of rotors made in Python",
+    "peers": "environments of tests with other tools",
+}
+STAYING = ("rotors", "peers")  # scenes name the files of the first, the others are not of the command
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Something that is kept as a whole, and goes as a whole."""
+
+    path: Path
+    kind: str
+    size: int  # bytes
+    used: float  # when last, s since the epoch
+
+
+def entries(root: Path) -> list[Entry]:
+    """All that the cache at `root` holds."""
+    return [
+        Entry(path, kind, _size(path), path.lstat().st_mtime)
+        for kind in KINDS
+        for path in _within(root / kind)
+    ]
+
+
+def _within(folder: Path) -> Iterator[Path]:
+    if folder.is_dir() and not folder.is_symlink():
+        yield from sorted(folder.iterdir())
+
+
+def _size(path: Path) -> int:
+    """Bytes of a file, or of all files in a folder, links not followed."""
+    if path.is_symlink() or not path.is_dir():
+        return path.lstat().st_size
+    total = 0
+    for folder, _, names in os.walk(path):
+        for name in names:
+            try:
+                total += os.lstat(os.path.join(folder, name)).st_size
+            except OSError:  # gone meanwhile
+                continue
+    return total
+
+
+def made_again(held: Iterable[Entry]) -> list[Entry]:
+    """Of `held`, all but STAYING."""
+    return [entry for entry in held if entry.kind not in STAYING]
+
+
+def outworn(held: Iterable[Entry], now: float, age: float = AGE, limit: float = LIMIT) -> list[Entry]:
+    """Of `held`, what was not used for `age` (days), and the longest unused above `limit` (bytes) in all.
+
+    For the size nothing goes that was used within RECENT days: other processes may be at it. What a process
+    left unfinished goes after as long.
+    """
+    oldest_first = sorted(made_again(held), key=lambda entry: entry.used)
+    total = sum(entry.size for entry in oldest_first)
+    found: list[Entry] = []
+    for entry in oldest_first:
+        days = (now - entry.used) / DAY
+        unfinished = entry.path.name.startswith(".")
+        if days > age or (days > RECENT and (unfinished or total > limit)):
+            found.append(entry)
+            total -= entry.size
+    return found
+
+
+def remove(chosen: Iterable[Entry]) -> int:
+    """Remove entries; returns the bytes that are free now. Raises OSError for what cannot be removed."""
+    freed = 0
+    for entry in chosen:
+        if entry.path.is_dir() and not entry.path.is_symlink():
+            shutil.rmtree(entry.path)
+        else:
+            entry.path.unlink(missing_ok=True)
+        freed += entry.size
+    return freed
+
+
+def tidy() -> None:
+    """Remove what is outworn, quietly and once in a while."""
+    try:
+        root, now = user_cache(), time.time()
+        if is_cache(root) and now - (root / TAG).stat().st_mtime > PAUSE:
+            os.utime(root / TAG)
+            remove(outworn(entries(root), now))
+    except OSError:  # another process is at it
+        return

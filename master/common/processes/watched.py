@@ -1,0 +1,98 @@
+"""A process that others' code runs in, watched by one that stays behind and says how it ended.
+
+Code of others may end the process it runs in, with any status, before anything was written; no handler of
+that process outlives `_exit`. So the command splits before it loads such code: the copy goes on, and what
+the shell started waits for it and passes its status on, which is 0 only where the copy said so at its end.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from contextlib import suppress
+from typing import NoReturn
+
+from touchdown.master.common.errors import STOPPED
+from touchdown.master.common.processes.orphans import die_with_parent
+from touchdown.modelkit.kernel.cache_folder import leave
+
+_PASSED_ON = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+_BY_KERNEL = 0x80  # si_code: from the terminal, which reaches the copy, too
+
+_allowed = False  # whether this process is a command's, which may split
+_report: int | None = None  # file that the copy writes its status to
+
+
+def allow_watching() -> None:
+    """Let this process split when `watch` is called; a user's script must not."""
+    global _allowed
+    _allowed = True
+
+
+def watch(what: str) -> None:
+    """Go on in a copy of this process, which this one watches; `what` is blamed where it ends untimely.
+
+    Does nothing in a copy, where it was not allowed, or beside other threads.
+    """
+    global _allowed, _report
+    if not _allowed or threading.active_count() > 1:
+        return
+    _allowed = False
+    sys.stdout.flush()
+    sys.stderr.flush()
+    read, write = os.pipe()
+    parent = os.getpid()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {*_PASSED_ON, signal.SIGCHLD})
+    copy = os.fork()
+    if copy:
+        os.close(write)
+        _stay_behind(copy, read, what)
+    os.close(read)
+    die_with_parent(parent)
+    signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    _report = write
+
+
+def end(status: int) -> int:
+    """The exit status of the command; in a copy, report it and end, whatever libraries do at their end."""
+    if _report is None:
+        return status
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError):  # nobody reads it any more
+            stream.flush()
+    with suppress(OSError):  # nobody waits any more
+        os.write(_report, bytes([status]))
+    leave()
+    os._exit(status)
+
+
+def way_of(code: int) -> str:
+    """How a process ended, by its exit code, negative for a signal: what it did, or what was done to it."""
+    if code >= 0:
+        return f"ended with status {code}"
+    number = signal.Signals(-code)
+    return f"{'was ended by' if number in (*_PASSED_ON, signal.SIGKILL) else 'crashed with'} {number.name}"
+
+
+def _stay_behind(copy: int, report: int, what: str) -> NoReturn:
+    """Wait for the copy, pass signals on to it, and end as it did."""
+    while True:
+        got = signal.sigwaitinfo({*_PASSED_ON, signal.SIGCHLD})
+        if got.si_signo != signal.SIGCHLD and got.si_code != _BY_KERNEL:
+            os.kill(copy, got.si_signo)
+        ended, how = os.waitpid(copy, os.WNOHANG)
+        if ended:
+            break
+    leave()
+    os.set_blocking(report, False)  # a process that the FMU started may hold the other end
+    said = b""
+    with suppress(BlockingIOError):
+        said = os.read(report, 1)
+    if said:
+        os._exit(said[0])
+    code = os.waitstatus_to_exitcode(how)
+    sys.stderr.write(f"touchdown: the process {way_of(code)} before its work was done; {what}\n")
+    sys.stderr.flush()
+    os._exit(128 - code if code < 0 else STOPPED)

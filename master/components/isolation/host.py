@@ -1,0 +1,148 @@
+"""The process of an FMU: it does what the master asks for on the board, and ends with the master."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import sys
+from collections.abc import Callable, Sequence
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.processes.orphans import die_with_parent
+from touchdown.master.components.component import Component
+from touchdown.master.components.fmu import CALLS, FmuComponent
+from touchdown.master.components.foreign import ForeignFmu
+from touchdown.master.components.isolation.board import Ask, Board, Word
+from touchdown.master.components.isolation.crossing import CUT_OFF, GoneError, Side
+
+SETTING, STEPPING, READING = (CALLS.index(name) for name in ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal"))
+FOREVER = 1e9  # s
+
+
+class Host:
+    """The FMU and what was asked of it before."""
+
+    def __init__(self, board: Board) -> None:
+        self._words, self._floats, self._board = board.words, board.floats, board
+        self._fmu: Component | None = None
+        self._inputs = board.inputs[:0]
+        self._fetches: list[Callable[[], np.ndarray]] = []
+        self._states: dict[int, object] = {}
+
+    # -- asked for by name --------------------------------------------------------------------------
+
+    def load(self, name: str, path: str, cache: str, origin: str) -> None:
+        """Load the FMU at `path`."""
+        kind = FmuComponent if origin else ForeignFmu
+        self._fmu = kind(name, Path(path), Path(cache), origin, self._note)
+
+    def set(self, values: dict[str, float]) -> None:
+        """Set parameters or inputs before initialisation."""
+        self.fmu.set(values)
+
+    def bind(self, inputs: Sequence[str], outputs: Sequence[str]) -> None:
+        """Exchange these through the board."""
+        self._inputs = self._board.inputs[: len(inputs)]
+        self.fmu.bind(inputs, self._board.outputs[: len(outputs)], outputs)
+
+    def reader(self, names: Sequence[str]) -> None:
+        """Be ready to read these; readers are numbered in their order."""
+        self._fetches.append(self.fmu.reader(names))
+
+    def enter(self, start_time: float) -> None:
+        """Enter initialisation."""
+        self.fmu.enter(start_time)
+
+    def exit(self) -> None:
+        """Leave it."""
+        self.fmu.exit()
+
+    def close(self) -> None:
+        """Free the FMU."""
+        problem = self.fmu.close()
+        if problem:
+            raise TouchdownError(problem)
+
+    # -- asked for by number ------------------------------------------------------------------------
+
+    def answer(self, connection: Connection) -> None:
+        """Do what the board asks for. Raises TouchdownError where the FMU refuses."""
+        words = self._words
+        if words[Word.PUSHED]:
+            words[Word.AT] = SETTING
+            self.fmu.inputs[:] = self._inputs
+            self.fmu.push()
+        what, argument = words[Word.WHAT], words[Word.ARGUMENT]
+        if what == Ask.STEP:
+            words[Word.AT] = STEPPING
+            self.fmu.step(self._floats[Word.TIME], self._floats[Word.STEP])
+            words[Word.AT] = READING
+            self.fmu.pull()
+        elif what == Ask.CALL:
+            name, arguments = connection.recv()
+            getattr(self, name)(*arguments)
+        elif what == Ask.PULL:
+            words[Word.AT] = READING
+            self.fmu.pull()
+        elif what == Ask.FETCH:
+            words[Word.AT] = READING
+            values = self._fetches[argument]()
+            self._board.read[: len(values)] = values
+        elif what == Ask.SAVE:
+            self._states[argument] = self.fmu.save()
+        elif what == Ask.RESTORE:
+            self.fmu.restore(self._states[argument])
+        elif what == Ask.RELEASE:
+            self.fmu.release(self._states.pop(argument))
+
+    @property
+    def fmu(self) -> Component:
+        """The FMU, once it is loaded."""
+        assert self._fmu is not None
+        return self._fmu
+
+    def _note(self, call: str) -> None:
+        self._words[Word.AT] = CALLS.index(call)
+
+
+def main() -> None:
+    """Serve the process that started this one: `... VARIABLES MEMORY CALLS TALK`, three of them files."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+        signal.signal(number, signal.SIG_IGN)  # the master ends in order, and this process with it
+    die_with_parent(os.getppid())
+    variables, memory, calls, talk = map(int, sys.argv[1:])
+    board = Board(memory, variables)
+    status = 0
+    try:
+        with Connection(talk) as connection, socket.socket(fileno=calls) as wake:
+            serve(board, Side(board, wake, master=False), connection)
+    except (OSError, EOFError):
+        status = CUT_OFF
+    os._exit(status)  # what an FMU's library does at the end of a process is nobody's concern here
+
+
+def serve(board: Board, side: Side, connection: Connection) -> None:
+    """Answer requests until the master is gone. The first reply says that this process is up."""
+    host, words = Host(board), board.words
+    side.post()
+    while True:
+        try:
+            side.wait(1e-6 * words[Word.SPIN], FOREVER)
+        except GoneError:
+            return
+        try:
+            host.answer(connection)
+            words[Word.FAILED] = 0
+        except TouchdownError as error:
+            words[Word.FAILED] = 1
+            connection.send(str(error))
+        side.post()
+
+
+if __name__ == "__main__":
+    main()

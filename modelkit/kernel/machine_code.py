@@ -1,0 +1,134 @@
+"""Machine code kept between processes, and loaded only where it is what was written.
+
+numba's own cache loads whatever its files hold: one flipped byte ends the process. Here a file holds the
+code of one kernel for one signature behind a digest of it, under a name that both decide. What is damaged,
+another signature's or another user's is as good as missing: it is compiled again and replaced.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import inspect
+import os
+import pickle
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba import types
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+from numba.core.sigutils import normalize_signature
+
+from touchdown.modelkit.kernel.cache_folder import is_own
+
+_DIGEST = 32  # bytes
+_VERSION = (numba.__version__, sys.implementation.cache_tag)
+
+
+class KernelCache(_Cache):
+    """What numba asks for code of one kernel before it compiles, and gives it afterwards."""
+
+    def __init__(self, kernel: Callable[..., object], folder: Path) -> None:
+        """`folder` is one for the sources of all that the kernel calls."""
+        name = f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
+        self._folder, self._name = folder / kernel.__module__, name
+        self._kernel = kernel
+        self._enabled = True
+
+    @property
+    def cache_path(self) -> str:
+        return str(self._folder)
+
+    def enable(self) -> None:
+        self._enabled = True
+
+    def disable(self) -> None:
+        self._enabled = False
+
+    def flush(self) -> None:
+        for path in self._folder.glob(f"{self._name}.*"):
+            path.unlink(missing_ok=True)
+
+    def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
+        target_context.refresh()
+        key = self._key(sig, target_context.codegen())
+        data = _unsealed(self._path(key)) if self._enabled else None
+        if data is None:
+            return None
+        kept_for, code = pickle.loads(data)
+        return CompileResult._rebuild(target_context, *code) if kept_for == key else None
+
+    def save_overload(self, sig: Any, data: CompileResult) -> None:
+        """Keep it, where that can be: what is not kept is compiled again by the next process, no more.
+
+        Code that holds addresses of this process is of no use to another one.
+        """
+        arguments, _ = normalize_signature(sig)
+        fixed = not any(isinstance(argument, types.Callable) for argument in arguments)
+        if self._enabled and fixed and not data.library.has_dynamic_globals:
+            key = self._key(sig, data.codegen)
+            with contextlib.suppress(OSError):
+                _replace(self._path(key), _sealed(dumps((key, data._reduce()))))
+
+    def _key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
+        """All that decides the code beside other sources: types, processor, numba, the kernel itself."""
+        kernel = self._kernel
+        cells = tuple(cell.cell_contents for cell in kernel.__closure__ or ())
+        closed = hashlib.sha256(dumps(cells)).hexdigest() if cells else ""
+        own = kernel.__module__, self._name, kernel.__code__.co_code, closed
+        return signature, codegen.magic_tuple(), own, _text_of(inspect.getfile(kernel)), _VERSION
+
+    def _path(self, key: tuple[Any, ...]) -> Path:
+        signature, *others = key
+        digest = hashlib.sha256(repr((str(signature), others)).encode()).hexdigest()[:24]
+        return self._folder / f"{self._name}.{digest}.nbc"
+
+
+@cache
+def _text_of(file: str) -> str:
+    """Digest of a source file; "" for what was never in one."""
+    path = Path(file)
+    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+
+
+def _sealed(data: bytes) -> bytes:
+    """`data` behind a digest of it."""
+    return hashlib.sha256(data).digest() + data
+
+
+def _unsealed(path: Path) -> bytes | None:
+    """What `_sealed` was given; None where the file is missing, damaged or another user's."""
+    try:
+        with path.open("rb") as file:
+            if not is_own(os.fstat(file.fileno())):
+                return None
+            content = file.read()
+    except OSError:
+        return None
+    data = content[_DIGEST:]
+    return data if content and _sealed(data) == content else None
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Write a file in one go: another process finds all of it or what was there before."""
+    if not path.parent.is_dir():
+        path.parent.unlink(missing_ok=True)
+        path.parent.mkdir(mode=0o700, exist_ok=True)
+    if path.is_dir():
+        shutil.rmtree(path)
+    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".", delete=False) as file:
+        try:
+            file.write(content)
+            file.flush()
+            os.replace(file.name, path)
+        except BaseException:
+            os.unlink(file.name)
+            raise

@@ -1,0 +1,57 @@
+"""Processes that are started: none outlives the one that started it, and one that dies costs no other."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+from places import ROOT
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.processes.pool import run_all
+
+PARENT = """
+import multiprocessing, os, sys, time
+from touchdown.master.common.processes.orphans import die_with_parent, watch_parent
+
+def child(way):
+    {"kernel": lambda: die_with_parent(os.getppid()), "thread": watch_parent}[way]()
+    print("there", flush=True)
+    time.sleep(600)
+
+if __name__ == "__main__":
+    multiprocessing.get_context("spawn").Process(target=child, args=(sys.argv[1],)).start()
+    time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("way", ["kernel", "thread"])
+def test_a_process_ends_with_the_one_that_started_it(way: str, tmp_path) -> None:
+    """Both hold the pipe: it ends when both are gone."""
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    arguments = [sys.executable, str(script), way]
+    with subprocess.Popen(arguments, env=environment, stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline() == "there\n"
+        parent.send_signal(signal.SIGKILL)
+        assert parent.communicate(timeout=60) == ("", None)
+
+
+def die_at_two(number: int) -> int:
+    """Half of a number; the process dies of 2."""
+    if number == 2:
+        os._exit(1)
+    return number // 2
+
+
+def test_the_others_of_a_process_that_dies_go_on() -> None:
+    heard: list[int] = []
+    ended = run_all(die_at_two, [0, 2, 4, 6, 8], 2, lambda: None, lambda place, _: heard.append(place))
+    assert [one.value for one in ended] == [0, None, 2, 3, 4]
+    assert (ended[1].ended, ended[1].reason) == (Ended.STOPPED, "its process died")
+    assert sorted(heard) == [0, 1, 2, 3, 4]

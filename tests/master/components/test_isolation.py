@@ -1,0 +1,218 @@
+"""Code of others that ends, breaks or hangs its process: one line, a status, and what was recorded."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from commands import Command
+from misbehaving import COMPILER, DEEDS, FMI, compiled, misbehaving, scene_with
+from places import COMMAND
+
+from touchdown.master.cli import main
+from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
+from touchdown.master.components.fmu import FmuComponent
+from touchdown.master.components.isolation.component import IsolatedFmu
+from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.scene.file import load_scene
+from touchdown.modelkit.kernel.cache_folder import user_cache
+
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler (cc, gcc)")
+
+Make = Callable[[str, str], Path]
+HOW = {
+    "exit": "ended its process with status 0",
+    "_exit": "ended its process with status 0",
+    "abort": "crashed with SIGABRT",
+    "segv": "crashed with SIGSEGV",
+    "hang": "did not answer within 1 s",
+    "error": "it answered 'error'",
+    "fatal": "fatal",
+    "nan": "fy",  # and what it is not
+}
+QUIET = ("--in-process", "--no-pictures", "--quiet")
+
+
+@pytest.fixture(scope="module")
+def make(tmp_path_factory: pytest.TempPathFactory) -> Make:
+    """FMUs by what they do, and in which call."""
+    library = compiled(tmp_path_factory.mktemp("misbehaving"))
+    return lambda call, deed: misbehaving(library, call, deed)
+
+
+# -- in a process of its own -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("call", "deed"), DEEDS)
+def test_a_run_says_what_an_fmu_did(call: str, deed: str, make: Make, command: Command, tmp_path: Path):
+    """By component, call and time; and what was recorded before is there."""
+    out = tmp_path / "out"
+    ended = command("run", scene_with(make(call, deed)), "--isolate", *QUIET, "-o", out)
+    assert HOW[deed] in ended.line
+    assert "bearing" in ended.line
+    if call in ("step", "terminate", "free"):
+        assert ended.status == STOPPED
+        summary = json.loads((out / "summary.json").read_text())
+        assert not summary["completed"]
+        assert summary["stopped_because"] in ended.line
+        with h5py.File(out / "result.h5") as file:
+            rows = len(file["time"])
+            assert rows == len(file["bearing/journal.fy"]) == (3 if call == "step" else 101)
+    else:
+        assert ended.status == FAILED
+    if deed not in ("error", "fatal", "nan"):
+        time = {"step": 4e-5, "terminate": 1.98e-3, "free": 1.98e-3}.get(call, 0.0)
+        assert f" in {FMI[call]} at t = {time:g} s" in ended.line
+
+
+@pytest.mark.parametrize(("call", "deed"), DEEDS)
+def test_a_check_says_what_an_fmu_did(call: str, deed: str, make: Make, capfd: pytest.CaptureFixture[str]):
+    assert main(["check", str(make(call, deed)), "--call-timeout", "1 s"]) == FAILED
+    said = capfd.readouterr()
+    lines = [*said.err.splitlines(), *(line for line in said.out.splitlines() if "problem: " in line)]
+    assert len(lines) == 1, lines
+    assert HOW[deed] in lines[0]
+    if deed not in ("error", "fatal", "nan"):
+        assert FMI[call] in lines[0]
+
+
+@pytest.mark.parametrize("isolate", [True, False])
+@pytest.mark.parametrize(("call", "deed"), [("step", "null"), ("enter", "null"), ("step", "noise")])
+def test_what_does_no_harm(isolate: bool, call: str, deed: str, make: Make):
+    scene = load_scene(str(scene_with(make(call, deed)))).set({"bearing.isolate": isolate})
+    with opened(scene, in_process=True) as system:
+        simulate(scene, system).raise_if_stopped()
+
+
+@pytest.mark.parametrize("call", ["instantiate", "enter", "step", "terminate"])
+@pytest.mark.parametrize("isolate", [(), ("--isolate",)])
+def test_a_changed_directory_does_no_harm(
+    call: str, isolate: tuple[str, ...], make: Make, command: Command
+):
+    scene = scene_with(make(call, "chdir"))
+    here = Path.cwd()
+    assert command("run", scene, *isolate, *QUIET, "-o", "out").status == 0
+    assert Path.cwd() == here
+    assert json.loads((here / "out/summary.json").read_text())["completed"]
+
+
+def test_what_is_no_number_is_blamed_on_who_gave_it(make: Make):
+    for isolate in (True, False):
+        scene = load_scene(str(scene_with(make("step", "nan")))).set({"bearing.isolate": isolate})
+        with opened(scene, in_process=True) as system:
+            outcome = simulate(scene, system)
+        assert outcome.reason == "component bearing: its FMU gives journal.fy = nan at t = 6e-05 s"
+
+
+def test_it_steps_to_the_last_bit_as_here(make: Make):
+    """Values, and all that a component is asked for."""
+    path, names = make("never", "mind"), ("journal.x", "journal.fy", "journal.fx", "journal.fy")
+    found = []
+    for kind in (FmuComponent, IsolatedFmu):
+        component = kind("bearing", path, user_cache())
+        component.rename({"journal.up": "journal.fy"})
+        outputs = np.zeros(2)
+        component.set({"journal.x": 0.25})
+        component.bind(["journal.y"], outputs, ["journal.fx", "journal.up"])
+        component.enter(0.0)
+        component.exit()
+        fetch = component.reader([name.replace("fy", "up") for name in names])
+        seen = []
+        for k in range(5):
+            component.inputs[:] = 1e-3 * np.sqrt(k)
+            component.push()
+            seen += [*outputs, *fetch()]  # before the step, and what was pushed
+            component.step(k * 0.1, 0.1)
+            component.pull()
+            seen += [*outputs, *fetch(), *component.read(["journal.up"])]
+        assert component.close() == ""
+        assert component.close() == ""
+        found.append(seen)
+    assert found[0] == found[1]
+    assert len({abs(value) for value in found[0]}) > 5
+
+
+def test_states_are_saved_and_restored_there(built: dict[str, Path]):
+    """A project's own: the scheme takes components back in time."""
+    scene = load_scene("disk-caged-simplified").set(
+        {"run.duration": 1e-4, "amb.shutdown_time": 0.0, "run.scheme": "iterated"}
+    )
+    ends = []
+    for isolate in (True, False):
+        with opened(scene.set({"bearing.isolate": isolate})) as system:
+            simulate(scene, system).raise_if_stopped()
+            ends.append([system.value(name) for name in ("rotor.A.y", "rotor.A.vy")])
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize(
+    ("deed", "said"), [("close", "closed files that are not its own"), ("kill", "was ended by SIGKILL")]
+)
+def test_what_else_an_fmu_may_do(deed: str, said: str, make: Make):
+    component = IsolatedFmu("bearing", make("enter", deed), user_cache())
+
+    def initialise() -> None:
+        component.enter(0.0)
+        component.exit()  # the reply may come before its files are missed
+
+    with pytest.raises(TouchdownError, match=f"its FMU {said} in fmi2E"):
+        initialise()
+
+
+def test_a_lost_fmu_goes_on_saying_so(make: Make):
+    component = IsolatedFmu("bearing", make("enter", "segv"), user_cache())
+    for _ in range(2):
+        with pytest.raises(TouchdownError, match="crashed with SIGSEGV in fmi2EnterInitializationMode"):
+            component.enter(0.0)
+    component.release(1)
+    assert component.close() == ""
+
+
+# -- in the master's process -------------------------------------------------------------------------
+
+
+def shell(*arguments: object, folder: Path) -> subprocess.CompletedProcess[str]:
+    """The command as a shell starts it."""
+    return subprocess.run(
+        [*COMMAND, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+        cwd=folder,
+        env={**os.environ, "PYTHONWARNINGS": "error"},
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "deed", "status", "said"),
+    [
+        ("instantiate", "_exit", STOPPED, "ended with status 0"),
+        ("step", "exit", STOPPED, "ended with status 0"),
+        ("step", "segv", 128 + signal.SIGSEGV, "crashed with SIGSEGV"),
+        ("free", "_exit", STOPPED, "ended with status 0"),
+    ],
+)
+def test_the_shell_never_sees_success_before_the_summary(
+    call: str, deed: str, status: int, said: str, make: Make, tmp_path: Path
+):
+    fmu = make(call, deed)
+    done = shell("run", scene_with(fmu), *QUIET, folder=tmp_path)
+    assert done.returncode == status
+    assert len(done.stderr.splitlines()) == 1
+    assert said in done.stderr
+    assert str(fmu) in done.stderr
+    assert not list(tmp_path.rglob("summary.json"))
+
+
+def test_what_is_watched_ends_as_it_says(make: Make, tmp_path: Path):
+    done = shell("run", scene_with(make("never", "mind")), *QUIET, folder=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "in the master's process (see --isolate): bearing" in done.stdout.splitlines()[0]

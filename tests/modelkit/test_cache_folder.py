@@ -1,0 +1,185 @@
+"""The folder of the cache: the user's own, or a temporary one and a line that says why."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from touchdown.modelkit.kernel import cache_folder
+from touchdown.modelkit.kernel.cache_folder import SIGNATURE, TAG, VARIABLE, kept, own_folder, user_cache
+
+
+@pytest.fixture(autouse=True)
+def fresh(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """As in a process that has not asked for the cache yet; temporary ones go with the test."""
+    monkeypatch.setattr(cache_folder, "_settled", {})
+    monkeypatch.setattr(cache_folder, "_temporary", {})
+    monkeypatch.setattr(cache_folder.tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))
+    yield
+    monkeypatch.undo()
+
+
+def ours(folder: Path) -> bool:
+    """Whether nobody else can read it."""
+    return stat.S_IMODE(folder.stat().st_mode) == 0o700
+
+
+def test_it_is_made_for_the_user_alone(tmp_path: Path) -> None:
+    assert own_folder("machine-code", "one") == tmp_path / "cache" / "machine-code" / "one"
+    for folder in (tmp_path / "cache", *(tmp_path / "cache").rglob("*/")):
+        assert ours(folder)
+    assert (tmp_path / "cache" / TAG).read_text() == SIGNATURE
+
+
+def test_an_older_one_is_closed_to_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "cache" / "machine-code").mkdir(parents=True, mode=0o775)
+    (tmp_path / "cache").chmod(0o777)
+    assert own_folder("machine-code") == tmp_path / "cache" / "machine-code"
+    assert ours(tmp_path / "cache")
+    assert ours(tmp_path / "cache" / "machine-code")
+    assert not capsys.readouterr().err
+
+
+def test_a_folder_of_other_things_is_left_as_it_is(tmp_path: Path) -> None:
+    (tmp_path / "cache").mkdir(mode=0o755)
+    (tmp_path / "cache" / "letters").mkdir(mode=0o755)
+    assert user_cache() == tmp_path / "cache"
+    assert not ours(tmp_path / "cache")
+    assert not cache_folder.is_cache(tmp_path / "cache")
+
+
+def test_what_is_in_the_way_inside_it_goes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own_folder("machine-code").rmdir()
+    (tmp_path / "cache" / "machine-code").write_text("x")
+    (tmp_path / "cache" / "fmus").symlink_to("/no/such/place")
+    for kind in ("machine-code", "fmus"):
+        assert own_folder(kind, "one").is_dir()
+    assert not capsys.readouterr().err
+
+
+def test_removed_meanwhile_it_is_made_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own_folder("fmus").rmdir()
+    (tmp_path / "cache" / TAG).unlink()
+    (tmp_path / "cache").rmdir()
+    assert own_folder("fmus").is_dir()
+    assert cache_folder.is_cache(tmp_path / "cache")
+    assert not capsys.readouterr().err
+
+
+def file_in_its_place(cache: Path) -> None:
+    cache.write_text("x")
+
+
+def below_a_file(cache: Path) -> None:
+    (cache.parent / "file").write_text("x")
+    os.environ[VARIABLE] = str(cache.parent / "file" / "cache")
+
+
+def on_a_device(cache: Path) -> None:
+    os.environ[VARIABLE] = "/dev/full"
+
+
+def where_nothing_can_be_made(cache: Path) -> None:
+    os.environ[VARIABLE] = "/proc/touchdown"
+
+
+def others_can_write_it(cache: Path) -> None:
+    cache.mkdir()
+    (cache / "letters").write_text("x")
+    cache.chmod(0o777)
+
+
+def no_home(cache: Path) -> None:
+    del os.environ[VARIABLE]
+    os.environ["HOME"] = ""
+    os.environ["XDG_CACHE_HOME"] = "relative"
+
+
+UNUSABLE: dict[str, tuple[Callable[[Path], None], str]] = {
+    "file in its place": (file_in_its_place, "cache (File exists)"),
+    "below a file": (below_a_file, "Not a directory"),
+    "on a device": (on_a_device, "/dev/full (File exists)"),
+    "where nothing can be made": (where_nothing_can_be_made, "/proc/touchdown ("),
+    "others can write it": (others_can_write_it, "cache (others can write it)"),
+    "no home": (no_home, "(nothing says where: HOME is not set)"),
+}
+
+
+def said(capsys: pytest.CaptureFixture[str]) -> str:
+    """The one line on stderr."""
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("touchdown: warning: cannot use the cache ")
+    return line
+
+
+@pytest.mark.parametrize(("make", "why"), UNUSABLE.values(), ids=UNUSABLE)
+def test_one_that_cannot_be_used(
+    make: Callable[[Path], None], why: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """A temporary one takes its place, for processes that are started from here, too."""
+    for name in ("HOME", "XDG_CACHE_HOME"):
+        monkeypatch.setenv(name, str(tmp_path))
+    make(tmp_path / "cache")
+    folder = own_folder("machine-code", "one")
+    assert folder.is_dir()
+    assert ours(user_cache())
+    assert user_cache().parent == tmp_path
+    assert os.environ[VARIABLE] == str(user_cache())
+    assert why in said(capsys)
+    assert own_folder("fmus").parent == user_cache()
+    assert cache_folder.why_temporary()
+    assert not capsys.readouterr().err
+
+
+@pytest.mark.parametrize("part", [".", "machine-code"])
+def test_another_users(
+    part: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own_folder("machine-code")
+    theirs = os.stat(tmp_path / "cache" / part)
+    whose = os.stat_result((*theirs[:4], 12345, *theirs[5:]))
+    real = Path.stat
+    monkeypatch.setattr(cache_folder, "_settled", {})
+    monkeypatch.setattr(
+        Path, "stat", lambda path, **how: whose if path == tmp_path / "cache" / part else real(path, **how)
+    )
+    assert own_folder("machine-code").parent != tmp_path / "cache"
+    assert "it belongs to another user" in said(capsys)
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG])
+def test_no_room(number: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Found when something is written: it is written into a temporary one."""
+
+    def write(folder: Path) -> Path:
+        if folder.is_relative_to(tmp_path / "cache"):
+            raise OSError(number, os.strerror(number), str(folder))
+        return folder
+
+    assert kept(write, "unpacked").name == "unpacked"
+    assert os.strerror(number) in said(capsys)
+
+
+def test_no_room_anywhere(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def write(folder: Path) -> Path:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(OSError, match="No space left"):
+        kept(write, "unpacked")
+    assert said(capsys)
+
+
+def test_what_has_nothing_to_do_with_room_is_an_error(tmp_path: Path) -> None:
+    def write(folder: Path) -> Path:
+        raise NotADirectoryError(errno.ENOTDIR, "Not a directory")
+
+    with pytest.raises(NotADirectoryError):
+        kept(write, "unpacked")
+    assert user_cache() == tmp_path / "cache"
