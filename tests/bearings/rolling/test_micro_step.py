@@ -1,0 +1,37 @@
+"""How long steps inside the bearings may be, and what counts as stiffness for them."""
+
+from __future__ import annotations
+
+import pytest
+
+from touchdown.bearings.contact.laws import ContactLaw
+from touchdown.bearings.contact.pair import Place, Press
+from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, step_limits
+from touchdown.bearings.rolling.side import SideContacts, note
+from touchdown.modelkit.variables import as_record
+
+SOFT, STIFF = (ContactLaw(stiffness=1e6), 1.0), (ContactLaw(stiffness=1e13), 1e-4)
+
+
+@pytest.mark.parametrize("contact", [SOFT, STIFF])  # of which none, and one, shortens the step
+def test_a_finer_step_refines_all_of_them(contact: tuple[ContactLaw, float]) -> None:
+    whole, half = step_limits(MICRO_STEP, [contact]), step_limits(0.5 * MICRO_STEP, [contact])
+    assert (whole["micro_step"] < MICRO_STEP) == (contact is STIFF)
+    assert half == pytest.approx({name: 0.5 * limit for name, limit in whole.items()}, rel=1e-12)
+
+
+def test_a_longer_step_resolves_contacts_as_well() -> None:
+    assert step_limits(4.0 * MICRO_STEP, [SOFT]) == {
+        "micro_step": 4.0 * MICRO_STEP,
+        "resolution": RESOLUTION,
+    }
+
+
+def test_damping_is_no_stiffness() -> None:
+    """A dashpot pushes at once where bodies meet, over no indentation: no step could resolve that."""
+    law = as_record(ContactLaw(exponent=1.5, stiffness=1e8, viscous=250.0))
+    place = Place(1.0, 0.0, 1e-9, 0.0, 0.0, 0.0)
+    contacts = as_record(SideContacts())
+    elastic, damped = 1e8 * 1e-9**1.5, 25.0
+    note(contacts, 3, Press(0.0, 0.0, 0.0, 0.0, elastic + damped, 0.0, 0.0, 0.1, damped), place, law)
+    assert contacts["stiffness"][3] == pytest.approx(1.5 * elastic / 1e-9, rel=1e-6)
