@@ -19,7 +19,7 @@ from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.sources import write_host, write_package, write_script
-from touchdown.modelkit.kernel.cache_folder import is_own, kept
+from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 
@@ -63,9 +63,7 @@ def _sound(recipe: Recipe, folder: Path) -> Path:
         if damaged.is_dir() and not damaged.is_symlink():
             shutil.rmtree(damaged)
     build(recipe, folder)
-    fresh = noted.with_suffix(f".{os.getpid()}")
-    fresh.write_text(_line(path), encoding="ascii")
-    fresh.replace(noted)
+    put(noted, _line(path).encode("ascii"))
     return path
 
 

@@ -91,8 +91,9 @@ def _resident() -> Path:
     try:
         cache = _cache_folder(here)
         there = cache.own_folder("sources", f"{here.name}-{sys.implementation.cache_tag}")
-        if not _whole(here, there):
-            there = cache.kept(lambda folder: _put(here, folder), "sources", there.name)
+        if _whole(here, there):
+            return there
+        there = cache.kept(lambda folder: _put(here, folder), "sources", there.name)
         return there if _whole(here, there) else here
     except OSError:
         return here

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import errno
 import sys
 import warnings
 from collections.abc import Sequence
@@ -14,6 +13,7 @@ import argcomplete
 
 from touchdown.master import verbs
 from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.files import NO_ROOM
 from touchdown.master.common.interrupts import ended_as_by_ctrl_c
 from touchdown.master.common.processes import watched
 from touchdown.master.verbs.fault import report_fault, versions
@@ -23,7 +23,6 @@ UNSAID = (  # warnings of libraries that would say in lines of code what the com
     (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
     (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and its figures are none
 )
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

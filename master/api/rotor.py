@@ -16,7 +16,7 @@ from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
-from touchdown.modelkit.kernel.cache_folder import kept
+from touchdown.modelkit.kernel.cache_folder import kept, put
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written
@@ -142,9 +142,7 @@ class Rotor(Shaft):
 def _written(path: Path, content: bytes) -> Path:
     """The file at `path`, written where it does not hold `content`."""
     if not path.is_file() or path.read_bytes() != content:
-        fresh = path.with_suffix(f".{os.getpid()}")
-        fresh.write_bytes(content)
-        fresh.replace(path)
+        put(path, content)
     return path
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import csv
+import errno
 import os
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from touchdown.master.components.foreign import ForeignFmu
 from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.components.twin import TwinComponent
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
+from touchdown.master.scene.scene import is_file
 from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import ModelError
 
@@ -71,7 +71,7 @@ def load_component(
 
 def foreign(fmu: str) -> bool:
     """Whether `fmu` is a file that brings code of its own, and none of the project's."""
-    return not fmu.endswith(".toml") and (fmu.endswith(".fmu") or os.sep in fmu)
+    return is_file(fmu) and not fmu.endswith(".toml")
 
 
 def built(recipe: Recipe) -> Path:

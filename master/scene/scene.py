@@ -167,10 +167,14 @@ def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:
     return names if name in names else (*names, name)
 
 
+def is_file(fmu: str) -> bool:
+    """Whether what a component is made of is named by a path, not one of the project's own by its name."""
+    return fmu.endswith((".fmu", ".toml")) or os.sep in fmu
+
+
 def _source(fmu: str) -> str:
     """Where an FMU comes from, told from wherever a scene lies: files of the user's by their whole path."""
-    is_file = fmu.endswith((".fmu", ".toml")) or os.sep in fmu
-    return str(Path(fmu).expanduser().absolute()) if is_file else fmu
+    return str(Path(fmu).expanduser().absolute()) if is_file(fmu) else fmu
 
 
 def checked_preset(name: object, where: str) -> str | None:

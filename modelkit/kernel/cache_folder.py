@@ -66,6 +66,18 @@ def kept(make: Callable[[Path], Path], *parts: str) -> Path:
         return make(own_folder(*parts))
 
 
+def put(path: Path, content: bytes) -> None:
+    """Write a file of the cache in one go: another process finds all of it, or what was there before."""
+    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".", delete=False) as file:
+        try:
+            file.write(content)
+            file.flush()
+            os.replace(file.name, path)
+        except BaseException:
+            os.unlink(file.name)
+            raise
+
+
 def why_temporary() -> str:
     """What is wrong with the cache that was asked for, where a temporary one takes its place; else ""."""
     return _temporary.get(user_cache(), "")

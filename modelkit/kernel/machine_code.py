@@ -14,7 +14,6 @@ import os
 import pickle
 import shutil
 import sys
-import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -27,7 +26,7 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
-from touchdown.modelkit.kernel.cache_folder import is_own
+from touchdown.modelkit.kernel.cache_folder import is_own, put
 
 _DIGEST = 32  # bytes
 _VERSION = (numba.__version__, sys.implementation.cache_tag)
@@ -118,17 +117,10 @@ def _unsealed(path: Path) -> bytes | None:
 
 
 def _replace(path: Path, content: bytes) -> None:
-    """Write a file in one go: another process finds all of it or what was there before."""
+    """Write a file, whatever is in its place."""
     if not path.parent.is_dir():
         path.parent.unlink(missing_ok=True)
         path.parent.mkdir(mode=0o700, exist_ok=True)
     if path.is_dir():
         shutil.rmtree(path)
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=".", delete=False) as file:
-        try:
-            file.write(content)
-            file.flush()
-            os.replace(file.name, path)
-        except BaseException:
-            os.unlink(file.name)
-            raise
+    put(path, content)

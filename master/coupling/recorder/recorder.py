@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import time as clock
 from collections.abc import Callable, Iterable
 from contextlib import suppress
@@ -12,7 +11,7 @@ import numpy as np
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import replacing
+from touchdown.master.common.files import NO_ROOM, replacing
 from touchdown.master.coupling.recorder.chosen import choose
 from touchdown.master.coupling.recorder.table import Column, Contents, Table
 from touchdown.master.coupling.system import System
@@ -21,7 +20,6 @@ from touchdown.master.scene.scene import Scene
 HELD = 2**17  # numbers held before they are written, at most: 1 MiB
 LOSS = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
 SHARE = 0.05  # of the time that writing takes, at most: with very many columns more is lost instead
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 class Recorder:

@@ -18,7 +18,7 @@ from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.coupling.system import System
 from touchdown.master.results.folder import claimed
 from touchdown.master.results.result import RECORDING
-from touchdown.master.results.run import make_writable, run_scene
+from touchdown.master.results.run import run_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep import kept
 from touchdown.master.studies.sweep.report import Member, write_table
@@ -67,7 +67,6 @@ def sweep(
     check(scene, variations)
     if jobs < 1:
         raise TouchdownError(f"a sweep needs at least one job, not {jobs}")
-    make_writable(folder)
     with claimed(folder):
         return _run(_tasks(scene, variations, folder, execution), folder / "sweep.csv", jobs, done)
 

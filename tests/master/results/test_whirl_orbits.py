@@ -95,6 +95,11 @@ def whirls() -> list[Case]:
 
 
 def no_whirls() -> list[Case]:
+    return [*circles_and_ellipses(), *swings(), *short_of_a_whirl()]
+
+
+def circles_and_ellipses() -> list[Case]:
+    """Round and round, but free of the bore, or at it in places."""
     cases = [
         Case(f"free circle of {r:g}, {f:g} Hz", circle(f, r), FREE, alone=r < 0.95)
         for r in (0.4, 0.6, 0.8, 0.9, 0.97, 0.999)
@@ -113,7 +118,12 @@ def no_whirls() -> list[Case]:
     ]
     cases += [Case("flat ellipse, a bounce", ellipse(80.0, 0.05), NO_WHIRL)]
     cases += [Case("free ellipse", ellipse(80.0, 0.6, 20.0, 0.9), FREE)]
-    cases += [
+    return cases
+
+
+def swings() -> list[Case]:
+    """To and fro along the bore, also over the top and back."""
+    cases = [
         Case(f"swings {a:g} degrees, dying at {d:g}", pendulum(a, d), "pendulum")
         for a in (10.0, 45.0, 90.0, 150.0, 178.0, 200.0, 240.0, 300.0)
         for d in (0.0, 3.0, 12.0)
@@ -129,7 +139,12 @@ def no_whirls() -> list[Case]:
     cases += [
         Case(f"as gravity swings, {v:g} rad/s", over_the_top(v), "pendulum") for v in (100.0, 300.0, 355.0)
     ]
-    cases += [
+    return cases
+
+
+def short_of_a_whirl() -> list[Case]:
+    """Near misses, what creeps, bounces or rests."""
+    cases = [
         Case(
             f"{count:g} turn at {f:g} Hz", turns(count, f), f"no whirl, near miss: {said:.1f} turn {sense}"
         )
