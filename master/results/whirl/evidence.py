@@ -9,11 +9,15 @@ from touchdown.master.results.whirl.unbalance import unbalanced
 
 NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn is a hop or two more or less
 MARCHED = "_most_turns_one_way"  # behind the key of a verdict
+CONTACT = "first_contact_time_s"  # begins the key of a bearing's; no value: not yet
 SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a whirl nor brakes it
 
 
 def evidence(summary: Mapping[str, object]) -> list[str]:
     """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
+    contacts = [time for key, time in summary.items() if key.startswith(CONTACT)]
+    if contacts and not any(isinstance(time, float) for time in contacts):
+        return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
 
 

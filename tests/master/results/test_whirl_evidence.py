@@ -125,6 +125,20 @@ def test_near_a_turn_is_near_the_edge(turned: float, marched: float, near: bool)
     assert told("some verdict", turned, marched).endswith("so it is near the edge") is near
 
 
+def test_a_run_that_ends_before_contact_says_so() -> None:
+    """Not "no whirl": nothing was tried yet. One bearing that was touched is enough for verdicts."""
+    untouched = {"whirl_A": "no whirl", "whirl_A_revolutions": 0.0, "whirl_A_most_turns_one_way": 0.0}
+    for times in ({"": None}, {"_bearing_A": None, "_bearing_B": None}):
+        none = {f"first_contact_time_s{seat}": time for seat, time in times.items()}
+        assert [line.partition(":")[0] for line in evidence(none | untouched)] == [
+            "no bearing has been touched"
+        ]
+    one = {"first_contact_time_s_bearing_A": None, "first_contact_time_s_bearing_B": 0.0079}
+    assert evidence(one | untouched) == [
+        "whirl_A: no whirl: the contact went 0 of a turn one way at most; a whirl takes 1"
+    ]
+
+
 def test_without_a_clearance_nothing_is_told() -> None:
     summary = {"whirl_A": None, "whirl_A_revolutions": None, "whirl_A_most_turns_one_way": None}
     assert evidence(summary) == ["whirl_A: not told, the bearing states no clearance"]
