@@ -68,13 +68,13 @@ TABLE_7 = (
         "ball and inner ring",
         "peak_indentation_ball_inner_um",
         {"cageless detailed": 2.72, "caged detailed": 3.99},
-        {"caged detailed": "where the lowest ball sits (4.0 to 4.3); 5 um read as radial play"},
+        {"caged detailed": "undamped balls that rattle between the races; chaotic"},
     ),
     Row(
         "ball and outer ring",
         "peak_indentation_ball_outer_um",
         {"cageless detailed": 2.65, "caged detailed": 3.88},
-        {"caged detailed": "where the lowest ball sits (3.9 to 4.2); 5 um read as radial play"},
+        {"caged detailed": "undamped balls that rattle between the races; chaotic"},
     ),
     Row(
         "both rings through a ball",
