@@ -13,8 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from touchdown.bearings.rolling.balls import PRINTED, BallSet
+from touchdown.bearings.contact.stiffness import PRINTED
+from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.balls.geometry import ball_mass
 from touchdown.bearings.rolling.ring import Ring
+from touchdown.modelkit.variables import as_record
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class Bearing:
             "balls.hertz": b.hertz,
             "ring.mass": self.ring.mass,
             "ring.inertia": self.ring.inertia,
-            "cage.mass": 2.0 * b.ball_mass,
+            "cage.mass": 2.0 * ball_mass(as_record(b)),
             "rolling.static_rating": self.static_rating,
             "damping": self.damping,
         }
