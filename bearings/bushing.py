@@ -116,20 +116,14 @@ def report(q, m):
 
 
 @kernel
-def _problem(p, told):
-    """Number of what is wrong between the parameters p, or 0."""
-    if p.contact.damping_ratio > 0.0 and p.contact.mass == 0.0:
-        told[0] = p.contact.damping_ratio
-        return MASSLESS
-    return bore.problem(p, STATIC, 0, told)
-
-
-@kernel
 def settle(words):
     """Fill in what the laws leave open, and the error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     blank(words, CONSTANTS)
-    problem = _problem(m.p, m.told)
+    problem = bore.problem(m.p, STATIC, m.told)
+    if m.p.contact.damping_ratio > 0.0 and m.p.contact.mass == 0.0:
+        m.told[0] = m.p.contact.damping_ratio
+        problem = MASSLESS
     if problem != 0:
         return problem
     bore.settle(m.d, m.p, m.p.contact.mass)

@@ -17,7 +17,6 @@ from touchdown.bearings.contact.stiffness import PRINTED
 from touchdown.bearings.rolling.balls import BallSet
 from touchdown.bearings.rolling.balls.geometry import ball_mass
 from touchdown.bearings.rolling.ring import Ring
-from touchdown.modelkit.variables import as_record
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ class Bearing:
             "balls.hertz": b.hertz,
             "ring.mass": self.ring.mass,
             "ring.inertia": self.ring.inertia,
-            "cage.mass": 2.0 * ball_mass(as_record(b)),
+            "cage.mass": 2.0 * ball_mass(b.rows, b.diameter, b.density),
             "rolling.static_rating": self.static_rating,
             "damping": self.damping,
         }

@@ -33,7 +33,7 @@ from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
 from touchdown.bearings.rolling.side import stored
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
@@ -132,23 +132,25 @@ def report(q, m):
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
 
 
-@kernel
+@inlined
 def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
     b, clearance = p.balls, p.cage.clearance
     if clearance < 0.0:
         told[0], told[1], told[2] = clearance, b.diameter + 2.0 * clearance, b.diameter
-        return SHARED + 1
-    if out_of_proportion(clearance, 0.5 * b.diameter, told):
-        return SHARED + 2
-    return declarations.problem(p, 0, p.cage_friction, STATIC, told)
+        found = SHARED + 1
+    elif out_of_proportion(clearance, 0.5 * b.diameter, told):
+        found = SHARED + 2
+    else:
+        found = declarations.problem(p, 0, p.cage_friction, STATIC, told)
+    return found
 
 
-@kernel
+@inlined
 def _settle_cage(m):
     """Set in m.d the cage, its pockets and the laws in them; returns the lighter mass there (kg)."""
     p, d, b = m.p, m.d, m.p.balls
-    radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b), p.cage.mass)
+    radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b.rows, b.diameter, b.density), p.cage.mass)
     d.cage_contact, d.cage_friction = p.cage_contact, p.cage_friction
     lay_abreast(d.cage_contact, b.rows)
     damp(d.cage_contact, lighter)
@@ -156,7 +158,7 @@ def _settle_cage(m):
     d.cage_inertia = p.cage.inertia if p.cage.inertia != 0.0 else p.cage.mass * radius**2.0
     d.cage_answer = 1.0 / p.cage.mass + radius**2.0 / d.cage_inertia
     for i in range(b.count):
-        angle = start_angle(b, EVEN, i)
+        angle = start_angle(b.first_angle, b.count, EVEN, i)
         d.pocket_x[i], d.pocket_y[i] = radius * math.cos(angle), radius * math.sin(angle)
     return lighter
 

@@ -189,9 +189,10 @@ def settle(words):
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
     lay_abreast(d.ball_contact, p.balls.rows)
-    damp(d.ball_contact, ball_mass(p.balls))
+    mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
+    damp(d.ball_contact, mass)
     friction.settle(d.ball_friction)
-    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * ball_mass(p.balls))
+    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass)
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)

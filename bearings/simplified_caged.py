@@ -51,7 +51,7 @@ from touchdown.bearings.rolling.pitch_circle import (
     note,
     rolling_drag,
 )
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
@@ -268,25 +268,25 @@ def report(q, m):
     ring.report_energy(q, m, inside, s.energy, d.ring_inertia)
 
 
-@kernel
+@inlined
 def _settle_turning(m):
-    """Set in m.d what turns: masses, radii, ratios of speeds, where the balls start."""
+    """Set in m.d what turns: radii, inertia, ratios of speeds, where the balls start."""
     p, d, b = m.p, m.d, m.p.balls
-    d.mass, d.ball_radius, d.pitch_radius = ball_mass(b), 0.5 * b.diameter, 0.5 * b.pitch_diameter
+    d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
     d.cage_ratio = 0.5 * d.inner_radius / d.pitch_radius
     d.ball_ratio = -0.5 * d.inner_radius / d.ball_radius
     square = d.pitch_radius**2.0
     d.orbiting = p.cage.mass * square + b.count * d.mass * square
-    d.spinning = b.count * ball_inertia(b)
+    d.spinning = b.count * ball_inertia(d.mass, b.diameter)
     d.ring_inertia = p.ring.inertia
     if p.slip == 0:
         d.ring_inertia += d.orbiting * d.cage_ratio**2.0 + d.spinning * d.ball_ratio**2.0
     for i in range(b.count):
-        angle = start_angle(b, EVEN, i)
+        angle = start_angle(b.first_angle, b.count, EVEN, i)
         d.cosine[i], d.sine[i] = math.cos(angle), math.sin(angle)
 
 
-@kernel
+@inlined
 def _set_weights(m):
     """Error weights, and how many components are in use: cage and balls where they may slip."""
     w = m.weight
@@ -306,11 +306,12 @@ def settle(words):
     p, d = m.p, m.d
     blank(words, CONSTANTS)
     problem = declarations.problem(p, 0, m.told)
-    problem = problem or friction.problem(p.race_friction, STATIC, declarations.OWN, m.told)
+    problem = declarations.law_problem(problem, p.race_friction, STATIC, declarations.OWN, m.told)
     if problem != 0:
         return problem
     declarations.settle(m, EVEN)
-    set_race_law(d.race, p.balls, d.stiffness.series)
+    d.mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
+    set_race_law(d.race, p.balls, d.stiffness.series, d.mass)
     d.race_friction = p.race_friction
     friction.settle(d.race_friction)
     d.size.coordinates, d.size.rings = 5 + 2 * p.slip, p.balls.count

@@ -41,7 +41,7 @@ from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
 from touchdown.bearings.contact.peaks import PeakMemory, watch_peaks
 from touchdown.bearings.rolling import declarations, ring
-from touchdown.bearings.rolling.ball_state import BALLS, part, set_weights
+from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, FreeBallSet, largest, watch_balls
 from touchdown.bearings.rolling.balls.geometry import (
     ball_inertia,
@@ -88,7 +88,7 @@ from touchdown.bearings.rolling.row_implicit import linearise, solve
 from touchdown.bearings.rolling.rubbing import RubbedRace
 from touchdown.bearings.rolling.side import SideContacts, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Interface, Load
@@ -243,22 +243,19 @@ def report(q, m):
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
 
 
-@kernel
+@inlined
 def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
-    own = declarations.OWN
-    return (
-        declarations.problem(p, p.balls.crowded, told)
-        or friction.problem(p.race_friction, STATIC, own, told)
-        or friction.problem(p.ball_friction, STATIC_OF_BALLS, own + 2, told)
-    )
+    found = declarations.problem(p, p.balls.crowded, told)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
+    return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
 
 
-@kernel
+@inlined
 def _settle_laws(m):
     """Set in m.d the laws at the balls, and the steps that resolve them."""
     p, d, b = m.p, m.d, m.p.balls
-    set_race_law(d.race, b, d.stiffness.series)
+    set_race_law(d.race, b, d.stiffness.series, d.mass)
     d.race_friction, d.ball_friction = p.race_friction, p.ball_friction
     friction.settle(d.race_friction)
     friction.settle(d.ball_friction)
@@ -274,11 +271,12 @@ def _settle_laws(m):
     d.resolution = refined(p.micro_step) * RESOLUTION
 
 
-@kernel
+@inlined
 def _settle_balls(m, spread):
     """Set in m.d what the balls are, where they run and where they start."""
     d, b = m.d, m.p.balls
-    d.mass, d.inertia, d.touch_angle = ball_mass(b), ball_inertia(b), touch_angle(b)
+    d.mass, d.touch_angle = ball_mass(b.rows, b.diameter, b.density), touch_angle(b)
+    d.inertia = ball_inertia(d.mass, b.diameter)
     d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
     d.run_radius, d.run_share = d.pitch_radius, 0.0
     if m.p.corrected_pitch == CORRECTED:
@@ -286,7 +284,19 @@ def _settle_balls(m, spread):
     elif m.p.corrected_pitch == AS_PRINTED:
         d.run_share = -0.5
     for i in range(b.count):
-        d.angles[i] = start_angle(b, spread, i)
+        d.angles[i] = start_angle(b.first_angle, b.count, spread, i)
+
+
+@inlined
+def _set_weights(m):
+    """Set the error weights, and m.n to what is in use."""
+    w, n = m.weight, m.p.balls.count
+    seat.set_weights(w)
+    ring.set_weights(w)
+    for i in range(BALLS, BALLS + n):
+        w[i + ANGLE * n] = m.d.pitch_radius / seat.POSITION_SCALE
+        w[i + ORBIT * n], w[i + SPIN * n] = 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE
+    m.n = BALLS + 3 * n
 
 
 @kernel
@@ -303,12 +313,7 @@ def settle(words):
     _settle_balls(m, spread)
     _settle_laws(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
-    seat.set_weights(m.weight)
-    ring.set_weights(m.weight)
-    set_weights(m, ANGLE, d.pitch_radius / seat.POSITION_SCALE)
-    set_weights(m, ORBIT, 1.0 / ORBIT_SCALE)
-    set_weights(m, SPIN, 1.0 / BALL_SPIN_SCALE)
-    m.n = BALLS + 3 * count
+    _set_weights(m)
     return missing(words, CONSTANTS)
 
 

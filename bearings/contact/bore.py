@@ -5,30 +5,33 @@ from __future__ import annotations
 from touchdown.bearings.contact import friction, proportion
 from touchdown.bearings.contact.laws import damp
 from touchdown.bearings.contact.proportion import out_of_proportion
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined
 
 _LENGTHS = (
     proportion.problem("clearance", "journal_radius"),
     proportion.problem("contact.expected_indentation", "journal_radius"),
 )
-LENGTHS = len(_LENGTHS)
 PROBLEMS = (*_LENGTHS, *friction.problems("friction"))
 
 
-@kernel
-def problem(p, usual, before, told):
-    """What is wrong with the journal and its bore: `before` and its number in `PROBLEMS`, or 0.
+@inlined
+def problem(p, usual, told):
+    """What is wrong with the journal and its bore: its number in `PROBLEMS`, or 0.
 
     p: a bearing's parameters; usual: static coefficient of friction by default; told: `Model`'s m.told.
     """
+    found = 0
     if out_of_proportion(p.clearance, p.journal_radius, told):
-        return before + 1
-    if out_of_proportion(p.contact.expected_indentation, p.journal_radius, told):
-        return before + 2
-    return friction.problem(p.friction, usual, before + LENGTHS, told)
+        found = 1
+    elif out_of_proportion(p.contact.expected_indentation, p.journal_radius, told):
+        found = 2
+    else:
+        found = friction.problem(p.friction, usual, told)
+        found = found + 2 if found != 0 else 0
+    return found
 
 
-@kernel
+@inlined
 def settle(d, p, lighter):
     """Set the laws d.contact and d.friction by those in p; lighter: mass of the lighter body (kg)."""
     d.contact = p.contact

@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.variables import integer, real
 
 COULOMB = 0
@@ -214,7 +214,7 @@ def makkar_amplitude(law):
     return g1 if g1 <= MOST_STATIC * law.static else math.nan
 
 
-@kernel
+@inlined
 def settle(law):
     """Fill in g1 where it is left to follow from the static coefficient; law: a record, changed."""
     if law.kind == MAKKAR and law.g1 == 0.0:
@@ -233,16 +233,16 @@ def problems(name: str) -> tuple[str, ...]:
 
 
 @kernel
-def problem(law, usual, before, told):
-    """Why a law, a record, has no curve or not the one set: `before` and its number in `problems`, or 0.
+def problem(law, usual, told):
+    """Why a law, a record, has no curve or not the one set: its number in `problems`, or 0.
 
     Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else
     than `usual`, the default; as it stands by default it was not. told: `Model`'s m.told.
     """
     if law.kind == MAKKAR and law.g2 <= law.g3:
         told[0], told[1] = law.g2, law.g3
-        return before + 1
+        return 1
     if law.kind == COULOMB and law.static != law.dynamic and law.static != usual:
         told[0], told[1] = law.static, law.dynamic
-        return before + 2
+        return 2
     return 0

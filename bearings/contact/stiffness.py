@@ -17,11 +17,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.numerics import elliptic
 
 EXACT, PRINTED = range(2)  # how the ellipse is found
 MOST_STEPS = 40  # of the search for kappa; six are enough
+ROUNDING = 4e-16  # of ln(kappa)
 
 
 class Ellipse(NamedTuple):
@@ -32,52 +33,43 @@ class Ellipse(NamedTuple):
     second_kind: float
 
 
-@kernel
-def _ellipse_of(kappa):
-    """(`Ellipse` of a `kappa` above 1, ratio of curvatures that belongs to it)."""
-    complement = 1.0 / (kappa * kappa)
-    integrals = elliptic.complete((kappa - 1.0) * (kappa + 1.0) * complement, complement)
-    ratio = kappa * kappa * integrals.left / integrals.lost
-    return Ellipse(kappa, integrals.first, integrals.second), ratio
-
-
-@kernel
+@inlined
 def exact_ellipse(ratio):
     """`Ellipse` by Hertz's theory, for curvatures of `ratio` (at least 1).
 
-    ln(ratio) rises with ln(kappa), by 3/2 near a circle and by less than 2 anywhere: secants from both
-    ends of what that leaves, and the middle of it should one leave it.
+    ln(ratio) rises with ln(kappa), by 3/2 near a circle and by less than 2 anywhere: secants, the first of
+    them from the circle, or the middle of what that leaves should one lead out of it.
     """
-    if ratio <= 1.0:
-        return Ellipse(1.0, 0.5 * math.pi, 0.5 * math.pi)
-    wanted = math.log(ratio)
+    wanted = max(math.log(ratio), 0.0)
     low, high = wanted / 2.0, wanted / 1.5
-    before, at = low, high
-    off_before = math.log(_ellipse_of(math.exp(before))[1]) - wanted
-    found = _ellipse_of(math.exp(at))
+    at, step, off = high, high, -wanted
+    kappa, first, second = 1.0, 0.5 * math.pi, 0.5 * math.pi
     for _ in range(MOST_STEPS):
-        off = math.log(found[1]) - wanted
+        kappa = math.exp(at)
+        complement = 1.0 / (kappa * kappa)
+        integrals = elliptic.complete((kappa - 1.0) * (kappa + 1.0) * complement, complement)
+        first, second = integrals.first, integrals.second
+        if not abs(step) > ROUNDING * max(at, 1.0):
+            break
+        before, off = off, math.log(kappa * kappa * integrals.left / integrals.lost) - wanted
         if off < 0.0:
             low = at
         else:
             high = at
-        step = -off * (at - before) / (off - off_before)
+        step *= -off / (off - before)
         if not low <= at + step <= high:
             step = 0.5 * (low + high) - at
-        before, off_before, at = at, off, at + step
-        found = _ellipse_of(math.exp(at))
-        if not abs(step) > 4e-16 * max(at, 1.0):
-            break
-    return found[0]
+        at += step
+    return Ellipse(kappa, first, second)
 
 
-@kernel
+@inlined
 def printed_ellipse(ratio):
     """`Ellipse` by the fits that the source prints (2.46), for curvatures of `ratio`."""
     return Ellipse(1.0339 * ratio**0.636, 1.5277 + 0.6023 * math.log(ratio), 1.0003 + 0.5968 / ratio)
 
 
-@kernel
+@inlined
 def effective_modulus(modulus, poisson):
     """E_tot of (2.46) for two bodies of the same material (Pa)."""
     return modulus / (1.0 - poisson * poisson)
@@ -103,13 +95,13 @@ def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, pois
     return math.pi / 3.0 * root * ellipse.ellipticity * effective_modulus(modulus, poisson)
 
 
-@kernel
+@inlined
 def in_series(inner, outer):
     """One stiffness for ball-inner and ball-outer contacts in series (2.5), N/m^1.5."""
     return (inner ** (-1.0 / 1.5) + outer ** (-1.0 / 1.5)) ** -1.5
 
 
-@kernel
+@inlined
 def damping_from_ratio(stiffness, mass, ratio, indentation):
     """Damping coefficient from a damping ratio (2.47): 2 sqrt(k m) ratio over the peak indentation.
 

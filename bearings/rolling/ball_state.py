@@ -25,14 +25,6 @@ def part(q, component, m):
 
 
 @kernel
-def set_weights(m, component, weight):
-    """Set the error weight of one component of all balls, `weight` over its unit."""
-    weights = part(m.weight, component, m)
-    for b in range(len(weights)):
-        weights[b] = weight
-
-
-@kernel
 def rounded(count):
     """How many balls the loops run over for `count`; all arrays have room for `MOST_BALLS`."""
     left = count % LANES

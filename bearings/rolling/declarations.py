@@ -12,8 +12,8 @@ from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness, geometry
-from touchdown.bearings.rolling.balls.rest import resting_place
-from touchdown.modelkit.kernel import kernel
+from touchdown.bearings.rolling.balls.rest import Springs, resting_place
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Energy, Interface, MountReaction, SeatReaction
 from touchdown.modelkit.variables import group, real
 
@@ -43,13 +43,26 @@ def problems(*frictions: str) -> tuple[str, ...]:
     return (*geometry.PROBLEMS, *bore.PROBLEMS, *others)
 
 
-@kernel
+@inlined
 def problem(p, crowded, told):
     """What is wrong between the parameters p that all rolling bearings share: its number, or 0.
 
     crowded: 1 where more balls are admitted than fit; told: `Model`'s m.told.
     """
-    return geometry.problem(p.balls, crowded, told) or bore.problem(p, STATIC, BALLS, told)
+    found = geometry.problem(p.balls, crowded, told)
+    if found == 0:
+        found = bore.problem(p, STATIC, told)
+        found = BALLS + found if found != 0 else 0
+    return found
+
+
+@inlined
+def law_problem(found, law, usual, before, told):
+    """`found`, if that is a problem, else that of a friction law, a record, behind `before` others."""
+    if found == 0:
+        found = friction.problem(law, usual, told)
+        found = before + found if found != 0 else 0
+    return found
 
 
 @dataclass(frozen=True)
@@ -91,14 +104,15 @@ def state_constants(m):
     o.ball_outer, o.ball_inner, o.rings = counted.ball_outer, counted.ball_inner, counted.rings
 
 
-@kernel
+@inlined
 def settle(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
     p, d, b = m.p, m.d, m.p.balls
     bore.settle(d, p, p.ring.mass)
     geometry.set_stiffness(d.stiffness, b)
     d.inner_radius = geometry.inner_radius(b)
-    d.rest_x, d.rest_y = resting_place(b, spread, p.ring.mass * p.gravity, d.stiffness.series)
+    springs = Springs(b.count, b.first_angle, spread, b.play, b.rows * d.stiffness.series)
+    d.rest_x, d.rest_y = resting_place(springs, p.ring.mass * p.gravity, b.pitch_diameter)
 
 
 GEOMETRY = (

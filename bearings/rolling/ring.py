@@ -234,7 +234,7 @@ def report(q, m, race_radius):
     c.sliding = o.journal_speed - o.surface_speed
 
 
-@kernel
+@inlined
 def set_weights(weight):
     """Set the error weights of the ring's components in `weight` (n,); the heat lost is a quadrature."""
     weight[RX] = weight[RY] = 1.0 / seat.POSITION_SCALE

@@ -12,43 +12,43 @@ from touchdown.bearings.contact import proportion
 from touchdown.bearings.contact.laws import damp, lay_abreast
 from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.contact.stiffness import in_series, race_contact_stiffness
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined, kernel
 
 EVEN = 1.0  # spread
 ROUNDING = 1e-12  # of a full turn of balls
 
 
 @kernel
-def ball_mass(b):
-    """kg"""
-    return b.rows * (b.density * math.pi / 6.0 * b.diameter**3.0)
+def ball_mass(rows, diameter, density):
+    """Of the balls side by side (kg); diameter: m, density: kg/m3."""
+    return rows * (density * math.pi / 6.0 * diameter**3.0)
 
 
-@kernel
-def ball_inertia(b):
-    """Of solid spheres about their centres (kg m2)."""
-    return 0.4 * ball_mass(b) * (0.5 * b.diameter) ** 2.0
+@inlined
+def ball_inertia(mass, diameter):
+    """Of solid spheres of `mass` (kg) about their centres (kg m2); diameter: m."""
+    return 0.4 * mass * (0.5 * diameter) ** 2.0
 
 
-@kernel
+@inlined
 def inner_radius(b):
     """Radius of the inner race where the balls run (m)."""
     return 0.5 * b.pitch_diameter - 0.5 * b.diameter
 
 
-@kernel
+@inlined
 def outer_radius(b):
     """Radius of the outer race where the balls run (m)."""
     return 0.5 * b.pitch_diameter + 0.5 * b.diameter
 
 
-@kernel
+@inlined
 def touch_angle(b):
     """Angle at the bearing's centre between neighbours that just touch (rad)."""
     return 2.0 * math.asin(min(1.0, b.diameter / b.pitch_diameter))
 
 
-@kernel
+@inlined
 def spread_of(b):
     """`spread` of a `FreeBallSet`: 1 for even spacing, less for balls bunched around the first."""
     touching = min(1.0, b.count * touch_angle(b) / (2.0 * math.pi))
@@ -56,48 +56,41 @@ def spread_of(b):
 
 
 @kernel
-def start_angle(b, spread, i):
-    """Attitude angle of ball `i` at the start (rad), rising from the first ball's by less than a turn."""
-    angle = b.first_angle + spread * (2.0 * math.pi / b.count) * i
+def start_angle(first, count, spread, i):
+    """Attitude angle of ball `i` of `count` at the start (rad): less than a turn on from the `first`."""
+    angle = first + spread * (2.0 * math.pi / count) * i
     gap = (1.0 - spread) * 2.0 * math.pi  # left open opposite the first ball
-    return angle + gap if i > b.count // 2 else angle
+    return angle + gap if i > count // 2 else angle
 
 
-@kernel
-def inner_stiffness(b):
-    """Ball on inner race (2.45), N/m^1.5."""
-    return race_contact_stiffness(b.diameter, inner_radius(b), b.conformity, b.modulus, b.poisson, b.hertz)
-
-
-@kernel
-def outer_stiffness(b):
-    """Ball on outer race (2.45), N/m^1.5."""
-    groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
-    return race_contact_stiffness(b.diameter, -outer_radius(b), groove, b.modulus, b.poisson, b.hertz)
-
-
-@kernel
+@inlined
 def set_stiffness(stiffness, b):
-    """Set `stiffness`, a record of `RaceStiffness`."""
-    stiffness.inner, stiffness.outer = inner_stiffness(b), outer_stiffness(b)
+    """Set `stiffness`, a record of `RaceStiffness`: of a ball on either race (2.45), and through both."""
+    groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
+    inner, outer = inner_radius(b), -outer_radius(b)
+    stiffness.inner = race_contact_stiffness(b.diameter, inner, b.conformity, b.modulus, b.poisson, b.hertz)
+    stiffness.outer = race_contact_stiffness(b.diameter, outer, groove, b.modulus, b.poisson, b.hertz)
     stiffness.series = in_series(stiffness.inner, stiffness.outer)
 
 
-@kernel
+@inlined
 def outer_share(stiffness):
     """How much of the rings' approach at a ball is indentation of the outer race; a `RaceStiffness`."""
     inner, outer = stiffness.inner ** (-2.0 / 3.0), stiffness.outer ** (-2.0 / 3.0)
     return outer / (inner + outer)
 
 
-@kernel
-def set_race_law(law, b, stiffness):
-    """Set `law`, a record, to that of the balls side by side on races, each of `stiffness` (N/m^1.5)."""
+@inlined
+def set_race_law(law, b, stiffness, mass):
+    """Set `law`, a record, to that of the balls side by side on races, each of `stiffness` (N/m^1.5).
+
+    mass: of the balls side by side (kg).
+    """
     law.stiffness, law.exponent = stiffness, 1.5
     law.damping, law.dissipation, law.viscous, law.mass = b.damping, 0.0, 0.0, 0.0
     law.damping_ratio, law.expected_indentation = b.damping_ratio, b.expected_indentation
     lay_abreast(law, b.rows)
-    damp(law, ball_mass(b))
+    damp(law, mass)
 
 
 PROBLEMS = (
@@ -110,25 +103,26 @@ PROBLEMS = (
 )
 
 
-@kernel
+@inlined
 def problem(b, crowded, told):
     """Why these balls cannot be put together: its number in `PROBLEMS`, or 0.
 
     crowded: 1 where more balls are admitted than fit; told: `Model`'s m.told.
     """
+    found = 0
     if b.diameter >= b.pitch_diameter:
         told[0], told[1] = b.diameter, b.pitch_diameter
-        return 1
-    if crowded == 0 and b.count * touch_angle(b) > 2.0 * math.pi * (1.0 + ROUNDING):
+        found = 1
+    elif crowded == 0 and b.count * touch_angle(b) > 2.0 * math.pi * (1.0 + ROUNDING):
         told[0], told[1], told[2] = b.count, b.diameter, b.pitch_diameter
         # rounded up, so that the remedy is one
         told[3] = math.ceil(1e6 * b.diameter / math.sin(math.pi / b.count)) / 1e6
-        return 2
-    if 0.0 < b.outer_conformity <= 1.0:
+        found = 2
+    elif 0.0 < b.outer_conformity <= 1.0:
         told[0] = b.outer_conformity
-        return 3
-    if out_of_proportion(b.play, 0.5 * b.diameter, told):
-        return 4
-    if out_of_proportion(b.expected_indentation, 0.5 * b.diameter, told):
-        return 5
-    return 0
+        found = 3
+    elif out_of_proportion(b.play, 0.5 * b.diameter, told):
+        found = 4
+    elif out_of_proportion(b.expected_indentation, 0.5 * b.diameter, told):
+        found = 5
+    return found

@@ -35,7 +35,7 @@ from touchdown.bearings.rolling.micro_step import (
     step_in_hit,
 )
 from touchdown.bearings.rolling.side import SideContacts
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.variables import array, group, groups, integer, real
 
 
@@ -140,30 +140,29 @@ def problems(side: str) -> tuple[str, ...]:
     return (*declarations.problems("race_friction", side), *profiles)
 
 
-@kernel
+@inlined
 def problem(p, crowded, side, usual, told):
     """What is wrong between the parameters p of journal, balls and races: its number, or 0.
 
     crowded: 1 where more balls are admitted than fit; side: friction law of the balls' contacts with each
     other or the cage, a record, and `usual`, its static coefficient by default; told: `Model`'s m.told.
     """
-    b, own = p.balls, declarations.OWN
-    found = (
-        declarations.problem(p, crowded, told)
-        or friction.problem(p.race_friction, STATIC, own, told)
-        or friction.problem(side, usual, own + 2, told)
-    )
-    if found != 0:
-        return found
-    inner, outer = inner_radius(b) - 0.5 * b.play, outer_radius(b) + 0.5 * b.play
-    found = profile.problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, told)
-    if found != 0:
-        return RACES + found
-    found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, told)
-    return RACES + 3 + found if found != 0 else 0
+    b = p.balls
+    found = declarations.problem(p, crowded, told)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
+    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, told)
+    if found == 0:
+        inner = inner_radius(b) - 0.5 * b.play
+        found = profile.problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, told)
+        found = RACES + found if found != 0 else 0
+    if found == 0:
+        outer = outer_radius(b) + 0.5 * b.play
+        found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, told)
+        found = RACES + 3 + found if found != 0 else 0
+    return found
 
 
-@kernel
+@inlined
 def settle(m, spread, side, lighter):
     """Set in m.d what both detailed models share, but for the size; spread: as in `balls.geometry`.
 
@@ -171,10 +170,11 @@ def settle(m, spread, side, lighter):
     """
     p, d, b = m.p, m.d, m.p.balls
     declarations.settle(m, spread)
-    d.mass, d.inertia, d.ball_radius = ball_mass(b), ball_inertia(b), 0.5 * b.diameter
+    d.mass, d.ball_radius = ball_mass(b.rows, b.diameter, b.density), 0.5 * b.diameter
+    d.inertia = ball_inertia(d.mass, b.diameter)
     d.inner_radius, d.outer_radius = inner_radius(b) - 0.5 * b.play, outer_radius(b) + 0.5 * b.play
-    set_race_law(d.inner, b, d.stiffness.inner)
-    set_race_law(d.outer, b, d.stiffness.outer)
+    set_race_law(d.inner, b, d.stiffness.inner, d.mass)
+    set_race_law(d.outer, b, d.stiffness.outer, d.mass)
     d.race_friction = p.race_friction
     friction.settle(d.race_friction)
     d.micro_step = min(

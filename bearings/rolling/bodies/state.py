@@ -13,10 +13,9 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.profile import active
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, part
-from touchdown.bearings.rolling.ball_state import set_weights as set_ball_weights
 from touchdown.bearings.rolling.balls.geometry import inner_radius
 from touchdown.bearings.rolling.bodies.race import Balls
-from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
@@ -91,21 +90,20 @@ def fastest(m):
     return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 
 
-@kernel
+@inlined
 def set_weights(m):
     """Set the error weights up to the balls', and m.n to what is in use without a cage.
 
     The ring's angle matters where its race is no circle; that of a ball does not.
     """
-    p, w = m.p, m.weight
+    p, w, n = m.p, m.weight, m.p.balls.count
     length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
     seat.set_weights(w)
     ring.set_weights(w)
     if active(p.inner_profile):
         w[ring.RANGLE] = inner_radius(p.balls) / seat.POSITION_SCALE
-    set_ball_weights(m, X, length)
-    set_ball_weights(m, Y, length)
-    set_ball_weights(m, VX, speed)
-    set_ball_weights(m, VY, speed)
-    set_ball_weights(m, SPIN, spin)
-    m.n = BALLS + SIZE * p.balls.count
+    for i in range(BALLS, BALLS + n):
+        w[i + X * n] = w[i + Y * n] = length
+        w[i + VX * n] = w[i + VY * n] = speed
+        w[i + SPIN * n] = spin
+    m.n = BALLS + SIZE * n
