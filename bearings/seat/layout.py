@@ -74,12 +74,3 @@ def set_weights(weight):
     weight[JX] = weight[JY] = weight[HX] = weight[HY] = 1.0 / POSITION_SCALE
     weight[JVX] = weight[JVY] = weight[HVX] = weight[HVY] = 1.0 / VELOCITY_SCALE
     weight[JW] = 1.0 / SPIN_SCALE
-
-
-def weights(inside: list[float]) -> np.ndarray:
-    """Transitional: error weights of a bearing's state: the copies' and those of what is `inside`."""
-    head = np.zeros(INSIDE)
-    head[[JX, JY, HX, HY]] = 1.0 / POSITION_SCALE
-    head[[JVX, JVY, HVX, HVY]] = 1.0 / VELOCITY_SCALE
-    head[JW] = 1.0 / SPIN_SCALE
-    return np.concatenate([head, np.array(inside)])
