@@ -49,9 +49,8 @@ def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarra
     a = np.zeros((2 * n + len(ENDS),) * 2, complex)
     a[p, v] = np.eye(n)
     a[v, p] = -np.diag(d.stiffness[:n])
-    a[v, v] = 1j * speed * d.gyroscopic.polar[:n, :n] - np.diag(
-        2.0 * rotor.damping_ratio * np.sqrt(d.stiffness[:n])
-    )
+    damping = 2.0 * rotor.damping_ratio * np.sqrt(d.stiffness[:n])
+    a[v, v] = 1j * speed * d.gyroscopic.polar[:n, :n] - np.diag(damping)
     for i, end in enumerate(ENDS, 2 * n):
         control = scene.components[f"amb_{end}"].set
         assert control["sensed"] == 1
@@ -103,7 +102,8 @@ def test_the_linear_equations_are_the_components(name: str, modes: int, step: fl
     d = tabulate(shaft(name), modes, 1)
     n = d.modes
     loop = closed_loop(name, modes, 1, full_speed(name))
-    sag = 1j * np.append(d.sag[:n], np.zeros(n + 2))  # the control takes it for a displacement
+    bent = d.shape[:, 2:n].T @ (d.held * GRAVITY) / d.stiffness[2:n]
+    sag = 1j * np.concatenate((np.zeros(2), bent, np.zeros(n + 2)))  # a displacement to the control
     push = np.where(np.arange(len(loop)) >= 2 * n, loop @ sag, 0.0)
     ahead = expm(np.block([[loop, push[:, None]], [np.zeros((1, len(loop) + 1))]]) * times[0])
     state = np.concatenate((off * d.weight[:n], np.zeros(n + 2), [1.0]))

@@ -270,10 +270,7 @@ def test_profiles_up_to_the_limit_are_found(side, radius, lobes, angle):
 
     After many turns, too, as exactly as the ring's angle is known.
     """
-    hollow = side == INSIDE
-    limit = brentq(
-        lambda a: 1.0 if problem("", RaceProfile(lobes, a), radius, BALL, hollow) else -1.0, 1e-9, 5e-3
-    )
+    limit = brentq(lambda a: 1.0 if refusal(RaceProfile(lobes, a), radius, side) else -1.0, 1e-9, 5e-3)
     rng = np.random.default_rng(lobes)
     ring = Ring(side, radius, RaceProfile(lobes, 0.999 * limit), angle=angle)
     for i in range(100):
@@ -476,8 +473,8 @@ def test_limit_is_where_a_ball_touches_twice(side, radius, lobes, sharpness):
 def test_gentle_profiles_have_no_problem(side, radius, profile):
     """The profiles of these tests are roughly what a ball can follow, and a circle is no question."""
     assert refusal(profile, radius, side) is None
-    assert problem("race", CIRCLE, radius, BALL, side == INSIDE) is None
-    assert problem("race", RaceProfile(), radius, BALL, side == INSIDE) is None
+    assert refusal(CIRCLE, radius, side) is None
+    assert refusal(RaceProfile(), radius, side) is None
 
 
 @every_race
@@ -494,6 +491,6 @@ def test_gentle_profiles_have_no_problem(side, radius, profile):
 )
 def test_the_cause_is_named(side, radius, profile, cause):
     """Too sharp a profile is refused by what makes it so, even a scratch between two samples."""
-    text = problem("inner_profile", profile, radius, BALL, side == INSIDE)
+    text = refusal(profile, radius, side)
     assert text is not None
-    assert text.startswith(f"inner_profile.{cause} = {getattr(profile, cause):g} m ")
+    assert text.startswith(f"race.{cause} = {getattr(profile, cause):g} m ")

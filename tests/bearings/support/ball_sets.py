@@ -11,7 +11,7 @@ from touchdown.modelkit.instance import Instance
 
 
 def memory_of(balls: BallSet, weight: float = 1.0) -> tuple[Any, int]:
-    """Memory of a bearing with these `balls` and a ring of `weight` (N), settled; the number of a problem."""
+    """Memory of a bearing with these `balls` and a ring of `weight` (N), settled; number of a problem."""
     instance = Instance(MODEL)
     p = instance.record["p"]
     for field in fields(balls):
