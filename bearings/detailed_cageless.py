@@ -17,7 +17,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact import friction
 from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
-from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
+from touchdown.bearings.contact.pair import OUTSIDE, Place
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES, part
 from touchdown.bearings.rolling.balls import BallContacts, FreeBallSet
@@ -40,9 +40,10 @@ from touchdown.bearings.rolling.bodies.state import (
     push,
     set_weights,
 )
+from touchdown.bearings.rolling.chain import Chain, after, link, part_ways, press_of, share
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.side import heat_of, note, note_apart, stored
+from touchdown.bearings.rolling.side import heat_of, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
@@ -85,7 +86,14 @@ class Derived(BallBodiesDerived):
     ball_friction: FrictionLaw = group(FrictionLaw)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
+@dataclass(frozen=True)
+class Memory(BallBodiesMemory):
+    """Memory between evaluations and steps."""
+
+    chain: Chain = group(Chain)
+
+
+MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Memory)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 STATIC = Parameters().ball_friction.static
 CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
@@ -94,39 +102,34 @@ CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
 @kernel
 def _neighbour_contacts(q, dq, m):
     """Each ball in q against the next; adds to the balls' derivatives in dq."""
-    p, d = m.p, m.d
-    count, apart = p.balls.count, 2.0 * d.ball_radius
+    d, s, count = m.d, m.s, m.p.balls.count
+    _find_neighbours(q, m)
+    share(s.side, s.chain, count)
+    for b in range(count):
+        if s.side.indentation[b] > 0.0:
+            c = press_of(b, d.ball_contact, d.ball_friction, m)
+            push(dq, after(b, count), c.fx, c.fy, c.first_moment, m)
+            push(dq, b, -c.fx, -c.fy, c.second_moment, m)
+
+
+@kernel
+def _find_neighbours(q, m):
+    """Balls in q that touch the next one, and what their forces hang on (`bearings.rolling.chain`)."""
+    d, before, count, apart = m.d, m.s.before, m.p.balls.count, 2.0 * m.d.ball_radius
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):
-        k = b + 1 if b + 1 < count else 0
+        k = after(b, count)
         ex, ey = x[k] - x[b], y[k] - y[b]
         square = ex * ex + ey * ey
         if square >= apart * apart:
-            note_apart(m.s.side, b)
+            part_ways(m.s.side, b)
             continue
         distance = math.sqrt(square)
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
-        this, following = ball_motion(q, b, m), ball_motion(q, k, m)
-        kick = _kick(b, k, at, m)
-        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, kick)
-        note(m.s.side, b, c, at, d.ball_contact)
-        push(dq, k, c.fx, c.fy, c.first_moment, m)
-        push(dq, b, -c.fx, -c.fy, c.second_moment, m)
-
-
-@kernel
-def _kick(b, k, place, m):
-    """The `Kick` of balls `b` and `k`, the next.
-
-    The answer along n is doubled: the neighbours on either side push as they did in the kick before, and a
-    row of balls under much damping would else swing from kick to kick.
-    """
-    d, before, side = m.d, m.s.before, m.s.side
-    answers = 2.0 / d.mass + 2.0 * place.second * place.second / d.inertia, 4.0 / d.mass
-    first, second = ball_motion(before, k, m), ball_motion(before, b, m)
-    last = side.tangential[b], side.normal[b]
-    return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+        rates = ball_motion(before, k, m), ball_motion(before, b, m)
+        answers = 2.0 / d.mass + 2.0 * half * half / d.inertia, 1.0 / d.mass
+        link(b, count, ball_motion(q, k, m), ball_motion(q, b, m), rates, at, d.ball_contact, answers, m)
 
 
 @kernel
@@ -135,7 +138,7 @@ def _rubbing(dq, m):
     loss, count = 0.0, m.p.balls.count
     for b in range(count):
         if m.s.side.indentation[b] > 0.0:
-            k = b + 1 if b + 1 < count else 0
+            k = after(b, count)
             this, following = ball_motion(dq, b, m), ball_motion(dq, k, m)
             loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
     return loss
@@ -242,7 +245,7 @@ MODEL = Model(
     inputs=seat.BearingInputs,
     outputs=Outputs,
     derived=Derived,
-    hidden=BallBodiesMemory,
+    hidden=Memory,
     memory=MEMORY,
     settle=settle,
     start=start,

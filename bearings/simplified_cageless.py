@@ -52,6 +52,7 @@ from touchdown.bearings.rolling.balls.geometry import (
     start_angle,
     touch_angle,
 )
+from touchdown.bearings.rolling.chain import Chain
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -176,6 +177,7 @@ class Hidden(RollingMemory, KickMemory):
     inner: RubbedRace = group(RubbedRace)
     outer: RubbedRace = group(RubbedRace)
     side: SideContacts = group(SideContacts)
+    chain: Chain = group(Chain)
     side_peaks: PeakMemory = group(PeakMemory)
     lever: tuple = array(MOST_BALLS)  # m, of the chord between neighbours that touch, about the middle
 
@@ -211,7 +213,7 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
     watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
-    push = largest(s.side.normal, s.side.indentation, count, rows)
+    push = largest(s.side.highest, s.side.indentation, count, rows)
     watch_peaks(time, push, m.o.neighbours, s.side_peaks)
 
 

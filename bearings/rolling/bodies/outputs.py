@@ -26,7 +26,7 @@ def watch(time, m, sides):
     outer = largest(s.outer.normal, s.outer.indentation, count, rows)
     watch_peaks(time, inner, o.inner, s.inner_peaks)
     watch_peaks(time, outer, o.outer, s.outer_peaks)
-    watch_peaks(time, largest(s.side.normal, s.side.indentation, count, rows), sides, s.side_peaks)
+    watch_peaks(time, largest(s.side.highest, s.side.indentation, count, rows), sides, s.side_peaks)
     force, contact = inner.force, inner.loaded
     if outer.force > force:
         force, contact = outer.force, outer.loaded + count

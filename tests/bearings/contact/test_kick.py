@@ -17,7 +17,7 @@ from touchdown.bearings.contact.friction import (
     coefficient,
     curve,
 )
-from touchdown.bearings.contact.kick import Kick, damped_normal, force_on, friction_line
+from touchdown.bearings.contact.kick import damped_normal, force_on, friction_line
 from touchdown.modelkit.variables import as_record
 
 NORMAL = 250.0  # N
@@ -39,7 +39,7 @@ def viscous(slope: float) -> Curve:
 def rubbed(sliding: float, others: float, answer: float, normal: float, law: Curve) -> tuple[float, float]:
     """(Friction (N), sliding speed after the kick (m/s)) of a contact driven by `others` (m/s)."""
     line = friction_line(sliding, sliding + others, answer, normal, law)
-    force = force_on(line, Kick(answer, 0.0, others, 0.0))
+    force = force_on(line, answer, others)
     return force, sliding + others + answer * force
 
 
