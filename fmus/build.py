@@ -14,11 +14,11 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
-from touchdown.fmus.link import Interpreter, linked
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
+from touchdown.fmus.python.link import Interpreter, linked
+from touchdown.fmus.python.sources import write_host, write_package, write_script
 from touchdown.fmus.recipes import Recipe
-from touchdown.fmus.sources import write_host, write_package, write_script
 from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content

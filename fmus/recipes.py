@@ -14,9 +14,9 @@ from importlib import import_module
 from pathlib import Path
 
 from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
-from touchdown.fmus.sources import content_hash
 from touchdown.modelkit.model import Model
 from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor

@@ -10,10 +10,10 @@ from inspect import cleandoc
 from pathlib import Path
 
 from touchdown.fmus.description import causality
-from touchdown.fmus.host import NEEDED
-from touchdown.fmus.link import Interpreter
+from touchdown.fmus.python.host import NEEDED
+from touchdown.fmus.python.link import Interpreter
+from touchdown.fmus.python.sources import ROOT
 from touchdown.fmus.recipes import Recipe
-from touchdown.fmus.sources import ROOT
 from touchdown.fmus.version import VERSION
 from touchdown.modelkit.model import Model, Slot, slots
 from touchdown.modelkit.variables import Causality

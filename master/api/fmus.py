@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from touchdown.fmus import build as builder
-from touchdown.fmus.link import LinkError, interpreter
+from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError

@@ -36,7 +36,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.fmus.build import build
-    from touchdown.fmus.link import LinkError, interpreter
+    from touchdown.fmus.python.link import LinkError, interpreter
     from touchdown.fmus.recipes import Recipe, names
     from touchdown.master.components.library import locate
 
