@@ -32,7 +32,7 @@ AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the 
 READABLE = (*AT_START, Causality.OUTPUT)
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
-_LATE = 1e-2  # of a step: how far it may begin from the end of the last one
+LATE = 1e-2  # of a step: how far it may begin from the end of the last one
 
 
 class ModelSlave(Fmi2Slave):
@@ -67,7 +67,7 @@ class ModelSlave(Fmi2Slave):
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         if self._phase != NEW:
-            self._raise(refusals.SETUP_LATE)
+            self._raise(refusals.SETUPLATE)
         if not math.isfinite(start_time):
             self._raise(refusals.NO_START.format(time=start_time))
         self._start_time = start_time
@@ -89,10 +89,11 @@ class ModelSlave(Fmi2Slave):
     def do_step(self, current_time: float, step_size: float) -> bool:
         try:
             if self._failed:
-                raise ModelError(refusals.STOPPED.format(why=self._failed))
+                self.log(refusals.STOPPED.format(why=self._failed), Fmi2Status.error)
+                return False
             if self._phase != STEPPING:
                 raise ModelError(refusals.ENDED if self._phase == ENDED else refusals.NOT_STARTED)
-            if abs(current_time - self._end) > _LATE * step_size:
+            if abs(current_time - self._end) > LATE * step_size:
                 raise ModelError(refusals.APART.format(time=current_time, step=step_size, end=self._end))
             self._instance.step(current_time, step_size)
             self._end = current_time + step_size
@@ -125,7 +126,7 @@ class ModelSlave(Fmi2Slave):
             causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
             wrong = self._others(kind, vrs, causes)
             if wrong:
-                self._fail(refusals.SET_LATE.format(names=wrong, kind=kind))
+                self._fail(refusals.SETLATE.format(names=wrong, kind=kind))
                 return
             places = self._note("set", kind, vrs)
         self._stores[kind][places] = values

@@ -37,7 +37,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
     "modelkit": (
-        *("instance", "body", "model", "ports", "integrators", "oscillator", "angles", "kernel"),
+        *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
         *("variables", "units", "status", "refusals"),
     ),
     "fmus": (

@@ -18,8 +18,8 @@ from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
 from touchdown.bearings.rolling.side import heat_of, note, note_apart
-from touchdown.modelkit.angles import cosine_and_sine
 from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.numerics.angles import cosine_and_sine
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
