@@ -37,10 +37,13 @@ td:first-child { font-family: monospace }
 """
 
 
-def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
-    """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to."""
+def page(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = "") -> str:
+    """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to.
+
+    needs: what it needs in a host, where that is no Python.
+    """
     title = _plain(recipe.model.title)
-    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter)]
+    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter, needs)]
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
@@ -49,7 +52,7 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
     )
 
 
-def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]:
+def article(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = "") -> list[str]:
     """What stands below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
     own, *parts = _documented(recipe.model)
@@ -59,7 +62,8 @@ def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]
         f"<p>Numbers in parentheses are equations, tables, figures and sections of the source: {SOURCE}, "
         "with its errata corrected.</p>",
         *_validity(slots(model)),
-        *_host(interpreter),
+        "<h2>What it needs</h2>",
+        *([f"<p>{_plain(needs)}</p>"] if needs else _host(interpreter)),
         *_example(recipe),
         *_tables(slots(model)),
         "<h2>The equations of its parts</h2>",
@@ -157,7 +161,6 @@ def _validity(exposed: Sequence[Slot]) -> Iterator[str]:
 
 
 def _host(interpreter: Interpreter | None) -> Iterator[str]:
-    yield "<h2>What it needs</h2>"
     if interpreter is None:
         yield (
             f"<p>Python 3.11 or later with {', '.join(NEEDED)}, as the program that loads it. A host "

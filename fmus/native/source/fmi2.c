@@ -121,10 +121,10 @@ static double number(const double *words, const Slot *s)
     return s->access & REAL ? words[s->index] : (double)whole(words + s->index);
 }
 
-static Status check_bounds(Fmu *f)
+static Status check_bounds(Fmu *f, int causality)
 {
     for (const Slot *s = MODEL.slots; s < MODEL.slots + MODEL.slot_count; s++) {
-        if (s->access & OUTPUT) continue;
+        if (!(s->access & causality)) continue;
         double v = number(f->words, s);
         if (!isfinite(v)) return explain(f, SAY_NOT_FINITE, s->name, plain(v));
         if (!(v > s->above)) return explain(f, SAY_NOT_ABOVE, s->name, v, s->unit, s->above, s->unit);
@@ -134,26 +134,47 @@ static Status check_bounds(Fmu *f)
     return OK;
 }
 
-/* Put the constants in that do not come from a kernel but from tables. */
-static Status look_up(Fmu *f)
+static const char *name_of(Reference vr)
 {
-    if (!MODEL.key_count) return OK;
+    for (const Slot *s = MODEL.slots; s < MODEL.slots + MODEL.slot_count; s++)
+        if (s->index == vr) return s->name;
+    return NULL;
+}
+
+/* Name the parameters that there is no table for. */
+static Status refuse_choice(Fmu *f)
+{
+    char chosen[256] = "";
+    size_t length = 0;
+    for (uint32_t k = 0; k < MODEL.key_count && length < sizeof chosen; k++)
+        length += (size_t)snprintf(chosen + length, sizeof chosen - length, "%s%s = %lld", k ? ", " : "",
+                                   name_of(MODEL.keys[k]), (long long)whole(f->words + MODEL.keys[k]));
+    return explain(f, SAY_NOT_HELD, chosen, MODEL.held);
+}
+
+/* Put the constants in that do not come from a kernel but from tables. Where there is none for these
+   parameters, which 0 says, the first stands in: `settle` may have more to say about them. */
+static int look_up(Fmu *f)
+{
+    if (!MODEL.key_count) return 1;
+    clear(f->words, MODEL.derived, MODEL.told);
     for (const Table *t = MODEL.tables; t < MODEL.tables + MODEL.table_count; t++) {
         uint32_t k = 0;
         while (k < MODEL.key_count && whole(f->words + MODEL.keys[k]) == t->values[k]) k++;
         if (k < MODEL.key_count) continue;
-        clear(f->words, MODEL.derived, MODEL.told);
         put(f->words, t->words, t->count);
-        return OK;
+        return 1;
     }
-    return explain(f, SAY_NOT_HELD, (long long)whole(f->words + MODEL.keys[0]),
-                (long long)whole(f->words + MODEL.keys[1]), MODEL.held);
+    put(f->words, MODEL.tables->words, MODEL.tables->count);
+    return 0;
 }
 
 /* Compute from the parameters what follows from them. */
 static Status derive(Fmu *f)
 {
-    if (look_up(f)) return ERROR;
+    f->outdated = 1;
+    if (check_bounds(f, PARAMETER)) return ERROR;
+    int held = look_up(f);
     int64_t problem = settle(f->words);
     if (problem < 0 || problem > MODEL.problem_count) return explain(f, SAY_GAVE_UP, f->life.end);
     if (problem) {
@@ -161,6 +182,7 @@ static Status derive(Fmu *f)
         const double *told = f->words + MODEL.told;
         return explain(f, p->format, told[p->told[0]], told[p->told[1]], told[p->told[2]], told[p->told[3]]);
     }
+    if (!held) return refuse_choice(f);
     memcpy(f->settled, f->words + MODEL.parameters, (MODEL.inputs - MODEL.parameters) * sizeof(double));
     f->outdated = 0;
     return OK;
@@ -169,7 +191,7 @@ static Status derive(Fmu *f)
 /* State and outputs from parameters and inputs; what is wrong is noted, no more. */
 static Status refresh(Fmu *f)
 {
-    if (check_bounds(f) || derive(f)) return ERROR;
+    if (derive(f) || check_bounds(f, INPUT)) return ERROR;
     clear(f->words, MODEL.outputs, MODEL.weights);
     put(f->words, MODEL.begun, MODEL.begun_count);
     f->words[MODEL.time] = f->life.start;
@@ -358,10 +380,9 @@ static char *others(const Reference *vr, size_t count, int needed)
     for (size_t i = 0; sorted && names && i < count; i++) {
         if (allowed(sorted + i, 1, needed) || (i && sorted[i] == sorted[i - 1])) continue;
         char unknown[64], *longer;
-        const char *name = unknown;
+        const char *name = name_of(sorted[i]);
         snprintf(unknown, sizeof unknown, SAY_UNKNOWN, sorted[i]);
-        for (const Slot *s = MODEL.slots; s < MODEL.slots + MODEL.slot_count; s++)
-            if (s->index == sorted[i]) name = s->name;
+        if (!name) name = unknown;
         if ((longer = realloc(names, length + strlen(name) + 2))) {
             names = longer;
             length += (size_t)sprintf(names + length - 1, "%s%s", length > 1 ? ", " : "", name);
@@ -528,8 +549,8 @@ API Status fmi2SetFMUstate(Fmu *f, const Saved *state)
     memcpy(&f->life, state->bytes + identity, sizeof f->life);
     memcpy(f->words, state->bytes + identity + sizeof f->life, MODEL.derived * sizeof(double));
     f->stale = f->life.phase < STEPPING;
-    f->outdated = memcmp(f->settled, f->words + MODEL.parameters,
-                         (MODEL.inputs - MODEL.parameters) * sizeof(double)) != 0;
+    f->outdated |= memcmp(f->settled, f->words + MODEL.parameters,
+                          (MODEL.inputs - MODEL.parameters) * sizeof(double)) != 0;
     return OK;
 }
 
