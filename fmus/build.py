@@ -49,7 +49,7 @@ def cached(recipe: Recipe) -> Path:
 
 
 def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
-    """NAME.fmu in the cache's folder for `content`, made in a folder by `make` where it is not as it was."""
+    """NAME.fmu in the cache's folder for `content`; made there by `make` where it is not as it was."""
     return kept(lambda folder: _sound(name, folder, make), "fmus", content)
 
 

@@ -67,7 +67,7 @@ class ModelSlave(Fmi2Slave):
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         if self._phase != NEW:
-            self._raise(refusals.SETUPLATE)
+            self._raise(refusals.SETUP_LATE)
         if not math.isfinite(start_time):
             self._raise(refusals.NO_START.format(time=start_time))
         self._start_time = start_time
@@ -126,7 +126,7 @@ class ModelSlave(Fmi2Slave):
             causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
             wrong = self._others(kind, vrs, causes)
             if wrong:
-                self._fail(refusals.SETLATE.format(names=wrong, kind=kind))
+                self._fail(refusals.SET_LATE.format(names=wrong, kind=kind))
                 return
             places = self._note("set", kind, vrs)
         self._stores[kind][places] = values

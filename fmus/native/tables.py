@@ -58,7 +58,7 @@ class Held:
         return "; ".join(f"{name} = {', '.join(map(str, dict.fromkeys(c)))}" for name, c in columns)
 
 
-def source(model: Model, identity: str, held: Held = Held()) -> str:  # noqa: B008 - it is frozen
+def source(model: Model, identity: str, held: Held = Held()) -> str:
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`."""
     exposed = slots(model)
     fields: Any = model.memory.fields

@@ -1,4 +1,4 @@
-"""texts.h: what the FMI side in C says, from the templates that the Python side speaks by; and its numbers."""
+"""texts.h: what the FMI side in C says, from the templates that the Python side speaks by."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from touchdown.modelkit import status
 from touchdown.modelkit.integrators.control import MOST_STEPS
 
 OWN = {  # what only a native FMU has to say
-    "NOT_HELD": "this FMU holds no constants for {chosen}; it was built for {held}; touchdown build --native "
-    "--modes builds one for others",
+    "NOT_HELD": "this FMU holds no constants for {chosen}; it was built for {held}; build it for others "
+    "with touchdown build --native --modes",
     "GAVE_UP": "the model's code gave up at t = {time:.9g} s; there may be no memory left",
     "NO_MEMORY": "there is no memory left",
     "NO_MODEL_EXCHANGE": "it is an FMU for co-simulation only",
-    "FOREIGN_GUID": "the GUID is not the one of this FMU; its description and its library do not belong together",
+    "FOREIGN_GUID": "the GUID is not this FMU's; its description and its library do not belong together",
     "NOT_OFFERED": "the FMU does not offer this",
     "NO_ROOM": "there is too little room for the state",
 }
