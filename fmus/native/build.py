@@ -19,14 +19,15 @@ from touchdown.fmus.build import kept_sound, write
 from touchdown.fmus.description import Making, describe, guid
 from touchdown.fmus.native.compiler import SOURCE, command, library
 from touchdown.fmus.native.kernels import bitcode
-from touchdown.fmus.native.tables import Held, source
-from touchdown.fmus.native.targets import Target, chosen, places
+from touchdown.fmus.native.tables import Choice, Held, source
+from touchdown.fmus.native.targets import NativeError, Target, chosen, places
 from touchdown.fmus.native.texts import header
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.recipes import Recipe
 from touchdown.fmus.version import VERSION
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
 
 MODES = (2, 5, 10)  # per plane, that rotors hold constants for; the scenes ask for these
 _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"
@@ -34,10 +35,14 @@ _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"
 
 @dataclass(frozen=True)
 class Native:
-    """What native FMUs are built for: machines, and numbers of modes of rotors."""
+    """What native FMUs are built for: machines, and numbers of modes of rotors.
+
+    lenient: leave out numbers of modes that a rotor does not have.
+    """
 
     targets: tuple[Target, ...]
     modes: tuple[int, ...] = MODES
+    lenient: bool = True
 
     def check(self) -> None:
         """Raise NativeError where the compiler for a target is not there."""
@@ -50,7 +55,7 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
 
     Raises NativeError where kernels cannot be compiled, or the compiler is missing or fails.
     """
-    model, held = recipe.model, _held(recipe.model, native.modes)
+    model, held = recipe.model, _held(recipe.model, native)
     identity = _identity(model, held)
     making = Making(f"touchdown-cosim {VERSION}, native", identity, needs_tool=False)
     description = describe(model, recipe.identifier, Fmi2Slave.log_categories, making)
@@ -91,12 +96,35 @@ def cached(recipe: Recipe) -> Path:
     return kept_sound(recipe.name, f"{content}-native", lambda folder: build(recipe, folder, native))
 
 
-def _held(model: Model, modes: Sequence[int]) -> Held:
-    """Constants of a rotor's for numbers of modes that it has, with and without the residual ones."""
+def _held(model: Model, native: Native) -> Held:
+    """What a rotor holds constants for: numbers of modes that it has, with and without the residual ones.
+
+    Raises NativeError where it does not have what is asked for.
+    """
     if not model.tabulated:
         return Held()
     assert model.tabulated == ("modes", "residual")
-    return Held(tuple(product(modes, (1, 0))))
+    held: list[Choice] = []
+    for choice in product(dict.fromkeys(native.modes), (1, 0)):
+        problem = _refusal(model, dict(zip(model.tabulated, choice, strict=True)))
+        if problem and not native.lenient:
+            raise NativeError(f"{model.name}: {problem}")
+        if not problem:
+            held.append(choice)
+    return Held(tuple(held))
+
+
+def _refusal(model: Model, parameters: dict[str, int]) -> str:
+    """Why a model does not start with these whole parameters, or ""."""
+    instance = Instance(model)
+    for slot in instance.slots:
+        if slot.variable.name in parameters:
+            instance.integers[slot.index] = parameters[slot.variable.name]
+    try:
+        instance.start(0.0)
+    except ModelError as error:
+        return str(error)
+    return ""
 
 
 def _identity(model: Model, held: Held) -> str:

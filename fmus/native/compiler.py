@@ -65,12 +65,8 @@ def command(target: Target) -> list[str]:
     system = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if target == here() and system is not None:
         return [system]
-    what = (
-        "a C compiler is needed; install one (cc), or zig's"
-        if target == here()
-        else "zig's compiler is needed"
-    )
-    raise NativeError(f"for {target.name} {what}: pip install 'touchdown-cosim[native]'")
+    what = "a C compiler, the system's cc or zig's" if target == here() else "zig's compiler"
+    raise NativeError(f"{target.name} needs {what}; pip install 'touchdown-cosim[native]' brings zig's")
 
 
 def _zig() -> str | None:
