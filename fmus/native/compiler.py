@@ -38,7 +38,8 @@ def library(code: bytes, sources: Mapping[str, str], target: Target, identifier:
             (place / name).write_text(text, encoding="ascii")
         made = f"{identifier}{target.suffix}"
         units = sorted(path.name for path in place.glob("*.c"))
-        _run([*command(target), *FLAGS, *units, "kernels.o", "-o", made, *_LINKING[target.suffix]], place)
+        checks = ["-DCHECK_X86_64_V3"] if target.checked else []
+        _run([*command(target), *FLAGS, *checks, *units, "kernels.o", "-o", made, *_LINKING[target.suffix]], place)
         return (place / made).read_bytes()
 
 

@@ -32,10 +32,7 @@ from touchdown.modelkit.model import Model
 NUMBA = ((0, 61), (0, 68))  # the first and the last version that it was tried with
 ENTRIES = ("settle", "start", "advance")
 PREFIX = "kernel_"  # of the entries' names
-PROCESSOR = {
-    "x86_64": "x86-64-v2",
-    "AMD64": "x86-64-v2",
-}  # by platform.machine(), that loops are shaped for
+PROCESSOR = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}  # that loops are shaped for, by machine
 
 
 def bitcode(model: Model) -> bytes:
@@ -168,12 +165,10 @@ def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:
         return kernel(carray(memory, (words,)), carray(scratch, (rows, state)), time, step)
 
     pointer, real = types.CPointer(types.float64), types.float64
-    function, signature = (
-        (on_words_and_scratch, (pointer, pointer, real, real))
-        if name == "advance"
-        else (on_words, (pointer,))
-    )
-    entry = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
+    stepping = name == "advance"
+    signature = (pointer, pointer, real, real) if stepping else (pointer,)
+    plain = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    entry = plain(on_words_and_scratch if stepping else on_words)
     entry.compile(signature)
     compiled = entry.overloads[signature]
     module = compiled.library._get_module_for_linking()

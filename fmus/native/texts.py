@@ -18,6 +18,7 @@ OWN = {  # what only a native FMU has to say
     "NO_MEMORY": "there is no memory left",
     "NO_MODEL_EXCHANGE": "it is an FMU for co-simulation only",
     "FOREIGN_GUID": "the GUID is not this FMU's; its description and its library do not belong together",
+    "OLD_PROCESSOR": "this processor lacks AVX2, FMA or BMI2; build the FMU for a target that ends in -v2",
     "NOT_OFFERED": "the FMU does not offer this",
     "NO_ROOM": "there is too little room for the state",
 }

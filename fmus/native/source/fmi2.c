@@ -240,9 +240,10 @@ static const char *unusable(int type, const char *guid)
 {
     if (type != CO_SIMULATION) return SAY_NO_MODEL_EXCHANGE;
     if (!guid || strcmp(guid, MODEL.guid)) return SAY_FOREIGN_GUID;
-#if defined(__x86_64__) && defined(__AVX2__)
+#ifdef CHECK_X86_64_V3 /* the kernels' code needs it; this file's does not */
     __builtin_cpu_init();
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return SAY_OLD_PROCESSOR;
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
+        return SAY_OLD_PROCESSOR;
 #endif
     return NULL;
 }

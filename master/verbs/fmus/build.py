@@ -73,9 +73,7 @@ def _counts(text: str) -> list[int]:
     try:
         return [int(part) for part in text.split(",")]
     except ValueError:
-        raise TouchdownError(
-            f"--modes {text}: give whole numbers with commas between, as in 2,5"
-        ) from None
+        raise TouchdownError(f"--modes {text}: give whole numbers with commas between, as in 2,5") from None
 
 
 VERB = Verb("build", "build the FMUs", EXAMPLES, declare, execute)
