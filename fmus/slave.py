@@ -171,10 +171,10 @@ class ModelSlave(Fmi2Slave):
         """Names of the variables among `vrs` that are not of this kind and these causalities."""
         slots = {s.index: s for s in self._instance.slots}
         wrong: list[str] = []
-        for i in sorted(set(vrs)):
+        for i in sorted({vr % 2**32 for vr in vrs}):  # unsigned, as FMI has them
             slot = slots.get(i)
             if slot is None:
-                wrong.append(refusals.UNKNOWN.format(number=i % 2**32))
+                wrong.append(refusals.UNKNOWN.format(number=i))
             elif slot.variable.spec.kind is not kind or slot.causality not in causes:
                 wrong.append(slot.variable.name)
         return ", ".join(wrong)

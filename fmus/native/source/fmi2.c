@@ -549,6 +549,10 @@ API Status fmi2SetFMUstate(Fmu *f, const Saved *state)
         return FAIL(f, SAY_FOREIGN_STATE);
     memcpy(&f->life, state->bytes + identity, sizeof f->life);
     memcpy(f->words, state->bytes + identity + sizeof f->life, MODEL.derived * sizeof(double));
+    if (!f->life.failed) {
+        free(f->why);
+        f->why = NULL;
+    }
     f->stale = f->life.phase < STEPPING;
     f->outdated |= memcmp(f->settled, f->words + MODEL.parameters,
                           (MODEL.inputs - MODEL.parameters) * sizeof(double)) != 0;

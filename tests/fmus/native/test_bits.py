@@ -45,7 +45,7 @@ class InProcess:
         return np.array([float(self.store(s)[s.index]) for s in found])
 
 
-class Native_:  # noqa: N801
+class Linked:
     """A native FMU, its values exchanged as vectors."""
 
     def __init__(self, folder: Path, slots: Sequence[Slot]) -> None:
@@ -122,7 +122,7 @@ def test_every_output_is_equal_to_the_last_bit(fmu: str, steps: int, native: Nat
     model_slots = Instance(recipe(fmu).model).slots
     moved = 0
     for number, parameters in enumerate(parameter_sets(model_slots)):
-        here, there = InProcess(fmu), Native_(native(fmu), model_slots)
+        here, there = InProcess(fmu), Linked(native(fmu), model_slots)
         for one in (here, there):
             one.put({**parameters, **inputs(model_slots, 0)})
         here.instance.start(0.0)
