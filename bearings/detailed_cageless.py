@@ -13,42 +13,40 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact import friction
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
 from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES, part
-from touchdown.bearings.rolling.balls import BallContacts, Coordinates, FreeBallSet
-from touchdown.bearings.rolling.bodies import outputs
+from touchdown.bearings.rolling.balls import BallContacts, FreeBallSet
+from touchdown.bearings.rolling.balls.geometry import ball_mass, spread_of
+from touchdown.bearings.rolling.bodies import declarations, outputs
 from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesDerived,
     BallBodiesMemory,
     BallBodiesOutputs,
     BallBodiesParameters,
-    derived,
-    problem,
 )
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import (
     X,
     Y,
     ball_motion,
-    ball_weights,
     drift,
     fastest,
     place,
     push,
-    ring_weights,
+    set_weights,
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
 from touchdown.bearings.rolling.side import heat_of, note, note_apart, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.model import Model, constants
+from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
 from touchdown.modelkit.variables import group, real
 
@@ -89,6 +87,8 @@ class Derived(BallBodiesDerived):
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+STATIC = Parameters().ball_friction.static
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
 
 
 @kernel
@@ -179,6 +179,27 @@ def report(q, m):
 
 
 @kernel
+def settle(words):
+    """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
+    m = words.view(MEMORY)[0]
+    p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
+    blank(words, CONSTANTS)
+    problem = declarations.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
+    if problem != 0:
+        return problem
+    d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
+    lay_abreast(d.ball_contact, p.balls.rows)
+    mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
+    damp(d.ball_contact, mass)
+    friction.settle(d.ball_friction)
+    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass)
+    size.coordinates, size.constraints = 6 + 3 * count, 1
+    size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
+    set_weights(m)
+    return missing(words, CONSTANTS)
+
+
+@kernel
 def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
@@ -213,35 +234,6 @@ def advance(words, work, time, step):
     return seat.advance(react, integrate, report, words, m, rows, time, step)
 
 
-def derive(p: Parameters) -> Derived:
-    """Stiffness and masses from geometry, and where everything starts."""
-    b = p.balls
-    side = abreast(p.ball_contact, b.rows)
-    fields = derived(p, side, 0.5 * b.ball_mass)
-    return Derived(
-        **fields,  # type: ignore[arg-type]
-        ball_contact=damped(side, b.ball_mass),
-        ball_friction=prepared(p.ball_friction),
-        size=Coordinates(
-            coordinates=6 + 3 * b.count,
-            constraints=1,
-            ball_ball=b.count,
-            ball_outer=b.count,
-            ball_inner=b.count,
-        ),
-    )
-
-
-def check(p: Parameters) -> str | None:
-    """What is wrong between the parameters."""
-    return problem(p, "ball_friction")
-
-
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    return seat.weights(ring_weights(p) + ball_weights(p.balls.count))
-
-
 MODEL = Model(
     name="detailed_cageless",
     title="Detailed cageless touchdown bearing",
@@ -252,11 +244,10 @@ MODEL = Model(
     derived=Derived,
     hidden=BallBodiesMemory,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
-    derive=derive,
-    check=check,
+    problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_ball", "ball_outer", "ball_inner"),
 )

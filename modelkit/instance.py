@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -89,31 +90,22 @@ class Instance:
         self._check_bounds(Causality.PARAMETER)
         self._settled_for = b""
         model = self.model
-        if model.settle is None:
-            self._derive()
-            return
         if model.tables is not None:
-            self.memory["d"] = model.tables(from_record(model.parameters, self.record["p"]))
+            self.memory["d"] = self._tabulated(model.tables)
         number = model.settle(self.words)
         if number:
             raise ModelError(model.problems[number - 1].format(*self.record["told"]))
         self._settled_for, self._outdated = self._parameters.tobytes(), False
 
-    def _derive(self) -> None:
-        """Transitional: in Python."""
-        model: Any = self.model
-        parameters = from_record(model.parameters, self.record["p"])
-        problem = model.check(parameters) if model.check else None
-        if problem:
-            raise ModelError(problem)
-        if model.derive is not None:
-            values = model.derive(parameters)
-            self.memory["d"] = np.array([as_tuple(values)], layout(type(values)))
-        weights = model.weights(parameters)
-        self.memory["n"] = len(weights)
-        self.memory["weight"] = 0.0
-        self.memory["weight"][0, : len(weights)] = weights
-        self._settled_for, self._outdated = self._parameters.tobytes(), False
+    def _tabulated(self, tables: Callable[[Any], np.ndarray]) -> np.ndarray:
+        """The `tables` for the parameters. Raises ModelError where there are none."""
+        parameters = from_record(self.model.parameters, self.record["p"])
+        try:
+            return tables(parameters)
+        except (ArithmeticError, ValueError, RuntimeError) as error:
+            raise ModelError(
+                f"it cannot start ({error}); look for a parameter that is out of all proportion"
+            ) from None
 
     def _check_bounds(self, causality: Causality) -> None:
         for slot in self.slots:

@@ -146,14 +146,11 @@ class Model:
     inputs: type
     outputs: type
     memory: np.dtype
+    settle: Callable[[Any], int]
     start: Callable[[Any], None]
     advance: Callable[[Any, Any, float, float], int]
     derived: type = Nothing
     hidden: type = Nothing
-    settle: Callable[[Any], int] | None = None
-    weights: Callable[[Any], np.ndarray] | None = None  # transitional, as are the next two
-    derive: Callable[[Any], Any] | None = None
-    check: Callable[[Any], str | None] | None = None
     problems: tuple[str, ...] = ()  # what `settle` may find wrong
     tables: Callable[[Any], np.ndarray] | None = None  # parameters -> m.d (1,), as far as tabulated
     tabulated: tuple[str, ...] = ()  # parameters that `tables` hangs on

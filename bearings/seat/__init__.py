@@ -54,7 +54,6 @@ from touchdown.bearings.seat.layout import (
     SeatMemory,
     bearing_memory,
     set_weights,
-    weights,
 )
 from touchdown.bearings.seat.load import last_load
 from touchdown.bearings.seat.step import advance, advance_timed, begin, instant, integrate
@@ -92,5 +91,4 @@ __all__ = [
     "last_load",
     "set_weights",
     "take_inputs",
-    "weights",
 ]

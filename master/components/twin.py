@@ -130,12 +130,3 @@ class TwinComponent(Component):
             self.instance.start(self._start_time)
         except ModelError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None
-        except (
-            ArithmeticError,
-            ValueError,
-            RuntimeError,
-        ) as error:  # what is derived of them does not exist
-            raise TouchdownError(
-                f"component {self.name}: it cannot start ({error}); look for a parameter that is out of "
-                "all proportion"
-            ) from None

@@ -8,7 +8,7 @@ from touchdown.modelkit.kernel import kernel
 
 
 @kernel
-def clear(words, constants):
+def blank(words, constants):
     """Set error weights, constants and what was told of a problem to zero.
 
     words: the memory (float64); constants: where they lie (`modelkit.model.constants`).
