@@ -18,6 +18,7 @@ from pythonfmu import Fmi2Slave
 from touchdown.fmus.build import kept_sound, write
 from touchdown.fmus.description import Making, describe, guid
 from touchdown.fmus.native.compiler import SOURCE, command, library
+from touchdown.fmus.native.in_c import ENTRIES, InC, sources
 from touchdown.fmus.native.kernels import bitcode
 from touchdown.fmus.native.tables import Choice, Held, source
 from touchdown.fmus.native.targets import NativeError, Target, chosen, places
@@ -64,9 +65,8 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
         "documentation/index.html": page(recipe, needs=_needs(model, native, held)).encode(),
         "model.png": icon(model),
     }
-    sources = {"model.c": source(model, identity, held), "texts.h": header()}
-    code = bitcode(model)
-    made = {target: library(code, sources, target, recipe.identifier) for target in native.targets}
+    code, texts = _code(model, identity, held)
+    made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in places(native.targets).items():
         entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
     return write(entries, folder, recipe.name, compressed=True)
@@ -74,8 +74,9 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
 
 def prepare(recipes: Sequence[Recipe]) -> None:
     """Compile the kernels of several models beside each other, where there are processors for it."""
+    models = {r.model.advance: r.model for r in recipes if not isinstance(r.model.advance, InC)}
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(bitcode, {id(r.model.advance): r.model for r in recipes}.values()))
+        list(pool.map(bitcode, models.values()))
 
 
 def cached(recipe: Recipe) -> Path:
@@ -94,6 +95,14 @@ def cached(recipe: Recipe) -> Path:
     )
     content = hashlib.sha256(" ".join(made).encode()).hexdigest()[:16]
     return kept_sound(recipe.name, f"{content}-native", lambda folder: build(recipe, folder, native))
+
+
+def _code(model: Model, identity: str, held: Held) -> tuple[bytes | None, dict[str, str]]:
+    """What a library is made of: kernels as bitcode, if they are not in C, and sources in C by name."""
+    if isinstance(model.advance, InC):
+        table = source(model, identity, held, ENTRIES)
+        return None, {"model.c": table, "texts.h": header(), **sources(model)}
+    return bitcode(model), {"model.c": source(model, identity, held), "texts.h": header()}
 
 
 def _held(model: Model, native: Native) -> Held:

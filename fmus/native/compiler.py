@@ -24,22 +24,23 @@ _LINKING = {
 }
 
 
-def library(code: bytes, sources: Mapping[str, str], target: Target, identifier: str) -> bytes:
-    """The shared library of a model for `target`, from its kernels' bitcode and further sources by name.
+def library(code: bytes | None, sources: Mapping[str, str], target: Target, identifier: str) -> bytes:
+    """The shared library of a model for `target`, from its kernels' bitcode, if any, and sources by name.
 
     Raises NativeError where there is no compiler for it, or it fails.
     """
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         place = Path(folder)
-        (place / "kernels.o").write_bytes(machine_code(code, target))
+        if code is not None:
+            (place / "kernels.o").write_bytes(machine_code(code, target))
         for path in sorted(SOURCE.iterdir()):
             shutil.copy(path, place)
         for name, text in sources.items():
-            (place / name).write_text(text, encoding="ascii")
+            (place / name).write_text(text, encoding="utf-8")
         made = f"{identifier}{target.suffix}"
-        units = sorted(path.name for path in place.glob("*.c"))
-        checks = ["-DCHECK_X86_64_V3"] if target.checked else []
-        _run([*command(target), *FLAGS, *checks, *units, "kernels.o", "-o", made, *_LINKING[target.suffix]], place)
+        units = sorted(path.name for path in place.glob("*.[co]"))
+        checks = ["-DCHECK_X86_64_V3"] if target.checked and code is not None else []
+        _run([*command(target), *FLAGS, *checks, *units, "-o", made, *_LINKING[target.suffix]], place)
         return (place / made).read_bytes()
 
 

@@ -17,7 +17,7 @@ from touchdown.modelkit.variables import Causality, Scalar, as_tuple, layout
 Choice = tuple[int, ...]  # values of the parameters that tables hang on
 _CAUSES = {Causality.PARAMETER: "PARAMETER", Causality.INPUT: "INPUT", Causality.OUTPUT: "OUTPUT"}
 _KINDS = {Scalar.REAL: "REAL", Scalar.INTEGER: "INTEGER"}
-_ENTRIES = f"""
+ENTRIES = f"""
 /* numba's convention: 0, or the code gave up; what it returns goes to *result */
 int {PREFIX}settle(int64_t *result, void **why, double *words);
 int {PREFIX}start(int64_t *result, void **why, double *words);
@@ -58,8 +58,11 @@ class Held:
         return "; ".join(f"{name} = {', '.join(map(str, dict.fromkeys(c)))}" for name, c in columns)
 
 
-def source(model: Model, identity: str, held: Held = Held()) -> str:
-    """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`."""
+def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> str:
+    """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
+
+    entries: `settle`, `start` and `advance` of model.h in C, where its kernels are not numba's.
+    """
     exposed = slots(model)
     fields: Any = model.memory.fields
     at = {part: fields[part][1] // 8 for part in model.memory.names or ()}
@@ -68,7 +71,7 @@ def source(model: Model, identity: str, held: Held = Held()) -> str:
     keys = [next(s.index for s in exposed if s.variable.name == name) for name in model.tabulated]
     sections = [
         '#include "model.h"\n\n#include <math.h>',
-        _ENTRIES,
+        entries,
         *_slots(exposed, at["s"]),
         _words("DEFAULTS", fresh.words),
         _words("BEGUN", begun),

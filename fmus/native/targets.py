@@ -80,9 +80,7 @@ def _require_apart(targets: tuple[Target, ...]) -> None:
     for target in targets:
         other = by_folder.setdefault(target.folder, target)
         if other != target:
-            raise NativeError(
-                f"{other.name} and {target.name} have one place in an FMU; choose one"
-            )
+            raise NativeError(f"{other.name} and {target.name} have one place in an FMU; choose one")
 
 
 def places(targets: tuple[Target, ...]) -> dict[str, Target]:

@@ -58,16 +58,15 @@ def article(recipe: Recipe, interpreter: Interpreter | None = None, needs: str =
     own, *parts = _documented(recipe.model)
     body = [
         f"<p>{_plain(model.about)}.</p>",
-        *_prose(own),
-        f"<p>Numbers in parentheses are equations, tables, figures and sections of the source: {SOURCE}, "
-        "with its errata corrected.</p>",
+        *_physics(own),
         *_validity(slots(model)),
         "<h2>What it needs</h2>",
         *([f"<p>{_plain(needs)}</p>"] if needs else _host(interpreter)),
         *_example(recipe),
         *_tables(slots(model)),
-        "<h2>The equations of its parts</h2>",
     ]
+    if parts:
+        body.append("<h2>The equations of its parts</h2>")
     for text in parts:
         body += _prose(text, heading="h3")
     return body
@@ -77,7 +76,12 @@ def article(recipe: Recipe, interpreter: Interpreter | None = None, needs: str =
 
 
 def _documented(model: Model) -> list[str]:
-    """Docstrings of the module that declares the model's kernels, and of the parts that one imports."""
+    """Docstrings of the module that declares the model's kernels, and of the parts that one imports.
+
+    Of a model that is not the project's: one that is empty.
+    """
+    if not model.advance.__module__.startswith(PHYSICS):
+        return [""]
     text = _source(model.advance.__module__)
     parts = (name for name in _imports(text) if name.startswith(PHYSICS))
     return [_docstring(text), *(_docstring(_source(name)) for name in parts)]
@@ -123,6 +127,16 @@ def _prose(text: str, heading: str = "") -> Iterator[str]:
             yield "<ul>" + "".join(f"<li>{_words(point)}</li>" for point in points) + "</ul>"
         else:
             yield f"<p>{_words(block)}</p>"
+
+
+def _physics(own: str) -> Iterator[str]:
+    """What a model of the project's is made after."""
+    if own:
+        yield from _prose(own)
+        yield (
+            "<p>Numbers in parentheses are equations, tables, figures and sections of the source: "
+            f"{SOURCE}, with its errata corrected.</p>"
+        )
 
 
 def _words(text: str) -> str:

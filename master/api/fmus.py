@@ -10,6 +10,7 @@ from pathlib import Path
 from touchdown.fmus import build as builder
 from touchdown.fmus.native.build import MODES, Native, prepare
 from touchdown.fmus.native.build import build as build_native
+from touchdown.fmus.native.in_c import recipe_in_c
 from touchdown.fmus.native.targets import NativeError, chosen
 from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
@@ -60,8 +61,9 @@ def built_one_by_one(
     """`build`, each file when it is there."""
     if native and link_python:
         raise TouchdownError("an FMU is native or linked to a Python; choose one")
-    recipes = [_recipe(os.fspath(fmu)) for fmu in (names() if fmus is None else several(fmus))]
     try:
+        given = names() if fmus is None else several(fmus)
+        recipes = [_recipe(os.fspath(fmu), native) for fmu in given]
         make = _native(recipes, targets, modes) if native else partial(_in_python, linked=link_python)
         with writing_to(Path(folder)):
             for recipe in recipes:
@@ -103,7 +105,9 @@ def check(
     return check_fmu(os.fspath(fmu), role, names, call_timeout)
 
 
-def _recipe(name: str) -> Recipe:
+def _recipe(name: str, native: bool) -> Recipe:
+    if native and name.endswith(".py"):
+        return recipe_in_c(Path(name))
     recipe = locate(name)
     if not isinstance(recipe, Recipe):
         raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")

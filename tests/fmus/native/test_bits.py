@@ -56,7 +56,10 @@ class Linked:
         self.references = [slot.index for slot in outputs]
 
     def put(self, values: dict[str, float]) -> None:
-        for kind, call in ((Scalar.REAL, self.slave.fmu.setReal), (Scalar.INTEGER, self.slave.fmu.setInteger)):
+        for kind, call in (
+            (Scalar.REAL, self.slave.fmu.setReal),
+            (Scalar.INTEGER, self.slave.fmu.setInteger),
+        ):
             chosen = {n: v for n, v in values.items() if self.by_name[n].variable.spec.kind is kind}
             if chosen:
                 call([self.by_name[n].index for n in chosen], list(chosen.values()))
