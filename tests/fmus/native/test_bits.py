@@ -74,7 +74,7 @@ class Linked:
 
 
 def parameter_sets(slots: Sequence[Slot]) -> Iterator[dict[str, float]]:
-    """The defaults, then values near them, each within its bounds; whole numbers that choose tables, too."""
+    """The defaults, then values near them, within their bounds; whole numbers that choose tables, too."""
     yield {}
     generator = np.random.default_rng(15)
     for _ in range(SETS - 1):

@@ -50,10 +50,10 @@ for name in probe.named("input"):
     slave = Slave(folder).start(TOUCHING)
     slave.set({name: math.nan})
     told(["input", name], slave, slave.fmu.doStep, 0.0, STEP)
-for values in json.loads('[{"modes": 1}, {"modes": 999}, {"stress.node": 60, "modes": 5}, {"modes": 7}]'):
+for values in json.loads('[{"modes": 1}, {"modes": 999}, {"stress.node": 60}]'):
     if set(values) <= set(probe.variables):
         set_and_start(values)
-for time, step in ((0, 0), (0, -1e-5), (0, math.nan), (0, math.inf), (math.nan, 1e-5), (0.123456789012, 1e-5)):
+for time, step in ((0, 0), (0, -1e-5), (0, math.nan), (0, math.inf), (math.nan, 1e-5), (0.1234567891, 1e-5)):
     slave = Slave(folder).start(TOUCHING)
     told(["step", time, step], slave, slave.fmu.doStep, time, step)
 
@@ -114,7 +114,7 @@ def test_it_refuses_in_the_words_of_the_one_in_python(
 
 @pytest.mark.parametrize("fmu", [*CHEAP, *DEAR])
 def test_it_answers_all_questions_as_it_should(fmu: str, alone: Alone, native: Native):
-    """The questions that FMUs in Python are asked, in `slave_questions`; most need both kinds of numbers."""
+    """The questions that FMUs in Python are asked, in `slave_questions`."""
     found = answered(alone(ASKED, native(fmu), native("housing" if fmu != "housing" else "rigid_rotor")))
     assert {name: found[name] for name in ANSWERS} == ANSWERS
     for name in ("inputs_not_finite", "bad_parameters", "set_too_late", "unknown_references"):
