@@ -9,11 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from touchdown.modelkit import refusals
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.integrators.control import MOST_STEPS
 from touchdown.modelkit.model import Model, ModelError, slots
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
 from touchdown.modelkit.variables import Causality, Scalar, as_tuple, from_record, layout
+
+FIRST_STEP = 1e-6  # s; the micro-step to try first
 
 
 class Instance:
@@ -56,14 +59,14 @@ class Instance:
         self.memory["o"], self.memory["s"] = _values(model.outputs), _values(model.hidden)
         self.memory["q"] = 0.0
         self.memory["time"] = time
-        self.memory["h"] = 1e-6
+        self.memory["h"] = FIRST_STEP
         self.memory["evaluations"] = 0
         model.start(self.words)
 
     def step(self, time: float, step: float) -> None:
         """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
-            raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
+            raise ModelError(refusals.NO_STEP.format(time=time, step=step))
         if self._outdated:
             self._settle()
         status = self.model.advance(self.words, self.work, time, step)
@@ -126,21 +129,9 @@ def _explanation(instance: Instance, status: int, time: float, step: float) -> s
         for slot in instance.slots:
             value = instance.reals[slot.index]
             if slot.causality is Causality.INPUT and not math.isfinite(value):
-                return (
-                    f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
-                    "look at the component that feeds it"
-                )
+                return refusals.BAD_INPUT.format(name=slot.variable.name, value=value, time=time)
     if status in (BAD_LOAD, BAD_INPUT):  # finite inputs can be too large to add up
-        return (
-            f"the load at t = {time:.9g} s is not a finite number; look for an input or a parameter "
-            "that is out of all proportion"
-        )
+        return refusals.BAD_LOAD.format(time=time)
     if status == TOO_MANY_STEPS:
-        return (
-            f"more than {MOST_STEPS} micro-steps within one macro step of {step:g} s "
-            f"at t = {time:.9g} s; take a smaller macro step or a larger interface.tolerance"
-        )
-    return (
-        f"the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; "
-        "take a smaller macro step, or look for a contact that starts with a deep overlap"
-    )
+        return refusals.TOO_MANY_STEPS.format(most=MOST_STEPS, step=step, time=time)
+    return refusals.UNRESOLVED.format(time=time, step=step)

@@ -38,11 +38,11 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
     "modelkit": (
         *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
-        *("variables", "units", "status"),
+        *("variables", "units", "status", "refusals"),
     ),
     "fmus": (
-        *("build", "presentation", "recipes", "scripts", "slave", "description", "sources", "link"),
-        *("host", "resident", "version"),
+        *("native", "build", "presentation", "recipes", "scripts", "slave", "description", "python"),
+        *("refusals", "version"),
     ),
 }
 REPORTED = {

@@ -54,8 +54,8 @@ def forecast(trial, dq, h, kick, m):
     for k, i in enumerate(COPIES):
         m.s.ahead[k] = 0.5 * h * dq[i]
     m.s.kick = kick
-    n = m.s.seat.inside
-    m.s.before[:n] = dq[:n]
+    for i in range(m.s.seat.inside):  # assigned at once, numba would compare shapes and refuse in Python
+        m.s.before[i] = dq[i]
 
 
 @kernel

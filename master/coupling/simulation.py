@@ -72,7 +72,8 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
     def load_one(name: str, fmu: str) -> Component:
-        stepping = Stepping(in_process, scene.components[name].isolate, scene.run.call_timeout)
+        spec = scene.components[name]
+        stepping = Stepping(in_process, spec.isolate, scene.run.call_timeout, spec.native)
         return load_component(name, fmu, scene.folder, stepping)
 
     return assemble(scene, load_one)
