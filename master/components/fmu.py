@@ -27,7 +27,7 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component, Kind
+from touchdown.master.components.component import ByFunctions, Call, Component, Kind
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
 
@@ -86,6 +86,10 @@ class _Fetch(NamedTuple):
     data: np.ndarray
     of: int  # address of `references`
     into: int  # address of `data`
+
+
+def _step_from(time: float) -> str:
+    return f"{Call.STEP} from t = {time:.9g} s"
 
 
 class ArchivedFmu(Component):
@@ -225,12 +229,26 @@ class FmuComponent(ArchivedFmu):
     def push(self) -> None:
         status = self._set_real(self._component, *self._in)
         if status > WARNING:
-            self._check(status, "setting inputs")
+            self._check(status, Call.SET)
 
     def pull(self) -> None:
         status = self._get_real(self._component, *self._out)
         if status > WARNING:
-            self._check(status, "reading outputs")
+            self._check(status, Call.GET)
+
+    checked = False  # whether it is seen that exchanged outputs are finite numbers
+
+    def by_address(self) -> ByFunctions | None:
+        """None where the FMU does not run on its own: it asks for a tool, or for this interpreter."""
+        asks = self.description.coSimulation.needsExecutionTool
+        if asks or by_pythonfmu(self.description):
+            return None
+        held = self._component, self._set_real, self._do_step, self._get_real, self._get_integer
+        addresses = (ctypes.cast(one, ctypes.c_void_p).value or 0 for one in held)
+        return ByFunctions(*addresses, *self._held, self.checked)
+
+    def refuse(self, call: Call, status: int, time: float, step: float) -> None:
+        self._check(status, _step_from(time) if call is Call.STEP else call)
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values = np.zeros(len(names))
@@ -249,7 +267,7 @@ class FmuComponent(ArchivedFmu):
             for call, at, references, data, of, into in fetches:
                 status = call(self._component, of, len(references), into)
                 if status > WARNING:
-                    self._check(status, "reading")
+                    self._check(status, Call.FETCH)
                 values[at] = data
             return values
 
@@ -270,7 +288,7 @@ class FmuComponent(ArchivedFmu):
     def step(self, time: float, step: float) -> None:
         status = self._do_step(self._component, time, step, 1)
         if status > WARNING:
-            self._check(status, f"the step from t = {time:.9g} s")
+            self._check(status, _step_from(time))
 
     def save(self) -> object:
         state = ctypes.c_void_p()
