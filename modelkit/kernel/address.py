@@ -10,11 +10,11 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
-from numba import carray, types
+from numba import types
+from numba.core import cgutils
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
-
-from touchdown.modelkit.kernel.compiled import inlined
+from numba.np.arrayobj import populate_array
 
 ADVANCE = (types.float64[::1], types.float64[:, ::1], types.float64, types.float64)
 
@@ -29,38 +29,36 @@ def advance_address(advance: Callable[..., Any]) -> int:
     return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
 
 
-def _pointer(item: types.Type) -> Any:
-    """An intrinsic: the pointer to items of a type at an address."""
+def _array(item: types.Type) -> Any:
+    """An intrinsic: the array of a length, or of rows and columns, whose items stand at an address."""
 
     @intrinsic
-    def pointer(_: Any, address: Any) -> Any:
+    def array(_: Any, address: Any, shape: Any) -> Any:
+        of = types.Array(item, len(shape) if isinstance(shape, types.UniTuple) else 1, "C")
+
         def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            return builder.inttoptr(given[0], context.get_value_type(signature.return_type))
+            sizes = cgutils.unpack_tuple(builder, given[1]) if of.ndim > 1 else [given[1]]
+            width = context.get_abi_sizeof(context.get_data_type(item))
+            strides = [context.get_constant(types.intp, width)]
+            for size in reversed(sizes[1:]):
+                strides.insert(0, builder.mul(size, strides[0]))
+            made = context.make_array(of)(context, builder)
+            populate_array(
+                made,
+                data=builder.inttoptr(given[0], made.data.type),
+                shape=sizes,
+                strides=strides,
+                itemsize=width,
+                meminfo=None,
+            )
+            return made._getvalue()
 
-        return types.CPointer(item)(types.intp), generate
+        return of(types.intp, shape), generate
 
-    return pointer
-
-
-_float64, _int64, _int32 = map(_pointer, (types.float64, types.int64, types.int32))
+    return array
 
 
-@inlined
-def float64_at(address, shape):
-    """The array of that shape at an address."""
-    return carray(_float64(address), shape)
-
-
-@inlined
-def int64_at(address, shape):
-    """The array of that shape at an address."""
-    return carray(_int64(address), shape)
-
-
-@inlined
-def int32_at(address, shape):
-    """The array of that shape at an address."""
-    return carray(_int32(address), shape)
+float64_at, int64_at, int32_at = map(_array, (types.float64, types.int64, types.int32))
 
 
 @intrinsic
@@ -87,9 +85,10 @@ def call_exchange(_: Any, address: Any, component: Any, references: Any, count: 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         status, word = ir.IntType(32), context.get_value_type(types.intp)
         kind = ir.FunctionType(status, [word] * 4)
-        return builder.call(builder.inttoptr(given[0], kind.as_pointer()), given[1:])
+        answer = builder.call(builder.inttoptr(given[0], kind.as_pointer()), given[1:])
+        return builder.sext(answer, word)
 
-    return types.int32(*[types.intp] * 5), generate
+    return types.intp(*[types.intp] * 5), generate
 
 
 @intrinsic
@@ -100,6 +99,6 @@ def call_step(_: Any, address: Any, component: Any, time: Any, step: Any) -> Any
         status, word, real = ir.IntType(32), context.get_value_type(types.intp), ir.DoubleType()
         kind = ir.FunctionType(status, [word, real, real, status])
         code = builder.inttoptr(given[0], kind.as_pointer())
-        return builder.call(code, [*given[1:], ir.Constant(status, 1)])
+        return builder.sext(builder.call(code, [*given[1:], ir.Constant(status, 1)]), word)
 
-    return types.int32(types.intp, types.intp, types.float64, types.float64), generate
+    return types.intp(types.intp, types.intp, types.float64, types.float64), generate

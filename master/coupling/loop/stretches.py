@@ -27,6 +27,7 @@ from touchdown.master.coupling.steppers.jacobi import Jacobi
 AT_ONCE: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
 """Sequences that compiled code knows: whether all components take their inputs before any steps."""
 CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
+NO_ROWS = np.zeros((0, 0))
 PATIENCE = 0.1  # s of wall time that a stretch may take: until then Ctrl-C waits
 
 
@@ -38,6 +39,7 @@ class Stretches:
     ) -> None:
         self._steps, self._judge, self._recorder = steps, judge, recorder
         self._observers = observers
+        self._every = steps.coupling.run.record_every if recorder is not None else 0
         self._at_once = AT_ONCE.get(type(steps.coupling).step)
         seen = any(type(o).due is Observer.due and not o.at_beats_only for o in observers)
         self._able = self._at_once is not None and not seen and not steps.ledger.listens
@@ -48,14 +50,23 @@ class Stretches:
 
     def take(self, now: Moment) -> None:
         """Take macro steps, and move on to their end. Raises TouchdownError where they cannot be taken."""
-        found = self._found() if self._able and now.done > 0 else None  # the first one compiles kernels
+        found = self._found() if self._able and now.done > 0 else None
         if found is None:
             self._steps.take(now)
+            if self._able and now.done == 1:
+                self._get_ready(now)
             return
         began = clock.perf_counter()
         self._stretch(found, now)
         slow = clock.perf_counter() - began > 0.5 * PATIENCE
         self._longest = max(1, self._longest // 2) if slow else min(2 * self._longest, BEAT)
+
+    def _get_ready(self, now: Moment) -> None:
+        """Compile what stretches need with all that the first macro step compiles: by one of no length."""
+        found = self._found()
+        if found is not None:
+            self._planned(now, now.done)
+            self._run(found, NO_ROWS)
 
     def _found(self) -> Tables | None:
         """Tables of the system as it is laid out now."""
@@ -67,31 +78,40 @@ class Stretches:
     def _stretch(self, found: Tables, now: Moment) -> None:
         steps, recorder = self._steps, self._recorder
         steps.coupling.expect(steps.length / steps.parts)
-        rows = np.zeros((0, 0)) if recorder is None else recorder.room
-        plan = self._planned(now, len(rows))
-        failed = run(
-            self._plan, found.turns, found.parts, steps.ledger.books, found.signals, found.reads,
-            found.columns, rows,
-        )  # fmt: skip
+        rows = NO_ROWS if recorder is None else recorder.room
+        plan = self._planned(now, self._ends(now, len(rows)))
+        failed = self._run(found, rows)
         steps.booked = int(plan["booked"])
         now.move(int(plan["done"]), steps.length)
         if recorder is not None and plan["row"]:
             recorder.took(int(plan["row"]))
         if failed:
-            turn = found.turns[plan["failed"]]
-            component = found.components[plan["failed"]]
-            call, status = CALLS[int(plan["call"])], int(plan["status"])
-            component.refuse(call, status, float(turn["time"]), float(turn["span"]))
+            self._refuse(found, plan)
 
-    def _planned(self, now: Moment, rows: int) -> Any:
-        """The plan of a stretch from now on, with room for so many recorded rows."""
-        steps, run = self._steps, self._steps.coupling.run
-        every = run.record_every if self._recorder is not None else 0
+    def _run(self, found: Tables, rows: np.ndarray) -> bool:
+        books = self._steps.ledger.books
+        return run(
+            self._plan, found.turns, found.parts, books, found.signals, found.reads, found.columns, rows
+        )
+
+    def _refuse(self, found: Tables, plan: Any) -> None:
+        """Raise what the component that failed has to say."""
+        turn, component = found.turns[plan["failed"]], found.components[plan["failed"]]
+        call = CALLS[int(plan["call"])]
+        component.refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
+
+    def _ends(self, now: Moment, rows: int) -> int:
+        """The macro step at which somebody in Python must look, or so many recorded rows are full."""
         ends = [now.done + self._longest, *(observer.due(now) for observer in self._observers)]
-        if every:
-            ends.append((now.done // every + rows + 1) * every)
+        if rows:
+            ends.append((now.done // self._every + rows + 1) * self._every)
+        return min(ends)
+
+    def _planned(self, now: Moment, until: int) -> Any:
+        """The plan of a stretch from now to the end of macro step `until`."""
+        steps = self._steps
         self._plan[0] = (
-            self._at_once, steps.length, steps.parts, now.done, min(ends), steps.booked, steps.ledger.fall,
-            self._judge.limit, every, 0, now.zero, 0, 0, 0,
+            self._at_once, steps.length, steps.parts, now.done, until, 0.0, steps.booked, steps.ledger.fall,
+            self._judge.limit, self._every, 0, now.zero, 0, 0, 0,
         )  # fmt: skip
         return self._plan[0]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from touchdown.master.coupling.loop.kernels import kernel
+from touchdown.modelkit.kernel import inlined
 
 TRIFLE = 1e-4  # of the energy lost by falling; what turns over less is not judged by its own measure
 MINOR = 0.1  # of what all connections turn over; likewise
@@ -44,7 +45,7 @@ def book(books, signals, done):
             _flow(b, signals)
 
 
-@kernel
+@inlined
 def _compare(b, signals):
     """Compare what both sides of a connection have stated (J) up to the end of a step."""
     at = b.statements
@@ -56,7 +57,7 @@ def _compare(b, signals):
     b.by_bearing, b.jumps, b.by_body = by_bearing, jumps, by_body
 
 
-@kernel
+@inlined
 def _flow(b, signals):
     """Add what a step to (x, y) (m) under the mean load (N), with the velocity at its end, turned over.
 
@@ -77,7 +78,7 @@ def _flow(b, signals):
     b.x, b.y, b.vx, b.vy = x, y, vx, vy
 
 
-@kernel
+@inlined
 def share_of(books, i, fall):
     """The residual of connection i over what it turned over; 0 where nothing was. fall: J, or 0."""
     turnover = 0.0

@@ -16,6 +16,7 @@ from touchdown.master.coupling.loop.kernels.tables import (
     SET,
     STEP,
 )
+from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.kernel.address import (
     call_advance,
     call_exchange,
@@ -82,66 +83,54 @@ def pull(turn):
     return 0
 
 
-@kernel
+@inlined
 def _answer(status):
     """0 where a component that answered so can go on."""
     return 0 if status <= WARNING else status
 
 
-@kernel
-def _note(plan, turn, call, status):
-    """Note which component failed, and at what; whether it did."""
-    if status == 0:
-        return False
+@inlined
+def note(plan, turn, call, status):
+    """Note which component failed, and at what; True."""
     plan.failed, plan.call, plan.status = turn, call, status
     return True
 
 
-@kernel
-def in_turn(plan, turns, parts, signals, number, time, span):
-    """A step of `span` (s) from `time` (s), one component after another; whether it failed."""
-    for i in range(len(turns)):
-        turn = turns[i]
-        if number % turn.every:
-            continue
-        if (
-            _note(plan, i, SET, push(turn, parts, signals, number))
-            or _note(plan, i, STEP, step(turn, time, turn.every * span))
-            or _note(plan, i, GET, pull(turn))
-        ):
-            return True
+@inlined
+def exchange(plan, turns, parts, signals, number, time):
+    """One step of `plan.span` (s) from `time` (s) by all components; whether one failed.
+
+    At once, all of them make one group: inputs for all, then steps, then outputs of all. In turn, each is a
+    group of its own. At once, what a component gave before holds until its own step ends.
+    """
+    size = len(turns) if plan.at_once else 1
+    ends = number + 1 if plan.at_once else number
+    for first in range(0, len(turns), size):
+        for i in range(first, first + size):
+            if number % turns[i].every == 0:
+                status = push(turns[i], parts, signals, number)
+                if status != 0:
+                    return note(plan, i, SET, status)
+        for i in range(first, first + size):
+            if number % turns[i].every == 0:
+                status = step(turns[i], time, turns[i].every * plan.span)
+                if status != 0:
+                    return note(plan, i, STEP, status)
+        for i in range(first, first + size):
+            if ends % turns[i].every == 0:
+                status = pull(turns[i])
+                if status != 0:
+                    return note(plan, i, GET, status)
     return False
 
 
-@kernel
-def at_once(plan, turns, parts, signals, number, time, span):
-    """`in_turn`, but with inputs for all, then steps, then outputs of all."""
-    for i in range(len(turns)):
-        due = number % turns[i].every == 0
-        if due and _note(plan, i, SET, push(turns[i], parts, signals, number)):
-            return True
-    for i in range(len(turns)):
-        due = number % turns[i].every == 0
-        if due and _note(plan, i, STEP, step(turns[i], time, turns[i].every * span)):
-            return True
-    for i in range(len(turns)):
-        ends = (number + 1) % turns[i].every == 0  # until then, what it gave before holds
-        if ends and _note(plan, i, GET, pull(turns[i])):
-            return True
-    return False
-
-
-@kernel
+@inlined
 def take(plan, turns, parts, books, signals):
     """One macro step, whole or divided, each part of it booked; whether it failed."""
-    span = plan.length / plan.parts
+    plan.span = plan.length / plan.parts
     for k in range(plan.parts):
-        number, time = plan.done * plan.parts + k, plan.done * plan.length + k * span
-        if plan.at_once:
-            failed = at_once(plan, turns, parts, signals, number, time, span)
-        else:
-            failed = in_turn(plan, turns, parts, signals, number, time, span)
-        if failed:
+        time = plan.done * plan.length + k * plan.span
+        if exchange(plan, turns, parts, signals, plan.done * plan.parts + k, time):
             return True
         plan.booked += 1
         book(books, signals, plan.booked)
@@ -155,8 +144,8 @@ def record(plan, reads, columns, row):
     for i in range(len(reads)):
         r = reads[i]
         status = _answer(call_exchange(r.call, r.of, r.references, r.count, r.into))
-        if _note(plan, r.turn, FETCH, status):
-            return True
+        if status != 0:
+            return note(plan, r.turn, FETCH, status)
     row[0] = plan.done * plan.length - plan.zero
     for i in range(len(columns)):
         address, kind = columns[i].address, columns[i].kind

@@ -62,6 +62,7 @@ PLAN = np.dtype(
         ("parts", "i8"),  # that each is divided into
         ("done", "i8"),  # macro steps taken
         ("until", "i8"),  # where the stretch ends
+        ("span", "f8"),  # of a part, s
         ("booked", "i8"),  # steps, with the parts of those divided
         ("fall", "f8"),  # J
         ("limit", "f8"),  # share of residual in turnover that ends the stretch
