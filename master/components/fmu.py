@@ -88,6 +88,11 @@ class _Fetch(NamedTuple):
     into: int  # address of `data`
 
 
+def _address(held: Any) -> int:
+    """Where a function, or what ctypes points to, stands."""
+    return ctypes.cast(held, ctypes.c_void_p).value or 0
+
+
 def _step_from(time: float) -> str:
     return f"{Call.STEP} from t = {time:.9g} s"
 
@@ -243,9 +248,17 @@ class FmuComponent(ArchivedFmu):
         asks = self.description.coSimulation.needsExecutionTool
         if asks or by_pythonfmu(self.description):
             return None
-        held = self._component, self._set_real, self._do_step, self._get_real, self._get_integer
-        addresses = (ctypes.cast(one, ctypes.c_void_p).value or 0 for one in held)
-        return ByFunctions(*addresses, *self._held, self.checked)
+        taken, given = self._held
+        return ByFunctions(
+            component=_address(self._component),
+            set_real=_address(self._set_real),
+            do_step=_address(self._do_step),
+            get_real=_address(self._get_real),
+            get_integer=_address(self._get_integer),
+            taken=taken,
+            given=given,
+            checked=self.checked,
+        )
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
         self._check(status, _step_from(time) if call is Call.STEP else call)

@@ -10,11 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite import ir
-from numba import types
+from numba import extending, types
 from numba.core import cgutils
 from numba.core.dispatcher import Dispatcher
-from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
+
+intrinsic: Any = extending.intrinsic  # which takes its functions' first parameter away
 
 ADVANCE = (types.float64[::1], types.float64[:, ::1], types.float64, types.float64)
 
@@ -24,7 +25,7 @@ def advance_address(advance: Callable[..., Any]) -> int:
     if not isinstance(advance, Dispatcher):  # numba is told not to compile
         return 0
     compiled: Any = advance.overloads.get(ADVANCE)
-    if compiled is None or compiled.signature.return_type != types.int64:
+    if compiled is None or types.unliteral(compiled.signature.return_type) != types.int64:
         return 0
     return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
 

@@ -96,16 +96,16 @@ class Stretches:
 
     def _refuse(self, found: Tables, plan: Any) -> None:
         """Raise what the component that failed has to say."""
-        turn, component = found.turns[plan["failed"]], found.components[plan["failed"]]
-        call = CALLS[int(plan["call"])]
-        component.refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
+        failed = int(plan["failed"])
+        turn, call = found.turns[failed], CALLS[int(plan["call"])]
+        found.components[failed].refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
 
     def _ends(self, now: Moment, rows: int) -> int:
         """The macro step at which somebody in Python must look, or so many recorded rows are full."""
         ends = [now.done + self._longest, *(observer.due(now) for observer in self._observers)]
         if rows:
             ends.append((now.done // self._every + rows + 1) * self._every)
-        return min(ends)
+        return max(now.done + 1, min(ends))
 
     def _planned(self, now: Moment, until: int) -> Any:
         """The plan of a stretch from now to the end of macro step `until`."""

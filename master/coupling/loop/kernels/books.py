@@ -1,5 +1,7 @@
 """The arithmetic of the energy ledger, on one record per connection."""
 
+# pyright: basic
+
 from __future__ import annotations
 
 import numpy as np
@@ -35,7 +37,7 @@ BOOK = np.dtype(
 
 
 @kernel
-def book(books, signals, done):
+def book(books: np.ndarray, signals: np.ndarray, done: int) -> None:
     """Book a step that was just taken, the number `done` (from 1), in all `books`."""
     for i in range(len(books)):
         b = books[i]
@@ -89,7 +91,7 @@ def share_of(books, i, fall):
 
 
 @kernel
-def worst_of(books, fall):
+def worst_of(books: np.ndarray, fall: float) -> tuple[int, float]:
     """The connection with the largest share of residual, and that share; -1 and 0 where there is none.
 
     A share that is no number is the worst.

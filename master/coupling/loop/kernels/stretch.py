@@ -1,8 +1,12 @@
 """Macro steps in compiled code, as long as nothing in Python needs to see one."""
 
+# pyright: basic
+
 from __future__ import annotations
 
 import math
+
+import numpy as np
 
 from touchdown.master.coupling.loop.kernels import kernel
 from touchdown.master.coupling.loop.kernels.books import book, worst_of
@@ -160,7 +164,16 @@ def record(plan, reads, columns, row):
 
 
 @kernel
-def run(plan, turns, parts, books, signals, reads, columns, rows):
+def run(
+    plan: np.ndarray,
+    turns: np.ndarray,
+    parts: np.ndarray,
+    books: np.ndarray,
+    signals: np.ndarray,
+    reads: np.ndarray,
+    columns: np.ndarray,
+    rows: np.ndarray,
+) -> bool:
     """Take the macro steps of `plan` (1,), record those that are due into `rows`; whether one failed.
 
     It ends early where the ledger passes the limit. The last macro step is booked, not recorded: whether
