@@ -20,7 +20,7 @@ from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.loop.retirement import Retirement
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.stretches import Stretches
-from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
+from touchdown.master.coupling.observer import BEAT, Moment, Observer
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.stepper import Stepper
@@ -118,7 +118,7 @@ def simulate(
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
-            told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.worst_share)))
+            told.append(_Progress(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
             steps = Stretches(MacroSteps(coupling, ledger, shortening), judge, recorder, told)
             wall_time, compiling = _loop(steps, told, now, interrupted)
@@ -269,6 +269,22 @@ class _Recording(Observer):
 
     def retired(self, names: Sequence[str]) -> None:
         self._recorder.rest(names)
+
+
+class _Progress(Observer):
+    """Tells how far the run is, not more often than there are beats."""
+
+    def __init__(self, tell: Callable[[Moment], object]) -> None:
+        self._tell, self._told = tell, 0
+
+    def stepped(self, now: Moment) -> None:
+        if now.last or now.done >= self._told + BEAT:
+            self._told = now.done
+            self._tell(now)
+
+    def due(self, now: Moment) -> int:
+        """Whenever macro steps stop for others, or because time has passed."""
+        return now.steps
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from touchdown.master.coupling.loop.kernels.stretch import run
 from touchdown.master.coupling.loop.kernels.tables import FETCH, GET, PLAN, SET, STEP
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.tables import Tables, tables
-from touchdown.master.coupling.observer import BEAT, Moment, Observer
+from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.coupling.steppers.jacobi import Jacobi
@@ -28,7 +28,7 @@ AT_ONCE: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
 """Sequences that compiled code knows: whether all components take their inputs before any steps."""
 CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
 NO_ROWS = np.zeros((0, 0))
-PATIENCE = 0.1  # s of wall time that a stretch may take: until then Ctrl-C waits
+PATIENCE = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
 
 
 class Stretches:
@@ -56,10 +56,13 @@ class Stretches:
             if self._able and now.done == 1:
                 self._get_ready(now)
             return
-        began = clock.perf_counter()
+        began, done = clock.perf_counter(), now.done
         self._stretch(found, now)
-        slow = clock.perf_counter() - began > 0.5 * PATIENCE
-        self._longest = max(1, self._longest // 2) if slow else min(2 * self._longest, BEAT)
+        took = clock.perf_counter() - began
+        if took > 0.5 * PATIENCE:
+            self._longest = max(1, self._longest // 2)
+        elif now.done - done == self._longest:
+            self._longest *= 2
 
     def _get_ready(self, now: Moment) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""
