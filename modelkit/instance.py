@@ -71,7 +71,7 @@ class Instance:
             self._settle()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
-            raise ModelError(_explanation(self, status, time, step))
+            raise ModelError(explanation(self, status, time, step))
 
     def save(self) -> bytes:
         """A copy of the state; constants that follow from its parameters are left out."""
@@ -123,7 +123,7 @@ def _values(declaration: type) -> np.ndarray:
     return np.array([as_tuple(declaration())], layout(declaration))
 
 
-def _explanation(instance: Instance, status: int, time: float, step: float) -> str:
+def explanation(instance: Instance, status: int, time: float, step: float) -> str:
     """What stopped a macro step of `step` (s) from `time` (s), and what to do about it."""
     if status == BAD_INPUT:
         for slot in instance.slots:

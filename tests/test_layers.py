@@ -15,7 +15,7 @@ SCIENCE = {"numpy", "scipy", "numba"}
 OWN = "touchdown"
 
 LAYERS = {  # package: what it may import beside itself and the standard library
-    "modelkit": SCIENCE,
+    "modelkit": {"llvmlite"} | SCIENCE,  # numba's own: calls by address
     "rotor": {"touchdown.modelkit"} | SCIENCE,
     "bearings": {"touchdown.modelkit"} | SCIENCE,
     "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu"} | SCIENCE,
