@@ -31,7 +31,7 @@ from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import drift, fastest, place, set_weights
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.side import stored
+from touchdown.bearings.rolling.sides.contact import stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.model import Model, constants

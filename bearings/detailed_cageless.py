@@ -40,10 +40,10 @@ from touchdown.bearings.rolling.bodies.state import (
     push,
     set_weights,
 )
-from touchdown.bearings.rolling.chain import Chain, after, link, part_ways, press_of, share
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.side import heat_of, stored
+from touchdown.bearings.rolling.sides.chain import Chain, after, link, part_ways, press_of, share
+from touchdown.bearings.rolling.sides.contact import heat_of, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
@@ -114,7 +114,7 @@ def _neighbour_contacts(q, dq, m):
 
 @kernel
 def _find_neighbours(q, m):
-    """Balls in q that touch the next one, and what their forces hang on (`bearings.rolling.chain`)."""
+    """Balls in q that touch the next one, and what their forces hang on (`bearings.rolling.sides.chain`)."""
     d, before, count, apart = m.d, m.s.before, m.p.balls.count, 2.0 * m.d.ball_radius
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):

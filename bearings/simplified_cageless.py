@@ -52,7 +52,6 @@ from touchdown.bearings.rolling.balls.geometry import (
     start_angle,
     touch_angle,
 )
-from touchdown.bearings.rolling.chain import Chain
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -87,7 +86,8 @@ from touchdown.bearings.rolling.row import (
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
 from touchdown.bearings.rolling.rubbing import RubbedRace
-from touchdown.bearings.rolling.side import SideContacts, stored
+from touchdown.bearings.rolling.sides.chain import Chain
+from touchdown.bearings.rolling.sides.contact import SideContacts, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
 from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.model import Model, constants

@@ -15,10 +15,10 @@ from touchdown.bearings.contact.pair import OUTSIDE, Place
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
-from touchdown.bearings.rolling.chain import after, link, part_ways, press_of, share
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
-from touchdown.bearings.rolling.side import heat_of
+from touchdown.bearings.rolling.sides.chain import after, link, part_ways, press_of, share
+from touchdown.bearings.rolling.sides.contact import heat_of
 from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.numerics.angles import cosine_and_sine
 from touchdown.modelkit.ports import Motion

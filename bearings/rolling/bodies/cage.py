@@ -13,7 +13,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, press
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
-from touchdown.bearings.rolling.side import heat_of, note, note_apart
+from touchdown.bearings.rolling.sides.contact import heat_of, note, note_apart
 from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real

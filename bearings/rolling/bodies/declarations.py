@@ -34,7 +34,7 @@ from touchdown.bearings.rolling.micro_step import (
     refined,
     step_in_hit,
 )
-from touchdown.bearings.rolling.side import SideContacts
+from touchdown.bearings.rolling.sides.contact import SideContacts
 from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.variables import array, group, groups, integer, real
 

@@ -11,7 +11,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.peaks import Largest, watch_peaks
 from touchdown.bearings.rolling.balls import largest, watch_balls
 from touchdown.bearings.rolling.bodies.state import ball_motion
-from touchdown.bearings.rolling.side import stored
+from touchdown.bearings.rolling.sides.contact import stored
 from touchdown.modelkit.kernel import kernel
 
 

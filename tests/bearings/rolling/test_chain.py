@@ -11,8 +11,8 @@ import pytest
 from touchdown.bearings.contact.kick import damped_normal
 from touchdown.bearings.contact.laws import ContactLaw, elastic_and_damping
 from touchdown.bearings.contact.pair import Place
-from touchdown.bearings.rolling.chain import Chain, link, part_ways, share
-from touchdown.bearings.rolling.side import SideContacts
+from touchdown.bearings.rolling.sides.chain import Chain, link, part_ways, share
+from touchdown.bearings.rolling.sides.contact import SideContacts
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 

@@ -7,7 +7,7 @@ import pytest
 from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.contact.pair import Place, Press
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from touchdown.bearings.rolling.side import SideContacts, note
+from touchdown.bearings.rolling.sides.contact import SideContacts, note
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.variables import as_record

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from touchdown.bearings.contact.laws import elastic_and_damping
 from touchdown.bearings.contact.pair import OUTSIDE, Place, Squeeze, kick_of, rub, slip
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.bearings.rolling.side import note, note_apart
+from touchdown.bearings.rolling.sides.contact import note, note_apart
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array
 
