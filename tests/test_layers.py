@@ -18,7 +18,8 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "modelkit": {"llvmlite"} | SCIENCE,  # numba's own: calls by address
     "rotor": {"touchdown.modelkit"} | SCIENCE,
     "bearings": {"touchdown.modelkit"} | SCIENCE,
-    "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu"} | SCIENCE,
+    "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu", "llvmlite"}
+    | SCIENCE,
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",

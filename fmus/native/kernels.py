@@ -20,7 +20,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from touchdown.fmus.native.targets import NativeError
 from touchdown.modelkit.integrators import dopri
@@ -149,12 +149,13 @@ def _put_code_aside() -> None:
         library._shared_module = clean  # what callers link
         finalize(library)
 
-    CPUCodeLibrary._finalize_final_module = keeping
+    cast(Any, CPUCodeLibrary)._finalize_final_module = keeping
 
 
 def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:
     """LLVM module with one kernel behind an entry of plain pointers; all else in it is internal."""
-    from numba import carray, njit, types
+    import numba
+    from numba import types
 
     rows = dopri.STAGES + 1
 
@@ -167,6 +168,7 @@ def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:
     pointer, real = types.CPointer(types.float64), types.float64
     stepping = name == "advance"
     signature = (pointer, pointer, real, real) if stepping else (pointer,)
+    carray, njit = cast(Any, numba).carray, cast(Any, numba).njit
     plain = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
     entry = plain(on_words_and_scratch if stepping else on_words)
     entry.compile(signature)
