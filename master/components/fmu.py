@@ -243,11 +243,8 @@ class FmuComponent(ArchivedFmu):
 
     checked = False  # whether it is seen that exchanged outputs are finite numbers
 
-    def by_address(self) -> ByFunctions | None:
-        """None where the FMU does not run on its own: it asks for a tool, or for this interpreter."""
-        asks = self.description.coSimulation.needsExecutionTool
-        if asks or by_pythonfmu(self.description):
-            return None
+    def by_address(self) -> ByFunctions:
+        """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here."""
         taken, given = self._held
         return ByFunctions(
             component=_address(self._component),

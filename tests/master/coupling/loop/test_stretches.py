@@ -52,21 +52,25 @@ class Both:
 
         monkeypatch.setattr(MacroSteps, "take", counting)
 
-    def run(self, scene: Scene, path: Path, observing: Observing | None) -> Outcome:
+    def run(
+        self, scene: Scene, path: Path, observing: Observing | None = None, in_process: bool = True
+    ) -> Outcome:
         self.stepped = 0
-        with opened(scene, in_process=True) as system:
+        with opened(scene, in_process) as system:
             observers = [observing()] if observing else []
             outcome = simulate(scene, system, path, observers=observers)
         return replace(outcome, **UNLIKE)
 
-    def compared(self, scene: Scene, observing: Observing | None = None) -> Outcome:
+    def compared(
+        self, scene: Scene, observing: Observing | None = None, in_process: bool = True
+    ) -> Outcome:
         """The outcome, once everything that both leave behind was found equal."""
         paths = self.folder / "compiled.h5", self.folder / "python.h5"
-        found = self.run(scene, paths[0], observing)
+        found = self.run(scene, paths[0], observing, in_process)
         assert self.stepped == 1  # the first, which compiles
         with self._patch.context() as patch:
             patch.setattr(stretches, "AT_ONCE", {})
-            wanted = self.run(scene, paths[1], observing)
+            wanted = self.run(scene, paths[1], observing, in_process)
         assert self.stepped in (wanted.steps, wanted.steps + 1)  # one may fail
         assert repr(found) == repr(wanted)
         assert bits(paths[0]) == bits(paths[1])
@@ -180,7 +184,7 @@ def test_what_an_observer_keeps_and_ends(both: Both) -> None:
     assert (outcome.reason, outcome.steps) == ("seen enough", 3 * BEAT)
 
 
-# -- FMUs in C -----------------------------------------------------------------------------------------
+# -- FMUs -----------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -209,6 +213,23 @@ def test_an_fmu_whose_code_is_its_own(deed: str, said: str, library: Path, both:
     assert outcome.steps == (2 if said else 100)
 
 
+def test_fmus_of_pythonfmu(both: Both) -> None:
+    """Their Python runs within compiled code, which holds the interpreter's lock."""
+    both.compared(disk(run__duration=4e-3), in_process=False)
+
+
+@pytest.mark.parametrize("in_process", [True, False])
+def test_who_refuses_a_step_says_why(in_process: bool, both: Both) -> None:
+    """A contact that is far too stiff for steps under held loads."""
+    run = {"duration": 0.1, "macro_step": 1e-4, "scheme": "jacobi-hold", "record_every": 1}
+    scene = rotor_on("bushing", {"mass": 1.0, "vy": -1.0}, {"contact.stiffness": 1e12}, **run)
+    scene = scene.set({"run.warn_residual": 1e300, "run.stop_residual": 1e300})
+    outcome = both.compared(scene, in_process=in_process)
+    assert outcome.reason.startswith(
+        "component bearing: the motion inside cannot be resolved at t = 0.0011 s"
+    )
+
+
 # -- what is not ---------------------------------------------------------------------------------------
 
 
@@ -230,12 +251,5 @@ def test_a_sequence_of_ones_own_is_kept(both: Both, monkeypatch: pytest.MonkeyPa
     scene = rotor_on("bushing", {"mass": 1.0}, duration=1e-3, macro_step=1e-5)
     for kind, stepped in ((GaussSeidel, 1), (Otherwise, 100)):
         monkeypatch.setattr("touchdown.master.coupling.simulation.stepper", kind)
-        both.run(scene, both.folder / "r.h5", None)
+        both.run(scene, both.folder / "r.h5")
         assert both.stepped == stepped
-
-
-def test_fmus_of_this_interpreter_are_called_from_it() -> None:
-    """pythonfmu's."""
-    with opened(rotor_on("bushing", {"mass": 1.0})) as system:
-        system.initialise()
-        assert [component.by_address() for component in system.components.values()] == [None, None]
