@@ -114,7 +114,7 @@ def _neighbour_contacts(q, dq, m):
 
 @kernel
 def _find_neighbours(q, m):
-    """Balls in q that touch the next one, and what their forces hang on (`bearings.rolling.sides.chain`)."""
+    """Balls in q that touch the next one, and what their forces hang on (`sides.chain`)."""
     d, before, count, apart = m.d, m.s.before, m.p.balls.count, 2.0 * m.d.ball_radius
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):

@@ -190,7 +190,7 @@ def neighbour_forces(q, dq, m):
 
 @kernel
 def _find_neighbours(q, m):
-    """Balls in the state q that touch the next one, and what their forces hang on (`chain`)."""
+    """Balls in the state q that touch the next one, and what their forces hang on (`sides.chain`)."""
     p, d, at, before = m.p, m.d, m.s.balls, m.s.before
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
     angle, answers = part(q, ANGLE, m), (2.0 * rb * rb / d.inertia, 1.0 / d.mass)
