@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import warnings
 from typing import Any
 
@@ -179,3 +181,17 @@ def test_kernels_of_one_bearing_are_not_taken_for_another() -> None:
         for name in REFERENCES:
             model = recipe(name).model
             assert model.settle(Instance(model).words) == 0
+
+
+def test_no_solver_of_scipy_is_loaded_at_the_start() -> None:
+    """numba loads its linear algebra, for itself."""
+    script = """
+import sys
+from touchdown.bearings import bushing, detailed_caged
+from touchdown.modelkit.instance import Instance
+for model in (bushing.MODEL, detailed_caged.MODEL):
+    Instance(model).start(0.0)
+print([name for name in ("scipy.optimize", "scipy.special", "scipy.sparse") if name in sys.modules])
+"""
+    left = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert left.stdout.strip() == "[]"
