@@ -104,6 +104,7 @@ def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
         mass=shaft.mass,
         inertia=shaft.polar_inertia,
         own_damping_ratio=shaft.damping_ratio,
+        damping_ratio=0.0,
         position=_room(shaft.positions(), MOST_NODES),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),

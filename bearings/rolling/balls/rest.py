@@ -1,8 +1,8 @@
 """Where the ring rests on the balls at the start, and the balls between the races.
 
 The ring's weight and the springs at the balls have a potential that is convex in the ring's place: it rests
-where that is least. Newton's method finds it from anywhere: a step that overshoots is halved, and one along
-which nothing holds the ring is doubled as long as it falls.
+where that is least. Newton's method finds it from anywhere: where nothing holds the ring along a line it
+goes far down that, and a step that overshoots is halved.
 """
 
 from __future__ import annotations
@@ -58,21 +58,22 @@ def _balance(x, y, springs, weight):
     return Balance(potential, fx, fy, xx, xy, yy)
 
 
-@inlined
-def _is_held(at):
-    """Whether the springs of a `Balance` hold the ring in every direction."""
-    trace = at.xx + at.yy
-    return at.xx * at.yy - at.xy * at.xy > FLAT * trace * trace
-
-
 @kernel
-def _step_from(at, sunk):
-    """Step (m, m) to where the gradient of a `Balance` vanishes; down by `sunk` (m) without springs."""
-    if _is_held(at):
-        det = at.xx * at.yy - at.xy * at.xy
+def _step_from(at, weight, far):
+    """Step (m, m) to where the gradient of a `Balance` vanishes; `far` (m) where no spring holds the ring.
+
+    Within `AT_BOTTOM` of the direction of the weight (N) it does not slide off.
+    """
+    trace, det = at.xx + at.yy, at.xx * at.yy - at.xy * at.xy
+    if det > FLAT * trace * trace:
         return (at.xy * at.y - at.yy * at.x) / det, (at.xy * at.x - at.xx * at.y) / det
-    trace = at.xx + at.yy
-    return (-at.x / trace, -at.y / trace) if trace > 0.0 else (0.0, -sunk)
+    if trace == 0.0:
+        return 0.0, -far
+    dx, dy = -(at.xx * at.x + at.xy * at.y) / trace, -(at.xy * at.x + at.yy * at.y) / trace
+    x, y = at.x + dx, at.y + dy  # of the gradient, what is across the springs
+    across = math.sqrt(x * x + y * y)
+    slide = far / across if across > AT_BOTTOM * weight else 0.0
+    return dx / trace - slide * x, dy / trace - slide * y
 
 
 @inlined
@@ -108,7 +109,7 @@ def resting_place(springs, weight, out):
     x, y = _first_guess(springs, sunk)
     at = _balance(x, y, springs, weight)
     for _ in range(MOST_STEPS):
-        dx, dy = _step_from(at, sunk)
+        dx, dy = _step_from(at, weight, out)
         if not abs(dx) + abs(dy) > ROUNDING * (abs(x) + abs(y) + abs(springs.play)):
             break
         tried = _balance(x + dx, y + dy, springs, weight)
@@ -117,13 +118,10 @@ def resting_place(springs, weight, out):
                 break
             dx, dy = 0.5 * dx, 0.5 * dy
             tried = _balance(x + dx, y + dy, springs, weight)
-        while not _is_held(at) and abs(dx) + abs(dy) < out:
-            further = _balance(x + 2.0 * dx, y + 2.0 * dy, springs, weight)
-            if not further.potential < tried.potential:
-                break
-            dx, dy, tried = 2.0 * dx, 2.0 * dy, further
+        if not _is_lower(tried, at):
+            break
         x, y, at = x + dx, y + dy, tried
-        if abs(x) + abs(y) > out:
+        if abs(x) + abs(y) >= out:
             return 0.0, 0.0
     return x, y
 
