@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from friction_records import prepared
 
 from touchdown.bearings.contact.friction import (
     COULOMB,
@@ -15,7 +16,6 @@ from touchdown.bearings.contact.friction import (
     FrictionLaw,
     coefficient,
     curve,
-    prepared,
 )
 from touchdown.bearings.contact.kick import Kick, damped_normal, force_on, friction_line
 from touchdown.modelkit.variables import as_record
@@ -28,7 +28,7 @@ LAWS = {
     "Makkar": FrictionLaw(kind=MAKKAR),
     "steep Makkar": FrictionLaw(kind=MAKKAR, slope=1e4, g2=1e4, g3=1e3),
 }
-every_law = pytest.mark.parametrize("law", [as_record(prepared(law)) for law in LAWS.values()], ids=LAWS)
+every_law = pytest.mark.parametrize("law", [prepared(law) for law in LAWS.values()], ids=LAWS)
 
 
 def viscous(slope: float) -> Curve:
