@@ -29,7 +29,7 @@ from touchdown.modelkit.kernel.cache_folder import own_folder, put
 from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
 from touchdown.modelkit.model import Model
 
-NUMBA = ((0, 61), (0, 68))  # the first and the last version that it was tried with
+NUMBA = ((0, 68), (0, 68))  # the first and the last version that it was tried with
 ENTRIES = ("settle", "start", "advance")
 PREFIX = "kernel_"  # of the entries' names
 PROCESSOR = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}  # that loops are shaped for, by machine

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef CHECK_X86_64_V3
+#include <cpuid.h>
+#endif
 
 #ifdef _WIN32
 #define API __declspec(dllexport)
@@ -235,15 +238,26 @@ API void fmi2FreeInstance(Fmu *f)
     free(f);
 }
 
+#ifdef CHECK_X86_64_V3
+/* Whether processor and system have AVX2, FMA and BMI2. Asked by hand: not every compiler's own library
+   knows __builtin_cpu_supports. */
+static int has_x86_64_v3(void)
+{
+    unsigned a, b, c, d, low, high;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_FMA) || !(c & bit_OSXSAVE)) return 0;
+    __asm__ volatile("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    if ((low & 6) != 6) return 0; /* the system keeps the vector registers */
+    return __get_cpuid_count(7, 0, &a, &b, &c, &d) && b & bit_AVX2 && b & bit_BMI2;
+}
+#endif
+
 /* What keeps this library from being used, or NULL. */
 static const char *unusable(int type, const char *guid)
 {
     if (type != CO_SIMULATION) return SAY_NO_MODEL_EXCHANGE;
     if (!guid || strcmp(guid, MODEL.guid)) return SAY_FOREIGN_GUID;
 #ifdef CHECK_X86_64_V3 /* the kernels' code needs it; this file's does not */
-    __builtin_cpu_init();
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
-        return SAY_OLD_PROCESSOR;
+    if (!has_x86_64_v3()) return SAY_OLD_PROCESSOR;
 #endif
     return NULL;
 }
