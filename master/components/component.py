@@ -181,7 +181,11 @@ class Component(ABC):
         """Advance from `time` by `step` (s)."""
 
     def by_address(self) -> InMemory | ByFunctions | None:
-        """How compiled code takes the steps of this component, as it is bound now; None: it cannot."""
+        """How compiled code takes the steps of this component, as it is bound now; None: it cannot.
+
+        It takes the place of push, step and pull: where one of them is overridden, this counts no more
+        unless it is, too.
+        """
         return None
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:

@@ -241,8 +241,6 @@ class FmuComponent(ArchivedFmu):
         if status > WARNING:
             self._check(status, Call.GET)
 
-    checked = False  # whether it is seen that exchanged outputs are finite numbers
-
     def by_address(self) -> ByFunctions:
         """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here."""
         taken, given = self._held
@@ -254,7 +252,7 @@ class FmuComponent(ArchivedFmu):
             get_integer=_address(self._get_integer),
             taken=taken,
             given=given,
-            checked=self.checked,
+            checked=False,
         )
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:

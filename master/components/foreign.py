@@ -5,12 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Call
+from touchdown.master.components.component import ByFunctions, Call
 from touchdown.master.components.fmu import FmuComponent, untold
 
 
@@ -65,7 +66,8 @@ class ForeignFmu(FmuComponent):
         if self._stepping and not np.isfinite(self.outputs.sum()):
             self._refuse_what_is_no_number()
 
-    checked = True
+    def by_address(self) -> ByFunctions:
+        return replace(super().by_address(), checked=True)
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
         self._reached = time + step

@@ -29,6 +29,7 @@ AT_ONCE: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
 CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
 NO_ROWS = np.zeros((0, 0))
 PATIENCE = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
+MOST = 1024  # macro steps of a stretch: a contact may make the next ones a hundred times slower
 
 
 class Stretches:
@@ -62,7 +63,7 @@ class Stretches:
         if took > 0.5 * PATIENCE:
             self._longest = max(1, self._longest // 2)
         elif now.done - done == self._longest:
-            self._longest *= 2
+            self._longest = min(2 * self._longest, MOST)
 
     def _get_ready(self, now: Moment) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""

@@ -34,7 +34,7 @@ def tables(stepper: GaussSeidel, recorder: Recorder | None) -> Tables | None:
     """The tables of a stepper's system; None where a component cannot be stepped by address."""
     entries: list[Entry] = []
     for turn in stepper.turns:
-        entry = turn.component.by_address()
+        entry = turn.component.by_address() if _as_written(turn.component) else None
         if entry is None:
             return None
         entries.append(entry)
@@ -43,6 +43,17 @@ def tables(stepper: GaussSeidel, recorder: Recorder | None) -> Tables | None:
     if recorder is not None:
         _add_columns(made, entries, recorder)
     return made
+
+
+def _as_written(component: Component) -> bool:
+    """Whether `by_address` speaks of the component's own methods, and not of some that were replaced."""
+
+    def depth(method: str) -> int:
+        if method in vars(component):
+            return -1
+        return next(i for i, kind in enumerate(type(component).__mro__) if method in vars(kind))
+
+    return min(map(depth, ("push", "step", "pull"))) >= depth("by_address")
 
 
 def _address(array: np.ndarray) -> int:

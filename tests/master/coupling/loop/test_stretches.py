@@ -253,3 +253,25 @@ def test_a_sequence_of_ones_own_is_kept(both: Both, monkeypatch: pytest.MonkeyPa
         monkeypatch.setattr("touchdown.master.coupling.simulation.stepper", kind)
         both.run(scene, both.folder / "r.h5")
         assert both.stepped == stepped
+
+
+def test_a_method_that_was_replaced_is_called(both: Both) -> None:
+    """Of one component, or of its kind."""
+
+    class Late(TwinComponent):
+        def step(self, time: float, step: float) -> None:
+            calls.append(time)
+            super().step(time, step)
+
+    calls: list[float] = []
+    scene = rotor_on("bushing", {"mass": 1.0}, duration=1e-3, macro_step=1e-5)
+    for replaced in (False, True):
+        with opened(scene, in_process=True) as system:
+            rotor = system.components["rotor"]
+            assert isinstance(rotor, TwinComponent)
+            if replaced:
+                rotor.step = lambda time, step, own=rotor.step: (calls.append(time), own(time, step))[1]
+            else:
+                rotor.__class__ = Late
+            simulate(scene, system)
+        assert len(calls) == 100 * (1 + replaced)
