@@ -124,22 +124,22 @@ def simulate(
             steps = Stretches(MacroSteps(coupling, ledger, shortening), judge, recorder, told)
             wall_time, compiling = _loop(steps, told, now, interrupted)
     return replace(
-        _heard(ledger, judge),
-        shorter_steps=shortening.times(now),
-        steps=now.done,
-        zero=zero,
-        end=now.time,
+        _seen(now, ledger, judge, shortening),
         wall_time=wall_time,
         start_up=start_up + compiling,
-        ended=now.ended or Ended.COMPLETED,
-        reason=now.reason,
         coupling=coupling.figures,
     )
 
 
-def _heard(ledger: Ledger, judge: Judge) -> Outcome:
-    """What the ledger heard, and what came of it."""
+def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
+    """Where the run ended, what the ledger heard, and what came of it."""
     return Outcome(
+        steps=now.done,
+        zero=now.zero,
+        end=now.time,
+        ended=now.ended or Ended.COMPLETED,
+        reason=now.reason,
+        shorter_steps=shortening.times(now),
         residual=ledger.residual,
         share=ledger.worst_share,
         worst=ledger.worst_title,
