@@ -78,9 +78,10 @@ def _require_numba() -> None:
     numbers = tuple(int(part) for part in found.split(".")[:2])
     first, last = (".".join(map(str, limit)) for limit in NUMBA)
     if not NUMBA[0] <= numbers <= NUMBA[1]:
+        tried = first if first == last else f"{first} to {last}"
         raise NativeError(
-            f"native FMUs are built with numba {first} to {last}, this is {found}; "
-            f"pip install 'numba>={first},<{last}.99' in an environment for building"
+            f"native FMUs are built with numba {tried}, this is {found}; "
+            "pip install 'touchdown-cosim[native]' brings one"
         )
 
 

@@ -575,13 +575,14 @@ API Status fmi2SetFMUstate(Fmu *f, const Saved *state)
 
 API Status fmi2SerializedFMUstateSize(Fmu *f, const Saved *state, size_t *size)
 {
-    (void)f;
+    if (!state) return FAIL(f, SAY_FOREIGN_STATE);
     *size = state->size;
     return OK;
 }
 
 API Status fmi2SerializeFMUstate(Fmu *f, const Saved *state, char bytes[], size_t size)
 {
+    if (!state) return FAIL(f, SAY_FOREIGN_STATE);
     if (size < state->size) return FAIL(f, SAY_NO_ROOM);
     memcpy(bytes, state->bytes, state->size);
     return OK;

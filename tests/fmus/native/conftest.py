@@ -1,4 +1,4 @@
-"""Native FMUs for tests, each built once; those of the dear models only by tests marked as long."""
+"""Native FMUs for tests, each built once; those of the dear models only by tests marked `native`."""
 
 from __future__ import annotations
 

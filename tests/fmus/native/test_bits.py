@@ -19,9 +19,9 @@ from touchdown.modelkit.variables import Causality, Scalar
 Native = Callable[[str], Path]
 STEP = 2e-5  # s
 SETS = 10  # of parameters
-CHEAP = {"housing": 1000, "rigid_rotor": 1000, "bushing": 1000, "rotor_I": 60}  # macro steps
+CHEAP = {"housing": 1000, "rigid_rotor": 1000, "bushing": 300, "rotor_I": 40}  # macro steps
 DEAR = dict.fromkeys(sorted(set(names()) - set(CHEAP)), 200)
-CASES = [*CHEAP.items(), *(pytest.param(*case, marks=pytest.mark.long) for case in DEAR.items())]
+CASES = [*CHEAP.items(), *(pytest.param(*case, marks=pytest.mark.native) for case in DEAR.items())]
 WHOLE = {"modes": (2, 5, 10), "residual": (0, 1)}  # that rotors hold constants for
 
 

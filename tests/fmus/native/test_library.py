@@ -27,7 +27,8 @@ from touchdown.modelkit.model import slots
 Native = Callable[[str], Path]
 CHEAP = ("housing", "rigid_rotor", "bushing", "rotor_I")
 every_model = pytest.mark.parametrize(
-    "fmu", [*CHEAP, *(pytest.param(name, marks=pytest.mark.long) for name in names() if name not in CHEAP)]
+    "fmu",
+    [*CHEAP, *(pytest.param(name, marks=pytest.mark.native) for name in names() if name not in CHEAP)],
 )
 GLIBC = {"libc.so.6", "libm.so.6"}
 
@@ -186,7 +187,7 @@ def test_what_is_missing_is_named(
 HEADS = {".so": b"\x7fELF", ".dll": b"MZ", ".dylib": b"\xcf\xfa\xed\xfe"}
 
 
-@pytest.mark.long
+@pytest.mark.native
 def test_one_file_holds_libraries_for_all_machines(tmp_path: Path):
     """Built where zig's compiler is installed; those that run here are tried elsewhere in these tests."""
     if compiler._zig() is None:

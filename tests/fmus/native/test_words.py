@@ -15,7 +15,7 @@ from touchdown.fmus.recipes import names
 Alone = Callable[..., subprocess.CompletedProcess[str]]
 Native = Callable[[str], Path]
 CHEAP = ("housing", "rigid_rotor", "bushing")
-DEAR = [pytest.param(name, marks=pytest.mark.long) for name in names() if name not in CHEAP]
+DEAR = [pytest.param(name, marks=pytest.mark.native) for name in names() if name not in CHEAP]
 
 SAID = """
 import json, math
