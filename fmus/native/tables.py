@@ -58,22 +58,34 @@ class Held:
         return "; ".join(f"{name} = {', '.join(map(str, dict.fromkeys(c)))}" for name, c in columns)
 
 
+ARRAYS = ("slots", "access", "defaults", "begun", "problems", "keys", "tables")  # by their names in C
+PARTS = {  # of the memory, by what the FMI side calls where they begin
+    "parameters": "p",
+    "inputs": "u",
+    "outputs": "o",
+    "hidden": "s",
+    "weights": "weight",
+    "derived": "d",
+    "told": "told",
+    "time": "time",
+    "evaluations": "evaluations",
+}
+
+
 def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> str:
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
 
     entries: `settle`, `start` and `advance` of model.h in C, where its kernels are not numba's.
     """
     exposed = slots(model)
-    fields: Any = model.memory.fields
-    at = {part: fields[part][1] // 8 for part in model.memory.names or ()}
-    fresh = Instance(model)
-    begun = _begun(model)
+    begins, begun = Instance(model).words, _begun(model)
     keys = [next(s.index for s in exposed if s.variable.name == name) for name in model.tabulated]
+    at = _places(model)
     sections = [
         '#include "model.h"\n\n#include <math.h>',
         entries,
-        *_slots(exposed, at["s"]),
-        _words("DEFAULTS", fresh.words),
+        *_slots(exposed, at["hidden"]),
+        _words("DEFAULTS", begins),
         _words("BEGUN", begun),
         *_problems(model),
         *_tables(model, held),
@@ -81,34 +93,26 @@ def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> s
     ]
     members = {
         "guid": quoted(identity),
-        "slots": "SLOTS",
-        "access": "ACCESS",
-        "defaults": "DEFAULTS",
-        "begun": "BEGUN",
-        "problems": "PROBLEMS",
-        "keys": "KEYS",
-        "tables": "TABLES",
         "held": quoted(held.told(model)),
+        **{name: name.upper() for name in ARRAYS},
         "slot_count": len(exposed),
-        "default_count": _filled(fresh.words),
+        "default_count": _filled(begins),
         "begun_count": _filled(begun),
         "problem_count": len(model.problems),
         "key_count": len(keys),
         "table_count": len(held.choices),
-        "words": len(fresh.words),
+        "words": len(begins),
         "scratch": scratch_words(model),
-        "parameters": at["p"],
-        "inputs": at["u"],
-        "outputs": at["o"],
-        "hidden": at["s"],
-        "weights": at["weight"],
-        "derived": at["d"],
-        "told": at["told"],
-        "time": at["time"],
-        "evaluations": at["evaluations"],
+        **at,
     }
     body = "".join(f"    .{name} = {value},\n" for name, value in members.items())
     return "\n".join([*sections, f"const Model MODEL = {{\n{body}}};\n"])
+
+
+def _places(model: Model) -> dict[str, int]:
+    """Where the parts of the memory begin that the FMI side knows, in words."""
+    fields: Any = model.memory.fields
+    return {name: fields[part][1] // 8 for name, part in PARTS.items()}
 
 
 def constants(model: Model, choice: Choice) -> np.ndarray:
