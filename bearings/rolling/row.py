@@ -193,7 +193,7 @@ def _find_neighbours(q, m):
     """Balls in the state q that touch the next one, and what their forces hang on (`sides.chain`)."""
     p, d, at, before = m.p, m.d, m.s.balls, m.s.before
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
-    angle, answers = part(q, ANGLE, m), (2.0 * rb * rb / d.inertia, 1.0 / d.mass)
+    angle, spun = part(q, ANGLE, m), 2.0 * rb * rb / d.inertia
     for b in range(count):
         k = after(b, count)
         between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
@@ -207,6 +207,7 @@ def _find_neighbours(q, m):
         following, this = _along_chord(q, k, lever, m), _along_chord(q, b, lever, m)
         rates = _along_chord(before, k, lever, m), _along_chord(before, b, lever, m)
         place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
+        answers = spun, lever * lever / (rm * rm * d.mass)
         link(b, count, following, this, rates, place, d.ball_contact, answers, m)
 
 

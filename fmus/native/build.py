@@ -11,6 +11,7 @@ from functools import cache
 from importlib.metadata import version
 from itertools import product
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import tostring
 
 from pythonfmu import Fmi2Slave
@@ -114,7 +115,8 @@ def _held(model: Model, native: Native) -> Held:
         return Held()
     assert model.tabulated == ("modes", "residual")
     held: list[Choice] = []
-    for choice in product(dict.fromkeys(native.modes), (1, 0)):
+    started: Any = model.parameters()  # with its own number of modes: hosts may set nothing
+    for choice in product(dict.fromkeys((*native.modes, started.modes)), (1, 0)):
         problem = _refusal(model, dict(zip(model.tabulated, choice, strict=True)))
         if problem and not native.lenient:
             raise NativeError(f"{model.name}: {problem}")

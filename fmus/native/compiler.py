@@ -65,10 +65,13 @@ def command(target: Target) -> list[str]:
     if zig is not None:
         return [zig, "cc", "-target", target.zig]
     system = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if target == here() and system is not None:
+    own = here()
+    local = own is not None and target.zig == own.zig
+    if local and system is not None:
         return [system]
-    what = "a C compiler, the system's cc or zig's" if target == here() else "zig's compiler"
-    raise NativeError(f"{target.name} needs {what}; pip install 'touchdown-cosim[native]' brings zig's")
+    what = "a C compiler, the system's cc or zig's" if local else "zig's compiler"
+    install = f"python3 -m pip --python {sys.executable} install ziglang"
+    raise NativeError(f"{target.name} needs {what}; {install} brings zig's")
 
 
 def _zig() -> str | None:

@@ -95,9 +95,13 @@ def recipe_in_c(path: Path) -> Recipe:
         raise NativeError(f"cannot read {path}: {type(error).__name__}: {error}") from None
     if not isinstance(model, Model) or not isinstance(model.advance, InC):
         raise NativeError(f"{path} declares no MODEL made by in_c")
+    identifier = "".join(part.capitalize() for part in re.split(r"\W|_", model.name))
+    if not re.fullmatch(r"[A-Za-z]\w*", identifier, re.ASCII):
+        raise NativeError(
+            f"{path}: {model.name!r} cannot name an FMU; begin with a letter, go on with a-z, 0-9, _"
+        )
     text = _text(model.advance.source)
     content = hashlib.sha256(f"{path.read_text(encoding='utf-8')}\0{text}".encode()).hexdigest()[:16]
-    identifier = "".join(part.capitalize() for part in re.split(r"\W|_", model.name))
     return Recipe(model.name, identifier, "", content, replace(model, content=content))
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import platform
 import subprocess
 import sys
 import tempfile
@@ -44,7 +45,8 @@ def bitcode(model: Model) -> bytes:
     order = _order(model)
     text = json.dumps(order, sort_keys=True)
     own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
-    key = hashlib.sha256(f"{text} {own} {version('numba')} {version('llvmlite')}".encode()).hexdigest()[:24]
+    made = (text, own, version("numba"), version("llvmlite"), _processor())
+    key = hashlib.sha256(" ".join(made).encode()).hexdigest()[:24]
     kept = own_folder("machine-code", source_hash()) / f"native-{key}.bc"
     code = unsealed(kept)
     if code is None:
@@ -73,6 +75,11 @@ def _state_size(model: Model) -> int:
     return fields["q"][0].shape[0]
 
 
+def _processor() -> str:
+    """That loops are shaped for, as LLVM calls it."""
+    return PROCESSOR.get(platform.machine(), "generic")
+
+
 def _require_numba() -> None:
     found = version("numba")
     numbers = tuple(int(part) for part in found.split(".")[:2])
@@ -81,26 +88,23 @@ def _require_numba() -> None:
         tried = first if first == last else f"{first} to {last}"
         raise NativeError(
             f"native FMUs are built with numba {tried}, this is {found}; "
-            "pip install 'touchdown-cosim[native]' brings one"
+            f"python3 -m pip --python {sys.executable} install 'numba=={last}.*' brings one"
         )
 
 
 def _compiled_elsewhere(name: str, order: str) -> bytes:
     """Compile in a process of its own, which is told the processor before it imports numba."""
-    import platform
-
     environment = {
-        **os.environ,
-        "NUMBA_CPU_NAME": PROCESSOR.get(platform.machine(), "generic"),
+        **{name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")},
+        "NUMBA_CPU_NAME": _processor(),
         "NUMBA_CPU_FEATURES": "",
         "PYTHONHASHSEED": "0",  # equal sources, equal code
         "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
     }
-    for unwanted in ("NUMBA_DISABLE_JIT", "NUMBA_DEBUG", "NUMBA_OPT"):
-        environment.pop(unwanted, None)
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         target = Path(folder) / "kernels.bc"
-        command = [sys.executable, "-m", __name__, str(target), order]
+        # -P: what lies in the current folder is not imported
+        command = [sys.executable, "-P", "-m", __name__, str(target), order]
         done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
         if done.returncode or not target.is_file():
             said = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
@@ -130,7 +134,11 @@ def compile_entries(order: Mapping[str, Any]) -> bytes:
     assert whole is not None
     _drop_unused(whole)
     whole.verify()
-    left = [f.name for f in whole.functions if f.is_declaration and f.name.startswith(("llvm.x86", "Py"))]
+    left = [
+        f.name
+        for f in whole.functions
+        if f.is_declaration and f.name.startswith(("llvm.x86", "llvm.aarch64", "Py"))
+    ]
     if left:
         raise NativeError(f"they need {', '.join(left)}")
     return whole.as_bitcode()

@@ -55,13 +55,26 @@ def here() -> Target | None:
     return TARGETS.get(f"{system}-{_PROCESSORS.get(machine, machine)}")
 
 
+def _least() -> Target | None:
+    """The target for the machine this runs on: the plainer one where its processor is older."""
+    own = here()
+    if own is None or not own.checked:
+        return own
+    from llvmlite.binding import get_host_cpu_features  # slow to import
+
+    has = get_host_cpu_features()
+    return (
+        own if all(has.get(feature) for feature in ("avx2", "fma", "bmi2")) else TARGETS[f"{own.name}-v2"]
+    )
+
+
 def chosen(names: list[str]) -> tuple[Target, ...]:
     """Targets by name, each once; none: this machine. Raises NativeError for an unknown name."""
     known = ", ".join(TARGETS)
     for name in names:
         if name not in TARGETS:
             raise NativeError(f"there is no target {name}; there are {known}")
-    own = here()
+    own = _least()
     if names:
         found = tuple(TARGETS[name] for name in dict.fromkeys(names))
         _require_apart(found)

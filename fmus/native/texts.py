@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from string import Formatter
 
 from touchdown.fmus import refusals as calls
+from touchdown.fmus.native.targets import NativeError
 from touchdown.fmus.slave import LATE
 from touchdown.modelkit import refusals as steps
 from touchdown.modelkit import status
@@ -50,9 +51,9 @@ def printf(template: str) -> tuple[str, list[str]]:
 
 
 def quoted(text: str) -> str:
-    """A literal of C. Raises ValueError where it is not plain ASCII."""
+    """A literal of C. Raises NativeError where it is not plain ASCII."""
     if not text.isascii() or not text.isprintable():
-        raise ValueError(f"{text!r} is not plain ASCII")
+        raise NativeError(f"{text!r} is not plain ASCII, which C can be sure to print; choose another word")
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 

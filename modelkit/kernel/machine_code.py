@@ -106,7 +106,7 @@ def sealed(data: bytes) -> bytes:
 
 
 def unsealed(path: Path) -> bytes | None:
-    """What `_sealed` was given; None where the file is missing, damaged or another user's."""
+    """What `sealed` was given; None where the file is missing, damaged or another user's."""
     try:
         with path.open("rb") as file:
             if not is_own(os.fstat(file.fileno())):

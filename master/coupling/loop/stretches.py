@@ -19,7 +19,7 @@ from touchdown.master.coupling.loop.kernels.stretch import run
 from touchdown.master.coupling.loop.kernels.tables import FETCH, GET, PLAN, SET, STEP
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.tables import Tables, tables
-from touchdown.master.coupling.observer import Moment, Observer
+from touchdown.master.coupling.observer import BEAT, Moment, Observer
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.coupling.steppers.jacobi import Jacobi
@@ -29,7 +29,7 @@ AT_ONCE: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
 CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
 NO_ROWS = np.zeros((0, 0))
 PATIENCE = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
-MOST = 1024  # macro steps of a stretch: a contact may make the next ones a hundred times slower
+MOST = BEAT  # macro steps of a stretch: a contact may make the next ones a hundred times slower
 
 
 class Stretches:
@@ -103,6 +103,7 @@ class Stretches:
         failed = int(plan["failed"])
         turn, call = found.turns[failed], CALLS[int(plan["call"])]
         found.components[failed].refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
+        raise AssertionError(f"{found.components[failed].name} has nothing to say of {call}")
 
     def _ends(self, now: Moment, rows: int) -> int:
         """The macro step at which somebody in Python must look, or so many recorded rows are full."""

@@ -53,7 +53,7 @@ def _as_written(component: Component) -> bool:
             return -1
         return next(i for i, kind in enumerate(type(component).__mro__) if method in vars(kind))
 
-    return min(map(depth, ("push", "step", "pull"))) >= depth("by_address")
+    return min(map(depth, ("push", "step", "pull", "reader"))) >= depth("by_address")
 
 
 def _address(array: np.ndarray) -> int:

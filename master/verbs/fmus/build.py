@@ -17,13 +17,16 @@ EXAMPLES = (
     "touchdown build my-rotor.toml",
     "touchdown build --native -o build/native",
     "touchdown build housing --native --target linux-x86_64 windows-x86_64 -o build/native",
+    "touchdown build --native examples/rubber_ring.py -o build/native",
 )
 
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     names = verb.add_argument(
-        "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
+        "names",
+        nargs="*",
+        help="FMUs to build, rotor files (.toml), or with --native models in C (.py, which is run) (default: all)",
     )
     complete(names, completion.fmus)
     add_output(verb, Path("build"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -170,6 +171,27 @@ def test_ctrl_c(both: Both) -> None:
 
     outcome = both.compared(disk(), lambda: EveryBeat(interrupt))
     assert (outcome.ended, outcome.steps) == (Ended.INTERRUPTED, 2 * BEAT)
+
+
+def test_ctrl_c_within_a_stretch(both: Both) -> None:
+    """The run ends with the stretch at hand, long before its time."""
+    hand = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+
+    class Begun(Observer):
+        at_beats_only = True
+
+        def stepped(self, now: Moment) -> None:
+            if now.done == BEAT:
+                hand.start()
+
+        def due(self, now: Moment) -> int:
+            return BEAT if now.done < BEAT else now.steps
+
+    scene = disk(run__duration=200.0, run__record_every=1000)
+    outcome = both.run(scene, both.folder / "broken-off.h5", Begun)
+    assert outcome.ended is Ended.INTERRUPTED
+    assert BEAT < outcome.steps < 0.1 * 200.0 / 2e-5
+    assert both.stepped == 1
 
 
 def test_what_an_observer_keeps_and_ends(both: Both) -> None:
