@@ -93,7 +93,21 @@ def _require_numba() -> None:
 
 
 def _compiled_elsewhere(name: str, order: str) -> bytes:
-    """Compile in a process of its own, which is told the processor before it imports numba."""
+    """Compile in a process of its own."""
+    with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
+        target = Path(folder) / "kernels.bc"
+        done = run_apart(str(target), order)
+        if done.returncode or not target.is_file():
+            said = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
+            raise NativeError(f"the kernels of {name} cannot be compiled: {said[-1]}")
+        return target.read_bytes()
+
+
+def run_apart(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run this module as a program, which is told the processor before it imports numba.
+
+    What lies in the current folder is not imported (-P).
+    """
     environment = {
         **{name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")},
         "NUMBA_CPU_NAME": _processor(),
@@ -101,15 +115,8 @@ def _compiled_elsewhere(name: str, order: str) -> bytes:
         "PYTHONHASHSEED": "0",  # equal sources, equal code
         "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
     }
-    with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
-        target = Path(folder) / "kernels.bc"
-        # -P: what lies in the current folder is not imported
-        command = [sys.executable, "-P", "-m", __name__, str(target), order]
-        done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
-        if done.returncode or not target.is_file():
-            said = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
-            raise NativeError(f"the kernels of {name} cannot be compiled: {said[-1]}")
-        return target.read_bytes()
+    command = [sys.executable, "-P", "-m", __name__, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
 
 
 # -- in the process of its own -----------------------------------------------------------------------

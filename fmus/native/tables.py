@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from touchdown.fmus.native.kernels import PREFIX, scratch_words
-from touchdown.fmus.native.texts import printf, quoted
+from touchdown.fmus.native.texts import printf, quoted, word
 from touchdown.modelkit.instance import FIRST_STEP, Instance
 from touchdown.modelkit.model import Model, Slot, slots
 from touchdown.modelkit.variables import Causality, Scalar, as_tuple, layout
@@ -134,7 +134,7 @@ def _slots(exposed: Sequence[Slot], end: int) -> Iterator[str]:
             _number(spec.maximum, "INFINITY"),
         )
         yield (
-            f"    {{{quoted(slot.variable.name)}, {quoted(unit)}, {', '.join(bounds)}, {slot.index}, "
+            f"    {{{word(slot.variable.name)}, {word(unit)}, {', '.join(bounds)}, {slot.index}, "
             f"{_access(slot)}}},"
         )
     yield "};"

@@ -51,10 +51,17 @@ def printf(template: str) -> tuple[str, list[str]]:
 
 
 def quoted(text: str) -> str:
-    """A literal of C. Raises NativeError where it is not plain ASCII."""
+    """A literal of C. Raises NativeError where it is not plain ASCII, which C can be sure to print."""
     if not text.isascii() or not text.isprintable():
         raise NativeError(f"{text!r} is not plain ASCII, which C can be sure to print; choose another word")
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+
+
+def word(text: str) -> str:
+    """A literal of C for what goes into a text. Raises NativeError where a host's log would misread it."""
+    if "%" in text:  # FMI's log takes a format
+        raise NativeError(f"{text!r} has a percent sign, which begins a format in C; choose another word")
+    return quoted(text)
 
 
 def _templates(module: object) -> dict[str, str]:

@@ -26,7 +26,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
     names = verb.add_argument(
         "names",
         nargs="*",
-        help="FMUs to build, rotor files (.toml), or with --native models in C (.py, which is run) (default: all)",
+        help="FMUs to build, rotor files (.toml), or models in C (.py, which is run) (default: all)",
     )
     complete(names, completion.fmus)
     add_output(verb, Path("build"))

@@ -163,7 +163,7 @@ def test_a_wrong_option_is_named(
 @pytest.mark.parametrize(
     ("replaced", "answer", "named"),
     [
-        ("compiler.shutil.which", lambda name: None, "pip install 'touchdown-cosim[native]'"),
+        ("compiler.shutil.which", lambda name: None, "install ziglang brings zig's"),
         ("kernels.version", lambda name: "0.12.3", "this is 0.12.3"),
         ("compiler.FLAGS", ("-no-such-flag",), "failed: "),
     ],
@@ -224,3 +224,19 @@ def test_kernels_that_need_python_are_refused_by_name():
     )
     assert done.returncode == 1
     assert f"{NativeError.__name__}: they need Py" in done.stderr
+
+
+def test_what_lies_in_the_current_folder_is_not_imported(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Kernels are compiled by a program of its own, which a file called as a module must not mislead."""
+    (tmp_path / "json.py").write_text("raise SystemExit('json of the current folder')", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    done = kernels.run_apart("nowhere", "no order")
+    assert "json of the current folder" not in done.stderr
+    assert "JSONDecodeError" in done.stderr
+
+
+def test_a_unit_that_c_would_read_as_a_format_is_refused() -> None:
+    with pytest.raises(NativeError, match="%"):
+        texts.word("100 %")
