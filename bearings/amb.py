@@ -14,8 +14,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model
@@ -153,6 +151,16 @@ def report(q, m):
 
 
 @kernel
+def settle(words):
+    """Error weights of the state; returns 0: nothing can be wrong between the parameters."""
+    m = words.view(MEMORY)[0]
+    seat.set_weights(m.weight)
+    m.n = FY + 1
+    m.weight[FX] = m.weight[FY] = 1.0 / FORCE_SCALE if m.p.bandwidth > 0.0 else 0.0
+    return 0
+
+
+@kernel
 def start(words):
     """Find the static load that the seat reports, and hand it over until the first step is taken.
 
@@ -210,11 +218,6 @@ def advance(words, work, time, step):
     return seat.advance_timed(ready, react, integrate, report, words, m, work, time, step)
 
 
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    return seat.weights([0.0] + 2 * [1.0 / FORCE_SCALE if p.bandwidth > 0.0 else 0.0])
-
-
 _STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
 
 MODEL = Model(
@@ -226,9 +229,9 @@ MODEL = Model(
     outputs=Outputs,
     hidden=Hidden,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
     instant=instant,
     starts_from={
         f"{name}{axis}": (f"journal.a{axis}_free", *_STATIC, *when)

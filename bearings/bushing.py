@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import FrictionLaw, prepared, problem
+from touchdown.bearings.contact import bore
+from touchdown.bearings.contact.friction import FrictionLaw
 from touchdown.bearings.contact.journal import (
     RATE_FROM,
     ContactMemory,
@@ -22,10 +21,10 @@ from touchdown.bearings.contact.journal import (
     touch,
     watch_contact,
 )
-from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_energy
-from touchdown.bearings.contact.proportion import out_of_proportion
+from touchdown.bearings.contact.laws import ContactLaw, elastic_energy
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.model import Model, constants
+from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
 from touchdown.modelkit.variables import group, real
 
@@ -71,14 +70,24 @@ class Hidden:
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
+STATIC = Parameters().friction.static
+MASSLESS = len(bore.PROBLEMS) + 1  # number of the problem
+CONSTANTS, PROBLEMS = constants(
+    MEMORY,
+    (
+        *bore.PROBLEMS,
+        "contact.damping_ratio = {0:g} needs contact.mass above 0 kg; "
+        "a bushing does not know the mass of its journal",
+    ),
+)
 
 
 @kernel
 def react(t, q, dq, m):
     """`Load` on journal and housing (N, N m); inside there is only the heat, whose rate (W) goes to dq."""
     p = m.p
-    bore = seat.housing_motion(q)
-    j = touch(seat.journal_motion(q), bore, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
+    housing = seat.housing_motion(q)
+    j = touch(seat.journal_motion(q), housing, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
     note(m.s.touched, j)
     dq[LOSS] = j.loss
     return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
@@ -104,6 +113,23 @@ def report(q, m):
     c.sliding = q[seat.JW] * m.p.journal_radius
     m.o.energy.potential = elastic_energy(s.indentation, m.p.contact)
     m.o.energy.dissipated = q[LOSS]
+
+
+@kernel
+def settle(words):
+    """Fill in what the laws leave open, and the error weights; returns a problem's number, or 0."""
+    m = words.view(MEMORY)[0]
+    blank(words, CONSTANTS)
+    problem = bore.problem(m.p, STATIC, m.told)
+    if m.p.contact.damping_ratio > 0.0 and m.p.contact.mass == 0.0:
+        m.told[0] = m.p.contact.damping_ratio
+        problem = MASSLESS
+    if problem != 0:
+        return problem
+    bore.settle(m.d, m.p, m.p.contact.mass)
+    seat.set_weights(m.weight)
+    m.n = LOSS + 1
+    return missing(words, CONSTANTS)
 
 
 @kernel
@@ -134,31 +160,6 @@ def advance(words, work, time, step):
     return seat.advance(react, integrate, report, words, m, work, time, step)
 
 
-def derive(p: Parameters) -> Derived:
-    """Fill in what the laws leave open."""
-    return Derived(contact=damped(p.contact, p.contact.mass), friction=prepared(p.friction))
-
-
-def check(p: Parameters) -> str | None:
-    """What is wrong between the parameters."""
-    if p.contact.damping_ratio > 0.0 and p.contact.mass == 0.0:
-        return (
-            f"contact.damping_ratio = {p.contact.damping_ratio:g} needs contact.mass above 0 kg; "
-            "a bushing does not know the mass of its journal"
-        )
-    journal = "journal_radius", p.journal_radius
-    return (
-        out_of_proportion("clearance", p.clearance, *journal)
-        or out_of_proportion("contact.expected_indentation", p.contact.expected_indentation, *journal)
-        or problem(p, "friction")
-    )
-
-
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    return seat.weights([0.0])
-
-
 MODEL = Model(
     name="bushing",
     title="Plain touchdown bushing",
@@ -169,11 +170,10 @@ MODEL = Model(
     derived=Derived,
     hidden=Hidden,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
-    derive=derive,
-    check=check,
+    problems=PROBLEMS,
     instant=instant,
     starts_from={"contact.rate": RATE_FROM},
 )

@@ -13,7 +13,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from touchdown.bearings.rolling.balls import PRINTED, BallSet
+from touchdown.bearings.contact.stiffness import PRINTED
+from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.balls.geometry import ball_mass
 from touchdown.bearings.rolling.ring import Ring
 
 
@@ -45,7 +47,7 @@ class Bearing:
             "balls.hertz": b.hertz,
             "ring.mass": self.ring.mass,
             "ring.inertia": self.ring.inertia,
-            "cage.mass": 2.0 * b.ball_mass,
+            "cage.mass": 2.0 * ball_mass(b.rows, b.diameter, b.density),
             "rolling.static_rating": self.static_rating,
             "damping": self.damping,
         }

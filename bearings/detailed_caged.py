@@ -11,38 +11,31 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact import friction, proportion
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
 from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES
-from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, Coordinates
-from touchdown.bearings.rolling.bodies import cage, outputs
+from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts
+from touchdown.bearings.rolling.balls.geometry import EVEN, ball_mass, start_angle
+from touchdown.bearings.rolling.bodies import cage, declarations, outputs
 from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesDerived,
     BallBodiesMemory,
     BallBodiesOutputs,
     BallBodiesParameters,
-    derived,
-    problem,
 )
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
-from touchdown.bearings.rolling.bodies.state import (
-    ball_weights,
-    drift,
-    fastest,
-    place,
-    ring_weights,
-)
+from touchdown.bearings.rolling.bodies.state import drift, fastest, place, set_weights
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.side import stored
+from touchdown.bearings.rolling.sides.contact import stored
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.model import Model, constants
+from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
 from touchdown.modelkit.variables import array, group, real
 
@@ -87,6 +80,18 @@ class Derived(BallBodiesDerived):
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+STATIC = Parameters().cage_friction.static
+_SHARED = declarations.problems("cage_friction")
+SHARED = len(_SHARED)
+CONSTANTS, PROBLEMS = constants(
+    MEMORY,
+    (
+        *_SHARED,
+        "cage.clearance = {0:g} m makes a pocket of {1:g} m, smaller than its ball of {2:g} m; "
+        "it must be at least 0 m",
+        proportion.problem("cage.clearance", "half of balls.diameter"),
+    ),
+)
 
 
 @kernel
@@ -127,6 +132,55 @@ def report(q, m):
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
 
 
+@inlined
+def _problem(p, told):
+    """Number of what is wrong between the parameters p, or 0."""
+    b, clearance = p.balls, p.cage.clearance
+    if clearance < 0.0:
+        told[0], told[1], told[2] = clearance, b.diameter + 2.0 * clearance, b.diameter
+        found = SHARED + 1
+    elif out_of_proportion(clearance, 0.5 * b.diameter, told):
+        found = SHARED + 2
+    else:
+        found = declarations.problem(p, 0, p.cage_friction, STATIC, told)
+    return found
+
+
+@inlined
+def _settle_cage(m):
+    """Set in m.d the cage, its pockets and the laws in them; returns the lighter mass there (kg)."""
+    p, d, b = m.p, m.d, m.p.balls
+    radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b.rows, b.diameter, b.density), p.cage.mass)
+    d.cage_contact, d.cage_friction = p.cage_contact, p.cage_friction
+    lay_abreast(d.cage_contact, b.rows)
+    damp(d.cage_contact, lighter)
+    friction.settle(d.cage_friction)
+    d.cage_inertia = p.cage.inertia if p.cage.inertia != 0.0 else p.cage.mass * radius**2.0
+    d.cage_answer = 1.0 / p.cage.mass + radius**2.0 / d.cage_inertia
+    for i in range(b.count):
+        angle = start_angle(b.first_angle, b.count, EVEN, i)
+        d.pocket_x[i], d.pocket_y[i] = radius * math.cos(angle), radius * math.sin(angle)
+    return lighter
+
+
+@kernel
+def settle(words):
+    """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
+    m = words.view(MEMORY)[0]
+    size, count = m.d.size, m.p.balls.count
+    blank(words, CONSTANTS)
+    problem = _problem(m.p, m.told)
+    if problem != 0:
+        return problem
+    lighter = _settle_cage(m)
+    declarations.settle(m, EVEN, m.d.cage_contact, lighter)
+    size.coordinates, size.constraints = 9 + 3 * count, 1
+    size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
+    set_weights(m)
+    cage.set_weights(m)
+    return missing(words, CONSTANTS)
+
+
 @kernel
 def start(words):
     """Ring, balls and cage at rest, the first ball at its angle; words: the memory, in 8-byte words."""
@@ -163,51 +217,6 @@ def advance(words, work, time, step):
     return seat.advance(react, integrate, report, words, m, rows, time, step)
 
 
-def derive(p: Parameters) -> Derived:
-    """Stiffness and masses from geometry, and where everything starts."""
-    b = p.balls
-    unused = [0.0] * (MOST_BALLS - b.count)
-    inertia = p.cage.inertia or p.cage.mass * b.pitch_radius**2
-    of_cage = 1.0 / p.cage.mass + b.pitch_radius**2 / inertia
-    side = abreast(p.cage_contact, b.rows)
-    fields = derived(p, side, min(b.ball_mass, p.cage.mass))
-    return Derived(
-        **fields,  # type: ignore[arg-type]
-        cage_contact=damped(side, min(b.ball_mass, p.cage.mass)),
-        cage_friction=prepared(p.cage_friction),
-        cage_inertia=inertia,
-        cage_answer=of_cage,
-        size=Coordinates(
-            coordinates=9 + 3 * b.count,
-            constraints=1,
-            ball_cage=b.count,
-            ball_outer=b.count,
-            ball_inner=b.count,
-        ),
-        pocket_x=tuple([b.pitch_radius * math.cos(a) for a in b.angles()] + unused),
-        pocket_y=tuple([b.pitch_radius * math.sin(a) for a in b.angles()] + unused),
-    )
-
-
-def check(p: Parameters) -> str | None:
-    """What is wrong between the parameters."""
-    if p.cage.clearance < 0.0:
-        pocket = p.balls.diameter + 2.0 * p.cage.clearance
-        return (
-            f"cage.clearance = {p.cage.clearance:g} m makes a pocket of {pocket:g} m, smaller than its "
-            f"ball of {p.balls.diameter:g} m; it must be at least 0 m"
-        )
-    pocket = out_of_proportion(
-        "cage.clearance", p.cage.clearance, "half of balls.diameter", p.balls.ball_radius
-    )
-    return pocket or problem(p, "cage_friction")
-
-
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    return seat.weights(ring_weights(p) + ball_weights(p.balls.count) + cage.cage_weights(p.balls))
-
-
 MODEL = Model(
     name="detailed_caged",
     title="Detailed caged touchdown bearing",
@@ -218,11 +227,10 @@ MODEL = Model(
     derived=Derived,
     hidden=BallBodiesMemory,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
-    derive=derive,
-    check=check,
+    problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_cage", "ball_outer", "ball_inner"),
 )

@@ -13,42 +13,41 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
-from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
+from touchdown.bearings.contact import friction
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
+from touchdown.bearings.contact.pair import OUTSIDE, Place
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES, part
-from touchdown.bearings.rolling.balls import BallContacts, Coordinates, FreeBallSet
-from touchdown.bearings.rolling.bodies import outputs
+from touchdown.bearings.rolling.balls import BallContacts, FreeBallSet
+from touchdown.bearings.rolling.balls.geometry import ball_mass, spread_of
+from touchdown.bearings.rolling.bodies import declarations, outputs
 from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesDerived,
     BallBodiesMemory,
     BallBodiesOutputs,
     BallBodiesParameters,
-    derived,
-    problem,
 )
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import (
     X,
     Y,
     ball_motion,
-    ball_weights,
     drift,
     fastest,
     place,
     push,
-    ring_weights,
+    set_weights,
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.side import heat_of, note, note_apart, stored
+from touchdown.bearings.rolling.sides.chain import Chain, after, link, part_ways, press_of, share
+from touchdown.bearings.rolling.sides.contact import heat_of, stored
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.model import Model, constants
+from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
 from touchdown.modelkit.variables import group, real
 
@@ -87,46 +86,50 @@ class Derived(BallBodiesDerived):
     ball_friction: FrictionLaw = group(FrictionLaw)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
+@dataclass(frozen=True)
+class Memory(BallBodiesMemory):
+    """Memory between evaluations and steps."""
+
+    chain: Chain = group(Chain)
+
+
+MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Memory)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+STATIC = Parameters().ball_friction.static
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
 
 
 @kernel
 def _neighbour_contacts(q, dq, m):
     """Each ball in q against the next; adds to the balls' derivatives in dq."""
-    p, d = m.p, m.d
-    count, apart = p.balls.count, 2.0 * d.ball_radius
+    d, s, count = m.d, m.s, m.p.balls.count
+    _find_neighbours(q, m)
+    share(s.side, s.chain, count)
+    for b in range(count):
+        if s.side.indentation[b] > 0.0:
+            c = press_of(b, d.ball_contact, d.ball_friction, m)
+            push(dq, after(b, count), c.fx, c.fy, c.first_moment, m)
+            push(dq, b, -c.fx, -c.fy, c.second_moment, m)
+
+
+@kernel
+def _find_neighbours(q, m):
+    """Balls in q that touch the next one, and what their forces hang on (`sides.chain`)."""
+    d, before, count, apart = m.d, m.s.before, m.p.balls.count, 2.0 * m.d.ball_radius
     x, y = part(q, X, m), part(q, Y, m)
     for b in range(count):
-        k = b + 1 if b + 1 < count else 0
+        k = after(b, count)
         ex, ey = x[k] - x[b], y[k] - y[b]
         square = ex * ex + ey * ey
         if square >= apart * apart:
-            note_apart(m.s.side, b)
+            part_ways(m.s.side, b)
             continue
         distance = math.sqrt(square)
         half = 0.5 * distance
         at = Place(ex / distance, ey / distance, apart - distance, -half, half, 0.0)
-        this, following = ball_motion(q, b, m), ball_motion(q, k, m)
-        kick = _kick(b, k, at, m)
-        c = press(following, this, at, OUTSIDE, d.ball_contact, d.ball_friction, kick)
-        note(m.s.side, b, c, at, d.ball_contact)
-        push(dq, k, c.fx, c.fy, c.first_moment, m)
-        push(dq, b, -c.fx, -c.fy, c.second_moment, m)
-
-
-@kernel
-def _kick(b, k, place, m):
-    """The `Kick` of balls `b` and `k`, the next.
-
-    The answer along n is doubled: the neighbours on either side push as they did in the kick before, and a
-    row of balls under much damping would else swing from kick to kick.
-    """
-    d, before, side = m.d, m.s.before, m.s.side
-    answers = 2.0 / d.mass + 2.0 * place.second * place.second / d.inertia, 4.0 / d.mass
-    first, second = ball_motion(before, k, m), ball_motion(before, b, m)
-    last = side.tangential[b], side.normal[b]
-    return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+        rates = ball_motion(before, k, m), ball_motion(before, b, m)
+        answers = 2.0 / d.mass + 2.0 * half * half / d.inertia, 1.0 / d.mass
+        link(b, count, ball_motion(q, k, m), ball_motion(q, b, m), rates, at, d.ball_contact, answers, m)
 
 
 @kernel
@@ -135,7 +138,7 @@ def _rubbing(dq, m):
     loss, count = 0.0, m.p.balls.count
     for b in range(count):
         if m.s.side.indentation[b] > 0.0:
-            k = b + 1 if b + 1 < count else 0
+            k = after(b, count)
             this, following = ball_motion(dq, b, m), ball_motion(dq, k, m)
             loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
     return loss
@@ -179,6 +182,27 @@ def report(q, m):
 
 
 @kernel
+def settle(words):
+    """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
+    m = words.view(MEMORY)[0]
+    p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
+    blank(words, CONSTANTS)
+    problem = declarations.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
+    if problem != 0:
+        return problem
+    d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
+    lay_abreast(d.ball_contact, p.balls.rows)
+    mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
+    damp(d.ball_contact, mass)
+    friction.settle(d.ball_friction)
+    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass)
+    size.coordinates, size.constraints = 6 + 3 * count, 1
+    size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
+    set_weights(m)
+    return missing(words, CONSTANTS)
+
+
+@kernel
 def start(words):
     """Ring and balls at rest, the first ball at its angle; words: the memory, in 8-byte words."""
     m = words.view(MEMORY)[0]
@@ -213,35 +237,6 @@ def advance(words, work, time, step):
     return seat.advance(react, integrate, report, words, m, rows, time, step)
 
 
-def derive(p: Parameters) -> Derived:
-    """Stiffness and masses from geometry, and where everything starts."""
-    b = p.balls
-    side = abreast(p.ball_contact, b.rows)
-    fields = derived(p, side, 0.5 * b.ball_mass)
-    return Derived(
-        **fields,  # type: ignore[arg-type]
-        ball_contact=damped(side, b.ball_mass),
-        ball_friction=prepared(p.ball_friction),
-        size=Coordinates(
-            coordinates=6 + 3 * b.count,
-            constraints=1,
-            ball_ball=b.count,
-            ball_outer=b.count,
-            ball_inner=b.count,
-        ),
-    )
-
-
-def check(p: Parameters) -> str | None:
-    """What is wrong between the parameters."""
-    return problem(p, "ball_friction")
-
-
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    return seat.weights(ring_weights(p) + ball_weights(p.balls.count))
-
-
 MODEL = Model(
     name="detailed_cageless",
     title="Detailed cageless touchdown bearing",
@@ -250,13 +245,12 @@ MODEL = Model(
     inputs=seat.BearingInputs,
     outputs=Outputs,
     derived=Derived,
-    hidden=BallBodiesMemory,
+    hidden=Memory,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
-    derive=derive,
-    check=check,
+    problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_ball", "ball_outer", "ball_inner"),
 )

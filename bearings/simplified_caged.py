@@ -20,21 +20,25 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.laws import ContactLaw, damped, elastic_force
+from touchdown.bearings.contact import friction
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.laws import ContactLaw, elastic_force
 from touchdown.bearings.contact.peaks import Largest
-from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.balls import MOST_BALLS, Coordinates, Total, watch_balls
+from touchdown.bearings.rolling import declarations, ring
+from touchdown.bearings.rolling.balls import MOST_BALLS, Total, watch_balls
+from touchdown.bearings.rolling.balls.geometry import (
+    EVEN,
+    ball_inertia,
+    ball_mass,
+    set_race_law,
+    start_angle,
+)
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
     RollingParameters,
-    problem,
-    race_stiffness,
     starts_from,
     state_constants,
 )
@@ -47,8 +51,9 @@ from touchdown.bearings.rolling.pitch_circle import (
     note,
     rolling_drag,
 )
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.model import Model, constants
+from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
 from touchdown.modelkit.variables import array, group, integer, real
 
@@ -132,6 +137,8 @@ class Hidden(RollingMemory):
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, ring.NEXT + 3, derived=Derived, hidden=Hidden)
+STATIC = Parameters().race_friction.static
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction"))
 
 
 @kernel
@@ -261,6 +268,58 @@ def report(q, m):
     ring.report_energy(q, m, inside, s.energy, d.ring_inertia)
 
 
+@inlined
+def _settle_turning(m):
+    """Set in m.d what turns: radii, inertia, ratios of speeds, where the balls start."""
+    p, d, b = m.p, m.d, m.p.balls
+    d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
+    d.cage_ratio = 0.5 * d.inner_radius / d.pitch_radius
+    d.ball_ratio = -0.5 * d.inner_radius / d.ball_radius
+    square = d.pitch_radius**2.0
+    d.orbiting = p.cage.mass * square + b.count * d.mass * square
+    d.spinning = b.count * ball_inertia(d.mass, b.diameter)
+    d.ring_inertia = p.ring.inertia
+    if p.slip == 0:
+        d.ring_inertia += d.orbiting * d.cage_ratio**2.0 + d.spinning * d.ball_ratio**2.0
+    for i in range(b.count):
+        angle = start_angle(b.first_angle, b.count, EVEN, i)
+        d.cosine[i], d.sine[i] = math.cos(angle), math.sin(angle)
+
+
+@inlined
+def _set_weights(m):
+    """Error weights, and how many components are in use: cage and balls where they may slip."""
+    w = m.weight
+    seat.set_weights(w)
+    ring.set_weights(w)
+    m.n = ring.NEXT
+    if m.p.slip == 1:
+        w[CAGE_ANGLE] = m.d.pitch_radius / seat.POSITION_SCALE
+        w[CAGE_SPEED], w[BALL_SPIN] = 1.0 / ORBIT_SCALE, 1.0 / seat.SPIN_SCALE
+        m.n += 3
+
+
+@kernel
+def settle(words):
+    """Stiffness, inertia and ratios from geometry, and error weights; returns a problem's number, or 0."""
+    m = words.view(MEMORY)[0]
+    p, d = m.p, m.d
+    blank(words, CONSTANTS)
+    problem = declarations.problem(p, 0, m.told)
+    problem = declarations.law_problem(problem, p.race_friction, STATIC, declarations.OWN, m.told)
+    if problem != 0:
+        return problem
+    declarations.settle(m, EVEN)
+    d.mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
+    set_race_law(d.race, p.balls, d.stiffness.series, d.mass)
+    d.race_friction = p.race_friction
+    friction.settle(d.race_friction)
+    d.size.coordinates, d.size.rings = 5 + 2 * p.slip, p.balls.count
+    _settle_turning(m)
+    _set_weights(m)
+    return missing(words, CONSTANTS)
+
+
 @kernel
 def start(words):
     """The ring at rest on the balls, the first of them at its angle; words: the memory, in 8-byte words."""
@@ -291,52 +350,6 @@ def advance(words, work, time, step):
     return seat.advance(react, integrate, report, words, m, work, time, step)
 
 
-def derive(p: Parameters) -> Derived:
-    """Stiffness, inertia and ratios from geometry."""
-    b = p.balls
-    cage_ratio = 0.5 * b.inner_radius / b.pitch_radius
-    ball_ratio = -0.5 * b.inner_radius / b.ball_radius
-    cage_inertia = p.cage.mass * b.pitch_radius**2
-    orbiting = cage_inertia + b.count * b.ball_mass * b.pitch_radius**2
-    spinning = b.count * b.ball_inertia
-    carried = 0.0 if p.slip else orbiting * cage_ratio**2 + spinning * ball_ratio**2
-    angles = b.angles()
-    rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
-    unused = [0.0] * (MOST_BALLS - b.count)
-    return Derived(
-        contact=damped(p.contact, p.ring.mass),
-        friction=prepared(p.friction),
-        race=b.race_law(b.series_stiffness()),
-        stiffness=race_stiffness(b),
-        size=Coordinates(coordinates=5 + 2 * p.slip, rings=b.count),
-        race_friction=prepared(p.race_friction),
-        mass=b.ball_mass,
-        ball_radius=b.ball_radius,
-        pitch_radius=b.pitch_radius,
-        ring_inertia=p.ring.inertia + carried,
-        orbiting=orbiting,
-        spinning=spinning,
-        cage_ratio=cage_ratio,
-        ball_ratio=ball_ratio,
-        inner_radius=b.inner_radius,
-        rest_x=rest_x,
-        rest_y=rest_y,
-        cosine=tuple([math.cos(a) for a in angles] + unused),
-        sine=tuple([math.sin(a) for a in angles] + unused),
-    )
-
-
-def check(p: Parameters) -> str | None:
-    """What is wrong between the parameters."""
-    return problem(p, "friction", "race_friction")
-
-
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    slipping = [p.balls.pitch_radius / seat.POSITION_SCALE, 1.0 / ORBIT_SCALE, 1.0 / seat.SPIN_SCALE]
-    return seat.weights(ring.error_weights() + (slipping if p.slip else []))
-
-
 MODEL = Model(
     name="simplified_caged",
     title="Simplified caged touchdown bearing",
@@ -347,11 +360,10 @@ MODEL = Model(
     derived=Derived,
     hidden=Hidden,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
-    derive=derive,
-    check=check,
+    problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("rings") | {"size.coordinates": ("slip",)},
 )

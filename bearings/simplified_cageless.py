@@ -35,35 +35,43 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.laws import ContactLaw, abreast, damped
+from touchdown.bearings.contact import friction
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
 from touchdown.bearings.contact.peaks import PeakMemory, watch_peaks
-from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import part
-from touchdown.bearings.rolling.balls import (
-    MOST_BALLS,
-    BallContacts,
-    Coordinates,
-    FreeBallSet,
-    largest,
-    watch_balls,
+from touchdown.bearings.rolling import declarations, ring
+from touchdown.bearings.rolling.ball_state import BALLS, part
+from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, FreeBallSet, largest, watch_balls
+from touchdown.bearings.rolling.balls.geometry import (
+    ball_inertia,
+    ball_mass,
+    outer_share,
+    set_race_law,
+    spread_of,
+    start_angle,
+    touch_angle,
 )
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
     RollingParameters,
-    problem,
-    race_stiffness,
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.micro_step import MICRO_STEP, KickMemory, book, leapfrog, step_limits
+from touchdown.bearings.rolling.micro_step import (
+    MICRO_STEP,
+    RESOLUTION,
+    KickMemory,
+    book,
+    leapfrog,
+    refined,
+    step_in_hit,
+)
 from touchdown.bearings.rolling.pitch_circle import RollingResistance
 from touchdown.bearings.rolling.row import (
+    ANGLE,
     MOST_STATES,
     ORBIT,
     SPIN,
@@ -78,10 +86,12 @@ from touchdown.bearings.rolling.row import (
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
 from touchdown.bearings.rolling.rubbing import RubbedRace
-from touchdown.bearings.rolling.side import SideContacts, stored
+from touchdown.bearings.rolling.sides.chain import Chain
+from touchdown.bearings.rolling.sides.contact import SideContacts, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.model import Model, constants
+from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Interface, Load
 from touchdown.modelkit.variables import array, group, integer, real
 
@@ -167,12 +177,15 @@ class Hidden(RollingMemory, KickMemory):
     inner: RubbedRace = group(RubbedRace)
     outer: RubbedRace = group(RubbedRace)
     side: SideContacts = group(SideContacts)
+    chain: Chain = group(Chain)
     side_peaks: PeakMemory = group(PeakMemory)
     lever: tuple = array(MOST_BALLS)  # m, of the chord between neighbours that touch, about the middle
 
 
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Hidden)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
 
 
 @kernel
@@ -200,7 +213,7 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
     watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
-    push = largest(s.side.normal, s.side.indentation, count, rows)
+    push = largest(s.side.highest, s.side.indentation, count, rows)
     watch_peaks(time, push, m.o.neighbours, s.side_peaks)
 
 
@@ -230,6 +243,80 @@ def report(q, m):
     o.speed.ball = spin / count * d.ball_radius
     potential = pressed + stored(m.s.side, d.ball_contact, count) + p.gravity * d.mass * height
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
+
+
+@inlined
+def _problem(p, told):
+    """Number of what is wrong between the parameters p, or 0."""
+    found = declarations.problem(p, p.balls.crowded, told)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
+    return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
+
+
+@inlined
+def _settle_laws(m):
+    """Set in m.d the laws at the balls, and the steps that resolve them."""
+    p, d, b = m.p, m.d, m.p.balls
+    set_race_law(d.race, b, d.stiffness.series, d.mass)
+    d.race_friction, d.ball_friction = p.race_friction, p.ball_friction
+    friction.settle(d.race_friction)
+    friction.settle(d.ball_friction)
+    d.ball_contact = p.ball_contact
+    lay_abreast(d.ball_contact, b.rows)
+    damp(d.ball_contact, d.mass)
+    d.micro_step = min(
+        p.micro_step,
+        step_in_hit(p.micro_step, d.contact, p.ring.mass),
+        step_in_hit(p.micro_step, d.race, p.ring.mass),
+        step_in_hit(p.micro_step, d.ball_contact, 0.5 * d.mass),
+    )
+    d.resolution = refined(p.micro_step) * RESOLUTION
+
+
+@inlined
+def _settle_balls(m, spread):
+    """Set in m.d what the balls are, where they run and where they start."""
+    d, b = m.d, m.p.balls
+    d.mass, d.touch_angle = ball_mass(b.rows, b.diameter, b.density), touch_angle(b)
+    d.inertia = ball_inertia(d.mass, b.diameter)
+    d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
+    d.run_radius, d.run_share = d.pitch_radius, 0.0
+    if m.p.corrected_pitch == CORRECTED:
+        d.run_radius, d.run_share = d.pitch_radius + 0.5 * b.play, outer_share(d.stiffness)
+    elif m.p.corrected_pitch == AS_PRINTED:
+        d.run_share = -0.5
+    for i in range(b.count):
+        d.angles[i] = start_angle(b.first_angle, b.count, spread, i)
+
+
+@inlined
+def _set_weights(m):
+    """Set the error weights, and m.n to what is in use."""
+    w, n = m.weight, m.p.balls.count
+    seat.set_weights(w)
+    ring.set_weights(w)
+    for i in range(BALLS, BALLS + n):
+        w[i + ANGLE * n] = m.d.pitch_radius / seat.POSITION_SCALE
+        w[i + ORBIT * n], w[i + SPIN * n] = 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE
+    m.n = BALLS + 3 * n
+
+
+@kernel
+def settle(words):
+    """Stiffness and masses from geometry, where all starts, error weights; returns a problem, or 0."""
+    m = words.view(MEMORY)[0]
+    d, count = m.d, m.p.balls.count
+    blank(words, CONSTANTS)
+    problem = _problem(m.p, m.told)
+    if problem != 0:
+        return problem
+    spread = spread_of(m.p.balls)
+    declarations.settle(m, spread)
+    _settle_balls(m, spread)
+    _settle_laws(m)
+    d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
+    _set_weights(m)
+    return missing(words, CONSTANTS)
 
 
 @kernel
@@ -271,53 +358,6 @@ def advance(words, work, time, step):
     return seat.advance(react, integrate, report, words, m, rows, time, step)
 
 
-def derive(p: Parameters) -> Derived:
-    """Stiffness and masses from geometry, and where everything starts."""
-    b = p.balls
-    rest_x, rest_y = b.resting_place(p.ring.mass * p.gravity)
-    race, touching = b.race_law(b.series_stiffness()), damped(abreast(p.ball_contact, b.rows), b.ball_mass)
-    hit = [(p.contact, p.ring.mass), (race, p.ring.mass), (touching, 0.5 * b.ball_mass)]
-    run_radius, run_share = {
-        NOMINAL: (b.pitch_radius, 0.0),
-        CORRECTED: (b.pitch_radius + 0.5 * b.play, b.outer_share),
-        AS_PRINTED: (b.pitch_radius, -0.5),
-    }[p.corrected_pitch]
-    return Derived(
-        contact=damped(p.contact, p.ring.mass),
-        friction=prepared(p.friction),
-        race_friction=prepared(p.race_friction),
-        ball_contact=touching,
-        ball_friction=prepared(p.ball_friction),
-        race=race,
-        stiffness=race_stiffness(b),
-        size=Coordinates(coordinates=5 + 2 * b.count, ball_ball=b.count, rings=b.count),
-        mass=b.ball_mass,
-        inertia=b.ball_inertia,
-        ball_radius=b.ball_radius,
-        pitch_radius=b.pitch_radius,
-        inner_radius=b.inner_radius,
-        touch_angle=b.touch_angle,
-        run_radius=run_radius,
-        run_share=run_share,
-        **step_limits(p.micro_step, hit),
-        rest_x=rest_x,
-        rest_y=rest_y,
-        angles=tuple(b.angles() + [0.0] * (MOST_BALLS - b.count)),
-    )
-
-
-def check(p: Parameters) -> str | None:
-    """What is wrong between the parameters."""
-    return problem(p, "friction", "race_friction", "ball_friction")
-
-
-def weights(p: Parameters) -> np.ndarray:
-    """Error weights of the state."""
-    b = p.balls
-    scales = b.pitch_radius / seat.POSITION_SCALE, 1.0 / ORBIT_SCALE, 1.0 / BALL_SPIN_SCALE
-    return seat.weights(ring.error_weights() + [w for w in scales for _ in range(b.count)])
-
-
 MODEL = Model(
     name="simplified_cageless",
     title="Simplified cageless touchdown bearing",
@@ -329,11 +369,10 @@ MODEL = Model(
     derived=Derived,
     hidden=Hidden,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=weights,
-    derive=derive,
-    check=check,
+    problems=PROBLEMS,
     instant=instant,
     starts_from=starts_from("coordinates", "ball_ball", "rings"),
 )

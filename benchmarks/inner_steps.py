@@ -25,7 +25,7 @@ import multiprocessing
 import statistics
 import time as clock
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -247,14 +247,22 @@ def _described(one: Judged) -> str:
     return f"{peaks}; {parameters}; {rotor}"
 
 
+def with_dashpots(case: Case, model: str, damping: float) -> Case:
+    """The case with a linear damping (N s/m) between the balls, or the balls and the cage."""
+    side = "ball" if model.endswith("cageless") else "cage"
+    added = {f"{side}_contact.viscous": damping} if damping else {}
+    return replace(case, parameters=case.parameters | added)
+
+
 def report(model: str, count: int, plan: Plan, options: argparse.Namespace) -> list[str]:
     """Lines on a model: its random bearings, then the shipped one."""
     run(random_case(model, 0), Plan(plan.steps, 1e-5, 1e-5), plan.steps[0])  # compiles, for all processes
     lines = []
-    for title, cases in (
+    for title, found in (
         ("random bearings", [random_case(model, seed) for seed in range(count)]),
         ("the disk scene's, twelve ball angles", shipped_cases(model)),
     ):
+        cases = [with_dashpots(case, model, options.dashpot) for case in found]
         judged = list(judge_all(cases, plan, options.jobs, options.references))
         lines += table(f"{model}, {title}", judged, plan.steps)
         if options.list_worst:
@@ -272,6 +280,7 @@ def main() -> None:
     parser.add_argument("--macro-step", type=float, help="s; the whole span where left out")
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--references", type=Path, metavar="FILE.json", help="kept adaptive steps")
+    parser.add_argument("--dashpot", type=float, default=0.0, help="N s/m, between balls or with the cage")
     parser.add_argument("--list-worst", type=int, default=0, metavar="N", help="cases furthest off")
     options = parser.parse_args()
     plan = Plan(tuple(options.steps), options.span, options.macro_step or options.span)

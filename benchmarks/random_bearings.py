@@ -16,7 +16,6 @@ import numpy as np
 from touchdown.bearings import detailed_caged, detailed_cageless, seat, simplified_cageless
 from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.variables import from_record
 
 MODULES = {
     "detailed_caged": detailed_caged,
@@ -99,7 +98,8 @@ def landed(case: Case, tolerance: float, step: float) -> Instance:
         _put(m["p"], name, value)
     m["p"]["interface"]["tolerance"] = tolerance
     m["p"]["micro_step"] = step
-    _land(m, case.rotor, from_record(instance.model.parameters, m["p"]))
+    instance.start(0.0)  # to know where the ring rests
+    _land(m, case.rotor)
     instance.start(0.0)
     return instance
 
@@ -134,13 +134,12 @@ def _put(record: np.void, name: str, value: float) -> None:
     record[last] = value
 
 
-def _land(m: np.void, rotor: Rotor, parameters) -> None:
+def _land(m: np.void, rotor: Rotor) -> None:
     """Set the inputs of a bearing's memory to the landing."""
     journal, housing = m["u"]["journal"], m["u"]["housing"]
     c, s = math.cos(rotor.direction), math.sin(rotor.direction)
-    rest_x, rest_y = parameters.balls.resting_place(parameters.ring.mass * parameters.gravity)
-    reach = parameters.clearance - SHORT_OF_TOUCH
-    journal["x"], journal["y"] = rest_x + reach * c, rest_y + reach * s
+    d, reach = m["d"], m["p"]["clearance"] - SHORT_OF_TOUCH
+    journal["x"], journal["y"] = d["rest_x"] + reach * c, d["rest_y"] + reach * s
     journal["vx"] = rotor.approach * c - rotor.across * s
     journal["vy"] = rotor.approach * s + rotor.across * c
     journal["omega"], journal["ay_free"] = rotor.speed, -GRAVITY

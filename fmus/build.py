@@ -8,17 +8,17 @@ import shutil
 import sys
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
-from touchdown.fmus.link import Interpreter, linked
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
+from touchdown.fmus.python.link import Interpreter, linked
+from touchdown.fmus.python.sources import write_host, write_package, write_script
 from touchdown.fmus.recipes import Recipe
-from touchdown.fmus.sources import write_host, write_package, write_script
 from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
@@ -30,7 +30,6 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
     With an interpreter the FMU is linked to it, for hosts without Python on this machine; raises LinkError
     where that fails.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     entries = _entries(recipe, interpreter)
     entries["documentation/index.html"] = page(recipe, interpreter).encode()
     entries["model.png"] = icon(recipe.model)
@@ -38,9 +37,7 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
         entries = {name: e for name, e in entries.items() if not name.endswith((".dll", ".dylib"))}
         for name in [name for name in entries if name.endswith(".so")]:
             entries[name] = linked(entries[name], interpreter.library)
-    fresh = folder / f".{recipe.name}.{os.getpid()}.fmu"
-    _write(entries, fresh)
-    return fresh.replace(folder / f"{recipe.name}.fmu")
+    return write(entries, folder, recipe.name)
 
 
 def cached(recipe: Recipe) -> Path:
@@ -48,12 +45,17 @@ def cached(recipe: Recipe) -> Path:
 
     Raises OSError where it cannot be written, not even into a temporary folder.
     """
-    return kept(lambda folder: _sound(recipe, folder), "fmus", recipe.content)
+    return kept_sound(recipe.name, recipe.content, lambda folder: build(recipe, folder))
 
 
-def _sound(recipe: Recipe, folder: Path) -> Path:
+def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
+    """NAME.fmu in the cache's folder for `content`; made there by `make` where it is not as it was."""
+    return kept(lambda folder: _sound(name, folder, make), "fmus", content)
+
+
+def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
     """The FMU in `folder` if it is as it was built, else a new one; its digest lies beside it."""
-    path, noted = folder / f"{recipe.name}.fmu", folder / f"{recipe.name}.sha256"
+    path, noted = folder / f"{name}.fmu", folder / f"{name}.sha256"
     try:
         if noted.read_text(encoding="ascii") == _line(path) and is_own(path.stat()):
             return path
@@ -62,7 +64,7 @@ def _sound(recipe: Recipe, folder: Path) -> Path:
     for damaged in (path, noted):
         if damaged.is_dir() and not damaged.is_symlink():
             shutil.rmtree(damaged)
-    build(recipe, folder)
+    make(folder)
     put(noted, _line(path).encode("ascii"))
     return path
 
@@ -95,10 +97,14 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
         sys.modules.pop(module, None)
 
 
-def _write(entries: dict[str, bytes], target: Path) -> None:
-    """Write an archive with sorted names, fixed times and no compression."""
-    with zipfile.ZipFile(target, "w") as archive:
-        for name in sorted(entries):
-            entry = zipfile.ZipInfo(name, EPOCH)
+def write(entries: Mapping[str, bytes], folder: Path, name: str, compressed: bool = False) -> Path:
+    """Write NAME.fmu into `folder` with sorted entries and fixed times; an older one is replaced."""
+    folder.mkdir(parents=True, exist_ok=True)
+    fresh = folder / f".{name}.{os.getpid()}.fmu"
+    with zipfile.ZipFile(fresh, "w", zipfile.ZIP_DEFLATED if compressed else zipfile.ZIP_STORED) as archive:
+        for title in sorted(entries):
+            entry = zipfile.ZipInfo(title, EPOCH)
             entry.external_attr = 0o644 << 16
-            archive.writestr(entry, entries[name])
+            entry.compress_type = archive.compression
+            archive.writestr(entry, entries[title])
+    return fresh.replace(folder / f"{name}.fmu")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from xml.etree.ElementTree import Element, SubElement, tostring
 
@@ -26,7 +27,6 @@ _SYMBOLS = {
 }
 
 CAPABILITIES = {  # of every FMU
-    "needsExecutionTool": "true",
     "canHandleVariableCommunicationStepSize": "true",
     "canInterpolateInputs": "false",
     "canBeInstantiatedOnlyOncePerProcess": "false",
@@ -66,10 +66,28 @@ def guid(model: Model) -> str:
     return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"
 
 
-def describe(model: Model, identifier: str, log_categories: Mapping[str, str]) -> Element:
-    """The FMI 2.0 model description of `model`."""
-    root = Element("fmiModelDescription", _identity(model))
-    SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **CAPABILITIES})
+@dataclass(frozen=True)
+class Making:
+    """How an FMU is made, and what follows from that."""
+
+    tool: str
+    guid: str
+    needs_tool: bool  # in its host
+
+
+def by_pythonfmu(model: Model) -> Making:
+    """The making of an FMU that is Python."""
+    return Making(f"touchdown-cosim {VERSION}, PythonFMU {version('pythonfmu')}", guid(model), True)
+
+
+def describe(
+    model: Model, identifier: str, log_categories: Mapping[str, str], making: Making | None = None
+) -> Element:
+    """The FMI 2.0 model description of `model`; `making`: where not by pythonfmu."""
+    making = making or by_pythonfmu(model)
+    root = Element("fmiModelDescription", _identity(model, making))
+    needs = {"needsExecutionTool": str(making.needs_tool).lower()}
+    SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **needs, **CAPABILITIES})
     exposed = slots(model)
     _units(root, exposed)
     categories = SubElement(root, "LogCategories")
@@ -83,17 +101,17 @@ def describe(model: Model, identifier: str, log_categories: Mapping[str, str]) -
     return root
 
 
-def _identity(model: Model) -> dict[str, str]:
+def _identity(model: Model, making: Making) -> dict[str, str]:
     """What the FMU is, and who made it with what."""
     return {
         "fmiVersion": "2.0",
         "modelName": model.title,
-        "guid": guid(model),
+        "guid": making.guid,
         "description": model.about,
         "author": "touchdown-cosim",
         "license": "MIT",
         "version": VERSION,
-        "generationTool": f"touchdown-cosim {VERSION}, PythonFMU {version('pythonfmu')}",
+        "generationTool": making.tool,
         "generationDateAndTime": RELEASED,
         "variableNamingConvention": "structured",
     }

@@ -14,9 +14,9 @@ from importlib import import_module
 from pathlib import Path
 
 from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
-from touchdown.fmus.sources import content_hash
 from touchdown.modelkit.model import Model
 from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor
@@ -42,6 +42,7 @@ class Recipe:
     """How an FMU is made; `content` is a hash over everything in it."""
 
     name: str
+    identifier: str  # of its class, and of its library
     script: str
     content: str
     model: Model
@@ -68,14 +69,16 @@ def recipe(name: str) -> Recipe:
         return _from_rotor(shipped()[name])
     if name not in scripts():
         raise LookupError(f"there is no FMU called {name}")
-    return Recipe(name, scripts()[name].read_text(encoding="utf-8"), content_hash(), _declared(name))
+    slave = _declared(name)
+    script = scripts()[name].read_text(encoding="utf-8")
+    return Recipe(name, slave.__name__, script, content_hash(), slave.model)
 
 
-def _declared(name: str) -> Model:
+def _declared(name: str) -> type[ModelSlave]:
     module = import_module(f"touchdown.fmus.scripts.{name}")
     for value in vars(module).values():
         if isinstance(value, type) and issubclass(value, ModelSlave) and value is not ModelSlave:
-            return value.model
+            return value
     raise LookupError(f"fmus/scripts/{name}.py declares no ModelSlave")
 
 
@@ -84,14 +87,9 @@ def _from_rotor(path: Path) -> Recipe:
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
     own = hashlib.sha256(text.encode()).hexdigest()[:16]
     model = flexible_rotor(parse(text, str(path)), name, own)
-    script = _ROTOR_SCRIPT.format(
-        file=path.name,
-        text=text,
-        identifier="Rotor" + "".join(part.capitalize() for part in name.split("_")),
-        name=name,
-        content=own,
-    )
-    return Recipe(name, script, f"{content_hash()}_{own}", model)
+    identifier = "Rotor" + "".join(part.capitalize() for part in name.split("_"))
+    script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=own)
+    return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
 
 
 def presets() -> list[str]:

@@ -22,6 +22,7 @@ import numpy as np
 from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
+from touchdown.fmus import refusals
 from touchdown.fmus.description import describe, guid
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError
@@ -31,7 +32,7 @@ AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the 
 READABLE = (*AT_START, Causality.OUTPUT)
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
-_LATE = 1e-2  # of a step: how far it may begin from the end of the last one
+LATE = 1e-2  # of a step: how far it may begin from the end of the last one
 
 
 class ModelSlave(Fmi2Slave):
@@ -66,19 +67,19 @@ class ModelSlave(Fmi2Slave):
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         if self._phase != NEW:
-            self._raise("the experiment can be set up before initialisation only")
+            self._raise(refusals.SETUP_LATE)
         if not math.isfinite(start_time):
-            self._raise(f"the start time is {start_time} s; it must be a finite number")
+            self._raise(refusals.NO_START.format(time=start_time))
         self._start_time = start_time
 
     def enter_initialization_mode(self) -> None:
         if self._phase != NEW:
-            self._raise("initialisation can be entered once; reset the FMU to start anew")
+            self._raise(refusals.ENTERED_TWICE)
         self._phase = INITIALISING
 
     def exit_initialization_mode(self) -> None:
         if self._phase != INITIALISING:
-            self._raise("initialisation must be entered before it is left")
+            self._raise(refusals.NOT_ENTERED)
         problem = self._refresh()
         if problem:
             self._raise(problem)
@@ -88,15 +89,12 @@ class ModelSlave(Fmi2Slave):
     def do_step(self, current_time: float, step_size: float) -> bool:
         try:
             if self._failed:
-                raise ModelError(f"stopped before: {self._failed}")
+                self.log(refusals.STOPPED.format(why=self._failed), Fmi2Status.error)
+                return False
             if self._phase != STEPPING:
-                when = "after the end" if self._phase == ENDED else "before initialisation is complete"
-                raise ModelError(f"cannot step {when}")
-            if abs(current_time - self._end) > _LATE * step_size:
-                raise ModelError(
-                    f"cannot step from t = {current_time:.9g} s by {step_size:g} s; "
-                    f"the last step ended at {self._end:.9g} s"
-                )
+                raise ModelError(refusals.ENDED if self._phase == ENDED else refusals.NOT_STARTED)
+            if abs(current_time - self._end) > LATE * step_size:
+                raise ModelError(refusals.APART.format(time=current_time, step=step_size, end=self._end))
             self._instance.step(current_time, step_size)
             self._end = current_time + step_size
         except ModelError as error:
@@ -128,9 +126,7 @@ class ModelSlave(Fmi2Slave):
             causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
             wrong = self._others(kind, vrs, causes)
             if wrong:
-                self._fail(
-                    f"{wrong} cannot be set as {kind} now; parameters are fixed after initialisation"
-                )
+                self._fail(refusals.SET_LATE.format(names=wrong, kind=kind))
                 return
             places = self._note("set", kind, vrs)
         self._stores[kind][places] = values
@@ -143,7 +139,7 @@ class ModelSlave(Fmi2Slave):
         if places is None:
             wrong = self._others(kind, vrs, READABLE)
             if wrong:  # no value is answered: hosts would go on with it
-                self._raise(f"{wrong} cannot be read as {kind}")
+                self._raise(refusals.UNREADABLE.format(names=wrong, kind=kind))
             places = self._note("get", kind, vrs)
         return self._stores[kind][places].tolist()
 
@@ -175,10 +171,10 @@ class ModelSlave(Fmi2Slave):
         """Names of the variables among `vrs` that are not of this kind and these causalities."""
         slots = {s.index: s for s in self._instance.slots}
         wrong: list[str] = []
-        for i in sorted(set(vrs)):
+        for i in sorted({vr % 2**32 for vr in vrs}):  # unsigned, as FMI has them
             slot = slots.get(i)
             if slot is None:
-                wrong.append(f"value reference {i % 2**32}")
+                wrong.append(refusals.UNKNOWN.format(number=i))
             elif slot.variable.spec.kind is not kind or slot.causality not in causes:
                 wrong.append(slot.variable.name)
         return ", ".join(wrong)
@@ -193,12 +189,12 @@ class ModelSlave(Fmi2Slave):
         own = self._identity
         head = len(own) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(own):
-            self._fail("the state to restore is not one of this FMU")
+            self._fail(refusals.FOREIGN_STATE)
             return
         self._phase, failed, self._start_time, self._end = _LIFE.unpack_from(state, len(own))
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
-        self._failed = self._failed or "restored a failed state" if failed else ""
+        self._failed = self._failed or refusals.FAILED_STATE if failed else ""
         self._forget()
 
     @staticmethod

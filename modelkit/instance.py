@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 
+from touchdown.modelkit import refusals
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.integrators.control import MOST_STEPS
 from touchdown.modelkit.model import Model, ModelError, slots
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
 from touchdown.modelkit.variables import Causality, Scalar, as_tuple, from_record, layout
+
+FIRST_STEP = 1e-6  # s; the micro-step to try first
 
 
 class Instance:
@@ -26,8 +31,7 @@ class Instance:
         self.model = model
         self.memory = np.zeros(1, model.memory)
         self.words = self.memory.view("f8")
-        self._put("p", model.parameters())
-        self._put("u", model.inputs())
+        self.memory["p"], self.memory["u"] = _values(model.parameters), _values(model.inputs)
         raw = self.memory.view("u1").data
         self.reals = raw.cast("d")
         self.integers = raw.cast("q")
@@ -36,7 +40,7 @@ class Instance:
         fields: Any = model.memory.fields
         self.state = raw[: fields["d"][1]]
         self._parameters = raw[fields["p"][1] : fields["u"][1]]
-        self._derived_from = b""  # the parameters m.d belongs to
+        self._settled_for = b""  # the parameters m.d belongs to
         self._outdated = False  # m.d belongs to others than m.p
 
     @property
@@ -45,33 +49,29 @@ class Instance:
         return self.memory[0]
 
     def start(self, time: float) -> None:
-        """Check the parameters, derive what follows from them, and set state and outputs at `time` (s).
+        """Check the parameters, settle what follows from them, and set state and outputs at `time` (s).
 
         Raises ModelError where a parameter or an input is out of bounds.
         """
-        self._check_bounds()
-        model, parameters = self.model, self._derive()
-        self._put("o", model.outputs())
-        self._put("s", model.hidden())
+        self._settle()
+        self._check_bounds(Causality.INPUT)
+        model = self.model
+        self.memory["o"], self.memory["s"] = _values(model.outputs), _values(model.hidden)
         self.memory["q"] = 0.0
-        weights = model.weights(parameters)
-        self.memory["n"] = len(weights)
-        self.memory["weight"] = 0.0
-        self.memory["weight"][0, : len(weights)] = weights
         self.memory["time"] = time
-        self.memory["h"] = 1e-6
+        self.memory["h"] = FIRST_STEP
         self.memory["evaluations"] = 0
         model.start(self.words)
 
     def step(self, time: float, step: float) -> None:
         """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
-            raise ModelError(f"cannot step from t = {time} s by {step} s; the step must be positive")
+            raise ModelError(refusals.NO_STEP.format(time=time, step=step))
         if self._outdated:
-            self._derive()
+            self._settle()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
-            raise ModelError(_explanation(self, status, time, step))
+            raise ModelError(explanation(self, status, time, step))
 
     def save(self) -> bytes:
         """A copy of the state; constants that follow from its parameters are left out."""
@@ -80,30 +80,36 @@ class Instance:
     def restore(self, state: bytes | memoryview) -> None:
         """Go back to what `save` returned, here or in another instance of the same model.
 
-        Where the parameters are others than before, constants are derived again ahead of the next step.
+        Where the parameters are others than before, constants are settled again ahead of the next step.
         """
         self.state[:] = state
-        self._outdated = self._parameters != self._derived_from
+        self._outdated = self._parameters != self._settled_for
 
-    def _put(self, part: str, values: Any) -> None:
-        """Write a declaration's values into the part of the memory that is laid out for them."""
-        self.memory[part] = np.array([as_tuple(values)], layout(type(values)))
-
-    def _derive(self) -> Any:
-        """Compute from the parameters what follows from them; returns them."""
+    def _settle(self) -> None:
+        """Check the parameters, compute what follows from them. Raises ModelError where they cannot be."""
+        self._check_bounds(Causality.PARAMETER)
+        self._settled_for = b""
         model = self.model
-        parameters = from_record(model.parameters, self.memory[0]["p"])
-        problem = model.check(parameters)
-        if problem:
-            raise ModelError(problem)
-        if model.derive is not None:
-            self._put("d", model.derive(parameters))
-        self._derived_from, self._outdated = self._parameters.tobytes(), False
-        return parameters
+        if model.tables is not None:
+            self.memory["d"] = self._tabulated(model.tables)
+        number = model.settle(self.words)
+        if number:
+            raise ModelError(model.problems[number - 1].format(*self.record["told"]))
+        self._settled_for, self._outdated = self._parameters.tobytes(), False
 
-    def _check_bounds(self) -> None:
+    def _tabulated(self, tables: Callable[[Any], np.ndarray]) -> np.ndarray:
+        """The `tables` for the parameters. Raises ModelError where there are none."""
+        parameters = from_record(self.model.parameters, self.record["p"])
+        try:
+            return tables(parameters)
+        except (ArithmeticError, ValueError, RuntimeError) as error:
+            raise ModelError(
+                f"it cannot start ({error}); look for a parameter that is out of all proportion"
+            ) from None
+
+    def _check_bounds(self, causality: Causality) -> None:
         for slot in self.slots:
-            if slot.causality is Causality.OUTPUT:
+            if slot.causality is not causality:
                 continue
             store = self.reals if slot.variable.spec.kind is Scalar.REAL else self.integers
             problem = slot.variable.problem(store[slot.index])
@@ -111,27 +117,21 @@ class Instance:
                 raise ModelError(problem)
 
 
-def _explanation(instance: Instance, status: int, time: float, step: float) -> str:
+@cache
+def _values(declaration: type) -> np.ndarray:
+    """The values of a declaration as they stand by default (1,), as its memory is laid out."""
+    return np.array([as_tuple(declaration())], layout(declaration))
+
+
+def explanation(instance: Instance, status: int, time: float, step: float) -> str:
     """What stopped a macro step of `step` (s) from `time` (s), and what to do about it."""
     if status == BAD_INPUT:
         for slot in instance.slots:
             value = instance.reals[slot.index]
             if slot.causality is Causality.INPUT and not math.isfinite(value):
-                return (
-                    f"input {slot.variable.name} is {value} at t = {time:.9g} s; "
-                    "look at the component that feeds it"
-                )
+                return refusals.BAD_INPUT.format(name=slot.variable.name, value=value, time=time)
     if status in (BAD_LOAD, BAD_INPUT):  # finite inputs can be too large to add up
-        return (
-            f"the load at t = {time:.9g} s is not a finite number; look for an input or a parameter "
-            "that is out of all proportion"
-        )
+        return refusals.BAD_LOAD.format(time=time)
     if status == TOO_MANY_STEPS:
-        return (
-            f"more than {MOST_STEPS} micro-steps within one macro step of {step:g} s "
-            f"at t = {time:.9g} s; take a smaller macro step or a larger interface.tolerance"
-        )
-    return (
-        f"the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; "
-        "take a smaller macro step, or look for a contact that starts with a deep overlap"
-    )
+        return refusals.TOO_MANY_STEPS.format(most=MOST_STEPS, step=step, time=time)
+    return refusals.UNRESOLVED.format(time=time, step=step)

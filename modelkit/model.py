@@ -11,6 +11,8 @@ import numpy as np
 
 from touchdown.modelkit.variables import Causality, Nothing, Variable, flatten, layout
 
+TOLD = 4  # numbers that a text of a problem may hold
+
 
 class ModelError(Exception):
     """A model cannot go on; the message names the variable, the value and the remedy."""
@@ -19,11 +21,6 @@ class ModelError(Exception):
 def same_name(name: str) -> str | None:
     """Variables are exposed by the names they are declared with."""
     return name
-
-
-def no_check(parameters: Any) -> str | None:
-    """Bounds of single parameters suffice."""
-    return None
 
 
 def memory_layout(
@@ -37,8 +34,8 @@ def memory_layout(
     """Everything an instance of a model is, as one record of 8-byte words, the kernels' `m`.
 
     `parameters`, `inputs`, `outputs`, `derived` and `hidden` are declarations (`modelkit.variables`),
-    `state_size` the components that the state needs at most. Derived constants come last: what stands
-    before them is all that changes, and saving it is copying its bytes.
+    `state_size` the components that the state needs at most. Derived constants come behind the state: what
+    stands before them is all that changes, and saving it is copying its bytes.
     """
     return np.dtype(
         [
@@ -54,8 +51,41 @@ def memory_layout(
             ("q", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
             ("d", layout(derived)),
+            ("told", "f8", (TOLD,)),
         ]
     )
+
+
+def constants(memory: np.dtype, problems: tuple[str, ...] = ()) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Where error weights and constants lie in `memory`, and all texts of `Model.problems`.
+
+    problems: a model's own; a text for each constant that may not exist follows them. The first of the
+    integers is how many are its own, the others are the words where one thing ends and the next begins
+    (`numerics.words`).
+    """
+    fields: Any = memory.fields
+    ends = [("weight", fields["d"][1] // 8), *_ends(fields["d"][0], "", fields["d"][1] // 8)]
+    names = [name for name, _ in ends]
+    places = [len(problems), fields["weight"][1] // 8, *(end for _, end in ends)]
+    lacking = (
+        f"it cannot start ({name} is not a finite number); look for a parameter that is out of all "
+        "proportion"
+        for name in names
+    )
+    return np.array(places), (*problems, *lacking)
+
+
+def _ends(record: np.dtype, prefix: str, start: int) -> list[tuple[str, int]]:
+    """Dotted name of each scalar or array in `record`, and the word behind it; `start`: its first word."""
+    ends: list[tuple[str, int]] = []
+    fields: Any = record.fields or {}
+    for name, (kind, offset, *_) in fields.items():
+        first = start + offset // 8
+        if kind.fields is not None:
+            ends += _ends(kind, f"{prefix}{name}.", first)
+        else:
+            ends.append((f"{prefix}{name}", first + kind.itemsize // 8))
+    return ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +106,14 @@ class Model:
         m.h        micro-step to try next      s
         m.evaluations                          of the right-hand side, since the start
         m.d        constants of the parameters, not saved with the rest
+        m.told     what there is to say of a problem (4,), for its text
 
     All in SI; x horizontal, y up, z along the shaft; angles, spins and moments counter-clockwise; a load
     is named after the body it acts on. A kernel changes nothing but what it is said to set:
 
-        start(words)                       sets m.q and m.o from m.p and m.u
+        settle(words)                      sets m.d, m.weight and m.n from m.p; returns 0, or the number,
+                                           from 1, of what is wrong with the parameters
+        start(words)                       sets m.q and m.o from m.p, m.u and m.d
         advance(words, work, time, step)   one macro step of `step` (s) from `time` (s): m.q, m.o and
                                            whatever else of m; returns one of `modelkit.status`
         rhs(t, q, dq, m)                   bodies: dq (N,), the time derivative of the state q (N,), under
@@ -95,8 +128,15 @@ class Model:
     every step takes plain words and views them as the record itself, m = words.view(MEMORY)[0]: handing
     a record over costs numba several microseconds.
 
-    `Instance` drives it: check the bounds and `check`, `derive` m.d, fill m.weight by `weights`, start,
-    advance. The smallest complete example is `bearings.housing`.
+    `settle` takes what single bounds (`Variable.problem`) leave open: `problems[number - 1]` is its text,
+    a format of m.told by {0:g} to {3:g}, which C's printf can write, too. It raises nothing, so a constant
+    that does not exist is found by looking at the numbers (`constants`, `numerics.words.missing`).
+
+    Where constants need what kernels cannot do, such as eigenvalues, `tables` makes a whole m.d, of the
+    parameters named in `tabulated` alone; it lies in the memory before `settle` adds the rest.
+
+    `Instance` drives it: check the bounds, tabulate, settle, start, advance. The smallest complete example
+    is `bearings.housing`.
     """
 
     name: str
@@ -106,13 +146,14 @@ class Model:
     inputs: type
     outputs: type
     memory: np.dtype
+    settle: Callable[[Any], int]
     start: Callable[[Any], None]
     advance: Callable[[Any, Any, float, float], int]
-    weights: Callable[[Any], np.ndarray]  # parameters -> error weights, one for each component in use
     derived: type = Nothing
     hidden: type = Nothing
-    derive: Callable[[Any], Any] | None = None  # parameters -> derived
-    check: Callable[[Any], str | None] = no_check  # parameters -> what is wrong between them
+    problems: tuple[str, ...] = ()  # what `settle` may find wrong
+    tables: Callable[[Any], np.ndarray] | None = None  # parameters -> m.d (1,), as far as tabulated
+    tabulated: tuple[str, ...] = ()  # parameters that `tables` hangs on
     rhs: Callable[..., Any] | None = None
     publish: Callable[..., Any] | None = None
     instant: Callable[..., Any] | None = None

@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from touchdown.modelkit import refusals
+
 
 class Scalar(StrEnum):
     """Types of the scalars that a model declares."""
@@ -69,16 +71,16 @@ class Variable:
 
     def problem(self, value: float) -> str | None:
         """Why `value` is not allowed, or None."""
-        s = self.spec
+        s, value = self.spec, float(value)
         unit = "" if s.unit == "1" else f" {s.unit}"
         if not math.isfinite(value):
-            return f"{self.name} = {value} is not a finite number"
+            return refusals.NOT_FINITE.format(name=self.name, value=value)
         if s.above is not None and not value > s.above:
-            return f"{self.name} = {value:g}{unit} must be above {s.above:g}{unit}"
+            return refusals.NOT_ABOVE.format(name=self.name, value=value, bound=s.above, unit=unit)
         if s.minimum is not None and value < s.minimum:
-            return f"{self.name} = {value:g}{unit} must be at least {s.minimum:g}{unit}"
+            return refusals.TOO_SMALL.format(name=self.name, value=value, bound=s.minimum, unit=unit)
         if s.maximum is not None and value > s.maximum:
-            return f"{self.name} = {value:g}{unit} must be at most {s.maximum:g}{unit}"
+            return refusals.TOO_LARGE.format(name=self.name, value=value, bound=s.maximum, unit=unit)
         return None
 
 

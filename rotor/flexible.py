@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
 from touchdown.modelkit.body import finite
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.model import Model, constants, memory_layout
+from touchdown.modelkit.numerics.words import missing
 from touchdown.modelkit.ports import (
     MODES,
     Energy,
@@ -25,9 +26,10 @@ from touchdown.modelkit.ports import (
     StaticLoad,
 )
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from touchdown.modelkit.variables import group, groups, integer, real
+from touchdown.modelkit.variables import as_tuple, group, groups, integer, real
 from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
-from touchdown.rotor.modal.data import MOST_MODES, Derived, chosen_basis, prepare
+from touchdown.rotor.modal.data import MOST_MODES, Derived, tabulate
+from touchdown.rotor.modal.modes import RIGID
 from touchdown.rotor.motion import macro_step, stress_report
 from touchdown.rotor.motion.equations import rhs
 from touchdown.rotor.motion.exchange import take_mode_loads
@@ -100,6 +102,61 @@ class Hidden:
 
 SIZE = 4 * MOST_MODES + WORK + MOST_STATIONS
 MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE, derived=Derived, hidden=Hidden)
+CONSTANTS, PROBLEMS = constants(
+    MEMORY,
+    (
+        "modes = {0:g} must be from 2 (rigid) to {1:g}, all that the model has per plane, or 0",
+        "stress.node = {0:g}: the rotor's nodes count from 1 to {1:g}",
+    ),
+)
+
+
+@kernel
+def _problem(m):
+    """Number of what is wrong between shaft and parameters, or 0."""
+    p, most = m.p, 2 * m.d.nodes
+    if p.modes > most or p.modes == 1:
+        m.told[0], m.told[1] = p.modes, most
+        return 1
+    if p.stress.node > m.d.nodes:
+        m.told[0], m.told[1] = p.stress.node, m.d.nodes
+        return 2
+    return 0
+
+
+@kernel
+def _set_weights(m):
+    """Set the error weights, 1 um and 1 cm/s by a mode's share where it moves most, and m.n."""
+    w, n = m.weight, m.d.modes
+    m.n = 4 * n + WORK + m.d.stations
+    for i in range(len(w)):
+        w[i] = 0.0
+    for k in range(n):
+        w[k] = w[n + k] = 1e6 * m.d.reach[k]
+        w[2 * n + k] = w[3 * n + k] = 1e2 * m.d.reach[k]
+    w[4 * n + ANGLE] = w[4 * n + SPIN] = 1e-1
+
+
+@kernel
+def settle(words):
+    """Damping, what holds the rotor at the start, error weights; returns a problem's number, or 0.
+
+    m.d holds the tables of as many modes as the parameters ask for.
+    """
+    m = words.view(MEMORY)[0]
+    p, d = m.p, m.d
+    problem = _problem(m)
+    if problem != 0:
+        return problem
+    d.damping_ratio = p.damping_ratio if p.damping_ratio >= 0.0 else d.own_damping_ratio
+    for j in range(d.stations):
+        d.static_fy[j] = d.held[j] * p.gravity
+    for k in range(d.modes):
+        d.damping[k], d.sag[k] = 2.0 * d.damping_ratio * math.sqrt(d.stiffness[k]), 0.0
+        for j in range(d.stations if k >= RIGID else 0):
+            d.sag[k] += d.shape[j, k] * d.static_fy[j] / d.stiffness[k]
+    _set_weights(m)
+    return missing(words, CONSTANTS)
 
 
 @kernel
@@ -147,29 +204,22 @@ def advance(words, work, time, step):
     return OK if finite(m) and math.isfinite(told) else BAD_LOAD
 
 
-def derive(shaft: Shaft, p: Parameters) -> Derived:
-    """Constants of the kernels, computed once for equal parameters."""
-    damping_ratio = p.damping_ratio if p.damping_ratio >= 0.0 else shaft.damping_ratio
-    return prepare(shaft, p.modes, p.residual, damping_ratio, p.gravity, p.stress.mode_acceleration)
+TABULATED = ("modes", "residual")
 
 
-def check(shaft: Shaft, p: Parameters) -> str | None:
-    """What is wrong between shaft and parameters."""
-    most = 2 * shaft.nodes
-    if p.modes > most or p.modes == 1:
-        return f"modes = {p.modes} must be from 2 (rigid) to {most}, all that the model has per plane, or 0"
-    if p.stress.node > shaft.nodes:
-        return f"stress.node = {p.stress.node}: the rotor's nodes count from 1 to {shaft.nodes}"
-    return None
+@lru_cache(maxsize=16)
+def _tables(shaft: Shaft, modes: int, residual: int) -> np.ndarray:
+    """m.d (1,) with all that hangs on the shaft, the number of modes and residual vectors."""
+    return np.array([as_tuple(tabulate(shaft, modes, residual))], MEMORY["d"])
 
 
-def weights(shaft: Shaft, p: Parameters) -> np.ndarray:
-    """Error weights: 1 um and 1 cm/s, by a mode's share where it moves most."""
-    shapes = chosen_basis(shaft, p.modes, p.residual).shapes
-    share = np.max(np.abs(shapes[::2]), axis=0)
-    behind = np.zeros(WORK + len(shaft.stations))
-    behind[[ANGLE, SPIN]] = 1e-1
-    return np.concatenate([1e6 * share, 1e6 * share, 1e2 * share, 1e2 * share, behind])
+def tables(shaft: Shaft, p: Parameters) -> np.ndarray:
+    """m.d (1,) as far as it is tabulated; of two modes where there are not so many as asked for.
+
+    That is for `settle` to say.
+    """
+    there = p.modes == 0 or RIGID <= p.modes <= 2 * shaft.nodes
+    return _tables(shaft, p.modes if there else RIGID, p.residual)
 
 
 def exposed(shaft: Shaft, name: str) -> str | None:
@@ -220,11 +270,13 @@ _GENERAL = Model(
     inputs=Inputs,
     outputs=Outputs,
     memory=MEMORY,
+    settle=settle,
     start=start,
     advance=advance,
-    weights=lambda p: np.zeros(0),
+    problems=PROBLEMS,
     derived=Derived,
     hidden=Hidden,
+    tabulated=TABULATED,
     rhs=rhs,
     publish=publish,
 )
@@ -238,9 +290,7 @@ def flexible_rotor(shaft: Shaft, name: str, content: str = "") -> Model:
         content=content,
         title=shaft.title,
         about=f"{shaft.title}: Timoshenko beam of {len(shaft.elements)} elements in modal coordinates",
-        derive=partial(derive, shaft),
-        check=partial(check, shaft),
-        weights=partial(weights, shaft),
+        tables=partial(tables, shaft),
         rename=partial(exposed, shaft),
         starts_from=_starts_from(shaft),
     )

@@ -15,10 +15,11 @@ SCIENCE = {"numpy", "scipy", "numba"}
 OWN = "touchdown"
 
 LAYERS = {  # package: what it may import beside itself and the standard library
-    "modelkit": SCIENCE,
+    "modelkit": {"llvmlite"} | SCIENCE,  # numba's own: calls by address
     "rotor": {"touchdown.modelkit"} | SCIENCE,
     "bearings": {"touchdown.modelkit"} | SCIENCE,
-    "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu"} | SCIENCE,
+    "fmus": {"touchdown.modelkit", "touchdown.rotor", "touchdown.bearings", "pythonfmu", "llvmlite"}
+    | SCIENCE,
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",
@@ -37,12 +38,12 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
     "modelkit": (
-        *("instance", "body", "model", "ports", "integrators", "oscillator", "angles", "kernel"),
-        *("variables", "units", "status"),
+        *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
+        *("variables", "units", "status", "refusals"),
     ),
     "fmus": (
-        *("build", "presentation", "recipes", "scripts", "slave", "description", "sources", "link"),
-        *("host", "resident", "version"),
+        *("native", "build", "presentation", "recipes", "scripts", "slave", "description", "python"),
+        *("refusals", "version"),
     ),
 }
 REPORTED = {

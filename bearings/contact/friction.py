@@ -14,18 +14,22 @@ unless it is given: `makkar_amplitude` finds the g1 whose peak is the static coe
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from functools import cache
-from typing import Any, NamedTuple, cast
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from scipy.optimize import brentq, minimize_scalar
-
-from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.variables import integer, real
 
 COULOMB = 0
 STRIBECK = 1
 MAKKAR = 2
+
+# of the search for the peak of Makkar's curve, from 0 to FADED/g3 where all has risen that rises
+FADED = 3.0
+FIRST = 0.01  # sample, over the steeper of both rises
+APART = 1.5  # samples, as a ratio
+MOST_TURNS = 60  # of Newton's method, held in a bracket
+MOST_STATIC = 100.0  # times the static coefficient; a larger g1 stands for a g2 that g3 all but cancels
 
 
 @dataclass(frozen=True)
@@ -144,51 +148,101 @@ def slope(speed, law):
     return coefficient_and_slope(speed, law)[1]
 
 
-@cache
-def makkar_amplitude(static: float, dynamic: float, g2: float, g3: float, slope: float, g6: float) -> float:
-    """The g1 with which Makkar's curve peaks at `static`; 0 where the curve already reaches it."""
-
-    def peak(g1: float) -> float:
-        def negative(v: float) -> float:
-            rise = g1 * (math.tanh(g2 * v) - math.tanh(g3 * v))
-            return -(rise + dynamic * math.tanh(slope * v) + g6 * v)
-
-        return -minimize_scalar(
-            negative, bounds=(0.0, 3.0 / g3), method="bounded", options={"xatol": 1e-12}
-        ).fun
-
-    if static <= peak(0.0):
-        return 0.0
-    root = brentq(lambda g1: peak(g1) - static, 0.0, 100.0 * static, xtol=1e-14)
-    return float(cast(float, root))
+@kernel
+def _height(v, g1, law):
+    """Makkar's curve at a speed v (m/s) with the amplitude g1; law: a record."""
+    hump = math.tanh(law.g2 * v) - math.tanh(law.g3 * v)
+    return g1 * hump + law.dynamic * math.tanh(law.slope * v) + law.g6 * v
 
 
-def problem(parameters: Any, *names: str) -> str | None:
-    """Why a law in one of these groups of a model's parameters has no curve, or not the one set; or None.
+@kernel
+def _rise_and_bend(v, g1, law):
+    """First and second derivative of `_height` in v (s/m, s2/m2)."""
+    steep, flat, plateau = math.tanh(law.g2 * v), math.tanh(law.g3 * v), math.tanh(law.slope * v)
+    d2, d3 = law.g2 * (1.0 - steep * steep), law.g3 * (1.0 - flat * flat)
+    d5 = law.dynamic * law.slope * (1.0 - plateau * plateau)
+    bend = g1 * (law.g2 * steep * d2 - law.g3 * flat * d3) + law.slope * plateau * d5
+    return g1 * (d2 - d3) + d5 + law.g6, -2.0 * bend
 
-    Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else;
-    as it stands by default it was not.
+
+@kernel
+def _peak(g1, law):
+    """Speed (m/s) at which `_height` is largest: the best of samples, and a zero of the rise beside it."""
+    last = FADED / law.g3
+    at, best = last, _height(last, g1, law)
+    v = FIRST / max(law.g2, law.slope)
+    while v < last:
+        height = _height(v, g1, law)
+        if height > best:
+            at, best = v, height
+        v *= APART
+    if at == last and _rise_and_bend(last, g1, law)[0] >= 0.0:
+        return last
+    low, high, v = at / APART, min(at * APART, last), at
+    for _ in range(MOST_TURNS):
+        rise, bend = _rise_and_bend(v, g1, law)
+        if rise > 0.0:
+            low = v
+        else:
+            high = v
+        before, v = v, v - rise / bend
+        if not low < v < high:
+            v = 0.5 * (low + high)
+        if not abs(v - before) > 1e-10 * v:  # the height's error is of the square of that
+            break
+    return v
+
+
+@kernel
+def makkar_amplitude(law):
+    """The g1 with which Makkar's curve peaks at the static coefficient; 0 where it does without.
+
+    law: a record. Not a number where g2 is so near to g3 that nothing in proportion does. The peak is the
+    largest of functions that are linear in g1, so it is convex in it: Newton's steps, the first one aside,
+    fall upon the root from above.
     """
-    usual = type(parameters)()
-    for name in names:
-        law = getattr(parameters, name)
-        if law.kind == MAKKAR and law.g2 <= law.g3:
-            return (
-                f"{name}.g2 = {law.g2:g} s/m must be above {name}.g3 = {law.g3:g} s/m; "
-                "the difference of their curves is what rises to the static coefficient"
-            )
-        if law.kind == COULOMB and law.static not in (law.dynamic, getattr(usual, name).static):
-            return (
-                f"{name}.static = {law.static:g} does nothing with {name}.kind = 0 (Coulomb), whose "
-                f"coefficient is {name}.dynamic = {law.dynamic:g}; leave it out, or take {name}.kind = 1 "
-                "(Stribeck) or 2 (Makkar)"
-            )
-    return None
+    g1 = 0.0
+    for _ in range(MOST_TURNS):
+        v = _peak(g1, law)
+        lacking = law.static - _height(v, g1, law)
+        if g1 == 0.0 and lacking <= 0.0:
+            return 0.0
+        step = lacking / (math.tanh(law.g2 * v) - math.tanh(law.g3 * v))
+        g1 += step
+        if not abs(step) > 1e-15 * g1:
+            break
+    return g1 if g1 <= MOST_STATIC * law.static else math.nan
 
 
-def prepared(law: FrictionLaw) -> FrictionLaw:
-    """`law` with g1 filled in where it was left to follow from the static coefficient."""
-    if law.kind != MAKKAR or law.g1 > 0.0:
-        return law
-    g1 = makkar_amplitude(law.static, law.dynamic, law.g2, law.g3, law.slope, law.g6)
-    return replace(law, g1=g1)
+@inlined
+def settle(law):
+    """Fill in g1 where it is left to follow from the static coefficient; law: a record, changed."""
+    if law.kind == MAKKAR and law.g1 == 0.0:
+        law.g1 = makkar_amplitude(law)
+
+
+def problems(name: str) -> tuple[str, ...]:
+    """What `problem` may find of the law in the group `name` of a model's parameters."""
+    return (
+        f"{name}.g2 = {{0:g}} s/m must be above {name}.g3 = {{1:g}} s/m; "
+        "the difference of their curves is what rises to the static coefficient",
+        f"{name}.static = {{0:g}} does nothing with {name}.kind = 0 (Coulomb), whose "
+        f"coefficient is {name}.dynamic = {{1:g}}; leave it out, or take {name}.kind = 1 "
+        "(Stribeck) or 2 (Makkar)",
+    )
+
+
+@kernel
+def problem(law, usual, told):
+    """Why a law, a record, has no curve or not the one set: its number in `problems`, or 0.
+
+    Coulomb's law has one coefficient. A static one beside it is refused where it was set to something else
+    than `usual`, the default; as it stands by default it was not. told: `Model`'s m.told.
+    """
+    if law.kind == MAKKAR and law.g2 <= law.g3:
+        told[0], told[1] = law.g2, law.g3
+        return 1
+    if law.kind == COULOMB and law.static != law.dynamic and law.static != usual:
+        told[0], told[1] = law.static, law.dynamic
+        return 2
+    return 0

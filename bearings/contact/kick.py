@@ -50,9 +50,9 @@ class Line(NamedTuple):
 
 
 @woven
-def force_on(line, kick):
-    """The force (N) of a contact alone over a `Kick`, from its `Line`."""
-    return (line.start - line.slope * kick.sliding) / (line.base + line.slope * kick.across)
+def force_on(line, across, sliding):
+    """The force (N) of a contact alone, from its `Line`; across (s/kg), sliding (m/s): as in `Kick`."""
+    return (line.start - line.slope * sliding) / (line.base + line.slope * across)
 
 
 @woven

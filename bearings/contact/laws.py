@@ -13,10 +13,10 @@ does not say so; the force cut off is below 0.1 um of indentation in its cases.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from touchdown.bearings.contact.stiffness import damping_from_ratio
-from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.variables import real
 
 
@@ -40,25 +40,27 @@ class ContactLaw:
     )
 
 
-def damped(law: ContactLaw, lighter: float) -> ContactLaw:
-    """`law` with the damping that its ratio asks for (2.47); `lighter`: mass of the lighter body (kg)."""
+@kernel
+def damp(law, lighter):
+    """Add to `law`, a record, the damping that its ratio asks for (2.47).
+
+    lighter: mass of the lighter body (kg).
+    """
     if law.damping_ratio == 0.0:
-        return law
-    depth = law.expected_indentation
+        return
+    depth, mass = law.expected_indentation, law.mass if law.mass != 0.0 else lighter
     slope = law.exponent * law.stiffness * depth ** (law.exponent - 1.0)
-    added = damping_from_ratio(slope, law.mass or lighter, law.damping_ratio, depth)
-    return replace(law, damping=law.damping + added, damping_ratio=0.0)
+    law.damping += damping_from_ratio(slope, mass, law.damping_ratio, depth)
+    law.damping_ratio = 0.0
 
 
-def abreast(law: ContactLaw, rows: int) -> ContactLaw:
-    """Law of `rows` like contacts side by side, that share the load."""
-    return replace(
-        law,
-        stiffness=rows * law.stiffness,
-        damping=rows * law.damping,
-        viscous=rows * law.viscous,
-        mass=rows * law.mass,
-    )
+@inlined
+def lay_abreast(law, rows):
+    """Make `law`, a record, that of `rows` like contacts side by side, that share the load."""
+    law.stiffness *= rows
+    law.damping *= rows
+    law.viscous *= rows
+    law.mass *= rows
 
 
 @kernel

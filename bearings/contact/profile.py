@@ -12,10 +12,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import as_record, integer, real
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.variables import integer, real
 
 SAMPLES = 20_000  # around a race, for the check of its curvature
 DENT_SAMPLES = 801  # across a worn dent; odd: one is its middle
@@ -36,10 +34,11 @@ class RaceProfile:
         0, "1: search the contact point even where the race is a circle", minimum=0, maximum=1
     )
 
-    @property
-    def active(self) -> bool:
-        """Whether contacts have to be searched for."""
-        return bool(self.amplitude != 0.0 or self.wear != 0.0 or self.search)
+
+@inlined
+def active(profile):
+    """Whether contacts with a race of this `profile`, a record, have to be searched for."""
+    return profile.amplitude != 0.0 or profile.wear != 0.0 or profile.search == 1
 
 
 @kernel
@@ -62,46 +61,66 @@ def radius_and_slopes(s, radius, profile, dent):
     return r, d1, d2
 
 
-@kernel
-def _curvature(angles, radius, profile, dent):
-    """(n,) curvature (1/m) at (n,) angles (rad); the others as for `radius_and_slopes`."""
-    bent = np.empty(len(angles))
-    for i in range(len(angles)):
-        r, d1, d2 = radius_and_slopes(angles[i], radius, profile, dent)
-        bent[i] = (r * r + 2.0 * d1 * d1 - r * d2) / (r * r + d1 * d1) ** 1.5
-    return bent
+@inlined
+def curvature(s, radius, profile, dent):
+    """Curvature (1/m) at the angle s (rad), positive where it bends like a circle; rest as above."""
+    r, d1, d2 = radius_and_slopes(s, radius, profile, dent)
+    return (r * r + 2.0 * d1 * d1 - r * d2) / (r * r + d1 * d1) ** 1.5
 
 
-def curvature(radius: float, profile: RaceProfile, dent: float) -> np.ndarray:
-    """Curvature (1/m) around the race and again across its dent, positive where it bends like a circle."""
-    around = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
-    if profile.wear != 0.0:  # a dent may be narrower than the samples are apart
-        across = profile.wear_angle + profile.wear_width * np.linspace(-4.0, 4.0, DENT_SAMPLES)
-        around = np.concatenate([around, across])
-    return _curvature(around, radius, as_record(profile), dent)
+@inlined
+def sharpest(radius, profile, dent):
+    """Largest curvature (1/m) of a race towards its ball, around it and again across its dent.
 
-
-def problem(name: str, profile: RaceProfile, radius: float, ball_radius: float, hollow: bool) -> str | None:
-    """Why a ball would touch the race at more than one point, or None.
-
-    `hollow`: the ball rolls inside (outer race). The race must nowhere be hollowed out as sharply as
-    the ball is round.
+    A dent may be narrower than the samples around are apart; the others as for `radius_and_slopes`.
     """
-    if not profile.active:
-        return None
-    if abs(profile.amplitude) + profile.wear >= 0.5 * radius:
+    most = -math.inf
+    for i in range(SAMPLES):
+        most = max(most, dent * curvature(2.0 * math.pi / SAMPLES * i, radius, profile, dent))
+    if profile.wear != 0.0:
+        for i in range(DENT_SAMPLES):
+            off = profile.wear_width * (8.0 / (DENT_SAMPLES - 1) * i - 4.0)
+            most = max(most, dent * curvature(profile.wear_angle + off, radius, profile, dent))
+    return most
+
+
+def problems(name: str) -> tuple[str, ...]:
+    """What `problem` may find of the profile in the group `name` of a model's parameters."""
+
+    def bent(cause: str, remedy: str) -> str:
         return (
-            f"{name}.amplitude = {profile.amplitude:g} m and {name}.wear = {profile.wear:g} m leave "
-            f"nothing of a race of {radius:g} m; they must be far smaller"
+            f"{name}.{cause} = {{0:g}} m bends the race to a radius of {{1:g}} m, where a ball of "
+            f"{{2:g}} m touches it at more than one point; make it smaller, or the {remedy}"
         )
-    bent = curvature(radius, profile, 1.0 if hollow else -1.0)
-    sharpest = float(np.max(bent)) if hollow else -float(np.min(bent))
-    if sharpest * ball_radius * ROOM < 1.0:
-        return None
-    worn, lobed = profile.wear / profile.wear_width**2, abs(profile.amplitude) * profile.lobes**2
-    cause, remedy = ("wear", "dent wider") if worn > lobed else ("amplitude", "lobes fewer")
-    value = getattr(profile, cause)
+
     return (
-        f"{name}.{cause} = {value:g} m bends the race to a radius of {1.0 / sharpest:.3g} m, where a ball "
-        f"of {ball_radius:g} m touches it at more than one point; make it smaller, or the {remedy}"
+        f"{name}.amplitude = {{0:g}} m and {name}.wear = {{1:g}} m leave nothing of a race of {{2:g}} m; "
+        "they must be far smaller",
+        bent("wear", "dent wider"),
+        bent("amplitude", "lobes fewer"),
     )
+
+
+@kernel
+def problem(profile, radius, ball_radius, dent, told):
+    """Why a ball would touch the race at more than one point: its number in `problems`, or 0.
+
+    profile: a record; radius, ball_radius: m; dent: +1 where the ball rolls inside (outer race), else -1.
+    The race must nowhere be hollowed out as sharply as the ball is round. told: `Model`'s m.told.
+    """
+    if not active(profile):
+        return 0
+    if abs(profile.amplitude) + profile.wear >= 0.5 * radius:
+        told[0], told[1], told[2] = profile.amplitude, profile.wear, radius
+        return 1
+    most = sharpest(radius, profile, dent)
+    if most * ball_radius * ROOM < 1.0:
+        return 0
+    worn = profile.wear / (profile.wear_width * profile.wear_width)
+    lobed = abs(profile.amplitude) * profile.lobes * profile.lobes
+    told[1], told[2] = 1.0 / most, ball_radius
+    if worn > lobed:
+        told[0] = profile.wear
+        return 2
+    told[0] = profile.amplitude
+    return 3

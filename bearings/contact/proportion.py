@@ -7,14 +7,23 @@ so wide that it is not touched.
 
 from __future__ import annotations
 
+from touchdown.modelkit.kernel import kernel
+
 MOST = 0.5
 
 
-def out_of_proportion(name: str, length: float, beside: str, size: float) -> str | None:
-    """Why the `length` (m) of parameter `name` cannot be meant `beside` one of `size` (m), or None."""
-    if abs(length) <= MOST * size:
-        return None
+def problem(name: str, beside: str) -> str:
+    """What is wrong where the length `name` is `out_of_proportion` to `beside`."""
     return (
-        f"{name} = {length:g} m is out of all proportion to {beside} = {size:g} m; it may be half of that "
-        f"at most. A plain number is in m; write '{length:g} mm' where mm are meant"
+        f"{name} = {{0:g}} m is out of all proportion to {beside} = {{1:g}} m; it may be half of that "
+        "at most. A plain number is in m; write '{0:g} mm' where mm are meant"
     )
+
+
+@kernel
+def out_of_proportion(length, size, told):
+    """Whether a `length` cannot be meant beside one of `size` (m); told: `Model`'s m.told."""
+    if abs(length) <= MOST * size:
+        return False
+    told[0], told[1] = length, size
+    return True

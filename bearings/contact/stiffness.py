@@ -15,14 +15,14 @@ second kind and 1.5277 + 0.6023 ln(ratio) the first.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import cache
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipkm1
+from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.numerics import elliptic
 
-CIRCLE = 1e-6  # of a ratio above 1; closer to it the ellipse is a circle, and K - E cancels
+EXACT, PRINTED = range(2)  # how the ellipse is found
+MOST_STEPS = 40  # of the search for kappa; six are enough
+ROUNDING = 4e-16  # of ln(kappa)
 
 
 class Ellipse(NamedTuple):
@@ -33,73 +33,79 @@ class Ellipse(NamedTuple):
     second_kind: float
 
 
-@cache
-def exact_ellipse(ratio: float) -> Ellipse:
-    """By Hertz's theory, for curvatures of `ratio` (at least 1)."""
-    if ratio < 1.0 + CIRCLE:
-        return Ellipse(1.0, 0.5 * math.pi, 0.5 * math.pi)
+@inlined
+def exact_ellipse(ratio):
+    """`Ellipse` by Hertz's theory, for curvatures of `ratio` (at least 1).
 
-    def of(kappa: float) -> Ellipse:
-        complement = kappa**-2.0
-        return Ellipse(kappa, float(ellipkm1(complement)), float(ellipe(1.0 - complement)))
+    ln(ratio) rises with ln(kappa), by 3/2 near a circle and by less than 2 anywhere: secants, the first of
+    them from the circle, or the middle of what that leaves should one lead out of it.
+    """
+    wanted = max(math.log(ratio), 0.0)
+    low, high = wanted / 2.0, wanted / 1.5
+    at, step, off = high, high, -wanted
+    kappa, first, second = 1.0, 0.5 * math.pi, 0.5 * math.pi
+    for _ in range(MOST_STEPS):
+        kappa = math.exp(at)
+        complement = 1.0 / (kappa * kappa)
+        integrals = elliptic.complete((kappa - 1.0) * (kappa + 1.0) * complement, complement)
+        first, second = integrals.first, integrals.second
+        if not abs(step) > ROUNDING * max(at, 1.0):
+            break
+        before, off = off, math.log(kappa * kappa * integrals.left / integrals.lost) - wanted
+        if off < 0.0:
+            low = at
+        else:
+            high = at
+        step *= -off / (off - before)
+        if not low <= at + step <= high:
+            step = 0.5 * (low + high) - at
+        at += step
+    return Ellipse(kappa, first, second)
 
-    def mismatch(kappa: float) -> float:
-        _, first, second = of(kappa)
-        return (kappa**2 * second - first) / (first - second) - ratio
 
-    # kappa is below its ratio, and about the ratio to the power of 2/3 near a circle
-    kappa = brentq(mismatch, 1.0 + 0.5 * (ratio - 1.0) / ratio, ratio, xtol=1e-14)
-    return of(cast(float, kappa))
-
-
-def printed_ellipse(ratio: float) -> Ellipse:
-    """By the fits that the source prints (2.46), for curvatures of `ratio`."""
+@inlined
+def printed_ellipse(ratio):
+    """`Ellipse` by the fits that the source prints (2.46), for curvatures of `ratio`."""
     return Ellipse(1.0339 * ratio**0.636, 1.5277 + 0.6023 * math.log(ratio), 1.0003 + 0.5968 / ratio)
 
 
-def effective_modulus(modulus: float, poisson: float) -> float:
+@inlined
+def effective_modulus(modulus, poisson):
     """E_tot of (2.46) for two bodies of the same material (Pa)."""
-    return modulus / (1.0 - poisson**2)
+    return modulus / (1.0 - poisson * poisson)
 
 
-def race_contact_stiffness(
-    ball_diameter: float,
-    race_radius: float,
-    conformity: float,
-    modulus: float,
-    poisson: float,
-    ellipse: Callable[[float], Ellipse] = exact_ellipse,
-) -> float:
-    """Hertz stiffness of a ball on its race (N/m^1.5).
+@kernel
+def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, poisson, hertz):
+    """Hertz stiffness of a ball on its race (2.45), N/m^1.5; not a number where they meet in no point.
 
     ball_diameter, race_radius in m; race_radius is positive for the inner race (convex) and negative
-    for the outer one (concave). `conformity` is the groove radius over the ball radius; `ellipse` gives the
-    contact's for a ratio of curvatures. (2.45) reads lengths in mm and gives N/mm^1.5; in SI it needs no
-    factor. Raises ValueError where ball and race do not touch in a point.
+    for the outer one (concave). `conformity` is the groove radius over the ball radius, modulus in Pa;
+    hertz: EXACT or PRINTED. (2.45) reads lengths in mm and gives N/mm^1.5; in SI it needs no factor.
     """
     ball_radius = ball_diameter / 2.0
     across = 1.0 / ball_radius + 1.0 / race_radius
     along = 1.0 / ball_radius - 1.0 / (conformity * ball_radius)
     if along <= 0.0 or across <= 0.0:
-        raise ValueError(
-            f"no point contact: ball diameter {ball_diameter:g} m, race radius {race_radius:g} m, "
-            f"conformity {conformity:g}; a conformity above 1 and a race wider than the ball are needed"
-        )
-    ellipticity, first_kind, second_kind = ellipse(across / along)
+        return math.nan
+    ratio = across / along
+    ellipse = printed_ellipse(ratio) if hertz == PRINTED else exact_ellipse(ratio)
     curvature_sum = 1.0 / (across + along)
-    root = math.sqrt(2.0 * curvature_sum * second_kind / first_kind**3)
-    return math.pi / 3.0 * root * ellipticity * effective_modulus(modulus, poisson)
+    root = math.sqrt(2.0 * curvature_sum * ellipse.second_kind / ellipse.first_kind**3.0)
+    return math.pi / 3.0 * root * ellipse.ellipticity * effective_modulus(modulus, poisson)
 
 
-def in_series(inner: float, outer: float) -> float:
+@inlined
+def in_series(inner, outer):
     """One stiffness for ball-inner and ball-outer contacts in series (2.5), N/m^1.5."""
     return (inner ** (-1.0 / 1.5) + outer ** (-1.0 / 1.5)) ** -1.5
 
 
-def damping_from_ratio(stiffness: float, mass: float, ratio: float, indentation: float = 1.0) -> float:
+@inlined
+def damping_from_ratio(stiffness, mass, ratio, indentation):
     """Damping coefficient from a damping ratio (2.47): 2 sqrt(k m) ratio over the peak indentation.
 
-    For the indentation-proportional law (2.38) pass the expected peak `indentation` (m); the result is
-    then in N s/m^2 when `stiffness` is the slope of the force at that indentation (N/m).
+    For the indentation-proportional law (2.38): `stiffness` is the slope of the force (N/m) at the expected
+    peak `indentation` (m), the result in N s/m2. With an indentation of 1 it is that of a linear damper.
     """
     return 2.0 * math.sqrt(stiffness * mass) * ratio / indentation

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from touchdown.bearings import seat
+from touchdown.bearings.contact import bore, friction
 from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.friction import problem as friction_problem
 from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.contact.peaks import PeakMemory
-from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness
-from touchdown.modelkit.kernel import kernel
+from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness, geometry
+from touchdown.bearings.rolling.balls.rest import Springs, resting_place
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Energy, Interface, MountReaction, SeatReaction
 from touchdown.modelkit.variables import group, real
 
@@ -32,18 +32,37 @@ class RollingParameters:
     ring: ring.Ring = group(ring.Ring)
 
 
-def problem(p: RollingParameters, *frictions: str) -> str | None:
-    """What is wrong between the parameters that all rolling bearings share, or None.
+STATIC = RollingParameters().friction.static
+BALLS = len(geometry.PROBLEMS)
+OWN = BALLS + len(bore.PROBLEMS)  # problems of balls and journal; those of a model's other laws follow
 
-    frictions: names of the parameter groups that are friction laws.
+
+def problems(*frictions: str) -> tuple[str, ...]:
+    """What is found wrong by `problem`, and in the friction laws in these groups of the parameters."""
+    others = (text for name in frictions for text in friction.problems(name))
+    return (*geometry.PROBLEMS, *bore.PROBLEMS, *others)
+
+
+@inlined
+def problem(p, crowded, told):
+    """What is wrong between the parameters p that all rolling bearings share: its number, or 0.
+
+    crowded: 1 where more balls are admitted than fit; told: `Model`'s m.told.
     """
-    journal = "journal_radius", p.journal_radius
-    return (
-        p.balls.problem()
-        or out_of_proportion("clearance", p.clearance, *journal)
-        or out_of_proportion("contact.expected_indentation", p.contact.expected_indentation, *journal)
-        or friction_problem(p, *frictions)
-    )
+    found = geometry.problem(p.balls, crowded, told)
+    if found == 0:
+        found = bore.problem(p, STATIC, told)
+        found = BALLS + found if found != 0 else 0
+    return found
+
+
+@inlined
+def law_problem(found, law, usual, before, told):
+    """`found`, if that is a problem, else that of a friction law, a record, behind `before` others."""
+    if found == 0:
+        found = friction.problem(law, usual, told)
+        found = before + found if found != 0 else 0
+    return found
 
 
 @dataclass(frozen=True)
@@ -85,9 +104,15 @@ def state_constants(m):
     o.ball_outer, o.ball_inner, o.rings = counted.ball_outer, counted.ball_inner, counted.rings
 
 
-def race_stiffness(b: BallSet) -> RaceStiffness:
-    """Of the race contacts, from geometry."""
-    return RaceStiffness(b.inner_stiffness(), b.outer_stiffness(), b.series_stiffness())
+@inlined
+def settle(m, spread):
+    """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
+    p, d, b = m.p, m.d, m.p.balls
+    bore.settle(d, p, p.ring.mass)
+    geometry.set_stiffness(d.stiffness, b)
+    d.inner_radius = geometry.inner_radius(b)
+    springs = Springs(b.count, b.first_angle, spread, b.play, b.rows * d.stiffness.series)
+    d.rest_x, d.rest_y = resting_place(springs, p.ring.mass * p.gravity, b.pitch_diameter)
 
 
 GEOMETRY = (

@@ -7,11 +7,9 @@ m.s.before the accelerations of the kick before.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.modelkit.integrators import verlet
@@ -56,8 +54,8 @@ def forecast(trial, dq, h, kick, m):
     for k, i in enumerate(COPIES):
         m.s.ahead[k] = 0.5 * h * dq[i]
     m.s.kick = kick
-    n = m.s.seat.inside
-    m.s.before[:n] = dq[:n]
+    for i in range(m.s.seat.inside):  # assigned at once, numba would compare shapes and refuse in Python
+        m.s.before[i] = dq[i]
 
 
 @kernel
@@ -91,17 +89,22 @@ def leapfrog(rhs, drift, fastest, observe, m, work, span):
     return m.h, status, evaluations
 
 
-def step_limits(longest: float, contacts: Sequence[tuple[ContactLaw, float]]) -> dict[str, float]:
-    """`micro_step` (s) and `resolution` (rad) of the leapfrog method: as asked for, and short enough.
+@kernel
+def refined(longest):
+    """Factor on steps that contacts shorten: 1, and less for a `longest` (s) below the default.
 
-    Steps that contacts shorten are refined with the one asked for, so that all error falls with it;
-    contacts: (law, mass in kg of the lighter body). A body that hits at the landing's speed v must not fly
-    past the contact: it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
+    So all error falls with the step that is asked for.
     """
-    finer = min(longest / MICRO_STEP, 1.0)
-    steps = [longest]
-    for law, mass in contacts:
-        power = 1.0 / (law.exponent + 1.0)
-        depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2 / law.stiffness) ** power
-        steps.append(finer * STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE)
-    return {"micro_step": min(steps), "resolution": finer * RESOLUTION}
+    return min(longest / MICRO_STEP, 1.0)
+
+
+@kernel
+def step_in_hit(longest, law, mass):
+    """Longest step (s) that resolves a hit, for the `longest` (s) that is asked for.
+
+    law: a record; mass (kg) of the lighter body. At the landing's speed v it must not fly past the contact:
+    it gets ((n + 1)/2 m v^2/k)^(1/(n + 1)) deep and stays three times that over v.
+    """
+    power = 1.0 / (law.exponent + 1.0)
+    depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2.0 / law.stiffness) ** power
+    return refined(longest) * STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE

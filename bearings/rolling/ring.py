@@ -234,7 +234,9 @@ def report(q, m, race_radius):
     c.sliding = o.journal_speed - o.surface_speed
 
 
-def error_weights() -> list[float]:
-    """Of the ring's components, in the order of the state; the heat lost is a quadrature."""
-    length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
-    return [length, length, speed, speed, spin, spin, 0.0]
+@inlined
+def set_weights(weight):
+    """Set the error weights of the ring's components in `weight` (n,); the heat lost is a quadrature."""
+    weight[RX] = weight[RY] = 1.0 / seat.POSITION_SCALE
+    weight[RVX] = weight[RVY] = 1.0 / seat.VELOCITY_SCALE
+    weight[RANGLE] = weight[RW] = 1.0 / seat.SPIN_SCALE

@@ -11,15 +11,16 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.pair import OUTSIDE, Place, kick_of, press
+from touchdown.bearings.contact.pair import OUTSIDE, Place
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
-from touchdown.bearings.rolling.side import heat_of, note, note_apart
-from touchdown.modelkit.angles import cosine_and_sine
+from touchdown.bearings.rolling.sides.chain import after, link, part_ways, press_of, share
+from touchdown.bearings.rolling.sides.contact import heat_of
 from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.numerics.angles import cosine_and_sine
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
@@ -172,45 +173,42 @@ def press_balls(q, dq, m):
 @kernel
 def neighbour_forces(q, dq, m):
     """Each ball in the state q against the next one; adds to the derivatives dq."""
-    p, d, at = m.p, m.d, m.s.balls
-    rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
-    angle, faster, turning = part(q, ANGLE, m), part(dq, ORBIT, m), part(dq, SPIN, m)
+    d, s, count = m.d, m.s, m.p.balls.count
+    _find_neighbours(q, m)
+    share(s.side, s.chain, count)
+    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
     for b in range(count):
-        k = b + 1 if b + 1 < count else 0
-        between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
-        if between >= d.touch_angle:
-            note_apart(m.s.side, b)
-            continue
-        ex, ey = at.cosine[k] - at.cosine[b], at.sine[k] - at.sine[b]
-        square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
-        lever = rm * math.sqrt(1.0 - square)
-        # the bodies that touch: along the chord, and by their spins
-        following, this = _along_chord(q, k, lever, m), _along_chord(q, b, lever, m)
-        place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
-        c = press(
-            following, this, place, OUTSIDE, d.ball_contact, d.ball_friction, _kick(b, k, place, lever, m)
-        )
-        note(m.s.side, b, c, place, d.ball_contact)
-        m.s.lever[b] = lever
-        push = c.normal * lever / (rm * rm * d.mass)
-        faster[b] -= push
-        faster[k] += push
-        turning[b] += c.second_moment / d.inertia
-        turning[k] += c.first_moment / d.inertia
+        if s.side.indentation[b] > 0.0:
+            k = after(b, count)
+            c = press_of(b, d.ball_contact, d.ball_friction, m)
+            push = c.normal * s.lever[b] / (d.pitch_radius * d.pitch_radius * d.mass)
+            faster[b] -= push
+            faster[k] += push
+            turning[b] += c.second_moment / d.inertia
+            turning[k] += c.first_moment / d.inertia
 
 
 @kernel
-def _kick(b, k, place, lever, m):
-    """The `Kick` of balls `b` and `k`, the next, whose chord has a `lever` (m) about the middle.
-
-    The answer along the chord is doubled: the neighbours on either side push as they did in the kick
-    before, and a row of balls under much damping would else swing from kick to kick.
-    """
-    d, side, before = m.d, m.s.side, m.s.before
-    answers = 2.0 * d.ball_radius * d.ball_radius / d.inertia, 4.0 / d.mass
-    first, second = _along_chord(before, k, lever, m), _along_chord(before, b, lever, m)
-    last = side.tangential[b], side.normal[b]
-    return kick_of(m.s.kick, answers, first, second, place, OUTSIDE, last)
+def _find_neighbours(q, m):
+    """Balls in the state q that touch the next one, and what their forces hang on (`sides.chain`)."""
+    p, d, at, before = m.p, m.d, m.s.balls, m.s.before
+    rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
+    angle, spun = part(q, ANGLE, m), 2.0 * rb * rb / d.inertia
+    for b in range(count):
+        k = after(b, count)
+        between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
+        if between >= d.touch_angle:
+            part_ways(m.s.side, b)
+            continue
+        ex, ey = at.cosine[k] - at.cosine[b], at.sine[k] - at.sine[b]
+        square = 0.25 * (ex * ex + ey * ey)  # of the sine of half the angle between them
+        m.s.lever[b] = lever = rm * math.sqrt(1.0 - square)
+        # the bodies that touch: along the chord, and by their spins
+        following, this = _along_chord(q, k, lever, m), _along_chord(q, b, lever, m)
+        rates = _along_chord(before, k, lever, m), _along_chord(before, b, lever, m)
+        place = Place(1.0, 0.0, 2.0 * (rb - rm * math.sqrt(square)), -rb, rb, 0.0)
+        answers = spun, lever * lever / (rm * rm * d.mass)
+        link(b, count, following, this, rates, place, d.ball_contact, answers, m)
 
 
 @kernel
@@ -225,7 +223,7 @@ def rubbing(dq, m):
     loss, count = 0.0, m.p.balls.count
     for b in range(count):
         if m.s.side.indentation[b] > 0.0:
-            k, lever = b + 1 if b + 1 < count else 0, m.s.lever[b]
+            k, lever = after(b, count), m.s.lever[b]
             following, this = _along_chord(dq, k, lever, m), _along_chord(dq, b, lever, m)
             loss += heat_of(m.s.side, b, m.s.kick, following, this, OUTSIDE)
     return loss

@@ -11,9 +11,9 @@ a point mass and of such oscillators, one for each of the rotor's elastic modes 
 With it run the quadratures of what crosses the interface: impulse, first moment in time, and work. The
 load handed back is mean + slope (t - t_mid) with the same impulse and first moment, so a body that is a
 point mass ends the step exactly where its copy did. For a housing on springs the two numbers are chosen
-so that it does, too (`modelkit.oscillator.load_for`); without springs that is the same impulse and first
-moment again. For elastic modes, which may be faster than the macro step, what mean and slope leave open
-is handed over beside them (`ModeLoad`).
+so that it does, too (`modelkit.numerics.oscillator.load_for`); without springs that is the same impulse
+and first moment again. For elastic modes, which may be faster than the macro step, what mean and slope
+leave open is handed over beside them (`ModeLoad`).
 
 At the next restart the copy takes the body's state; half the sum of the loads before and after times
 that jump is the work the copy missed, and is accounted for as `jump`.
@@ -53,7 +53,7 @@ from touchdown.bearings.seat.layout import (
     BearingInputs,
     SeatMemory,
     bearing_memory,
-    weights,
+    set_weights,
 )
 from touchdown.bearings.seat.load import last_load
 from touchdown.bearings.seat.step import advance, advance_timed, begin, instant, integrate
@@ -89,6 +89,6 @@ __all__ = [
     "integrate",
     "journal_motion",
     "last_load",
+    "set_weights",
     "take_inputs",
-    "weights",
 ]

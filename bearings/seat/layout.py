@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.model import memory_layout
 from touchdown.modelkit.ports import MODES, FlexibleSeatMotion, MountMotion
 from touchdown.modelkit.variables import Nothing, group, integer, real
@@ -67,10 +68,9 @@ def bearing_memory(
     return memory_layout(parameters, inputs, outputs, size + ROOM, derived, hidden)
 
 
-def weights(inside: list[float]) -> np.ndarray:
-    """Error weights of a bearing's state: the copies' and those of what is `inside`."""
-    head = np.zeros(INSIDE)
-    head[[JX, JY, HX, HY]] = 1.0 / POSITION_SCALE
-    head[[JVX, JVY, HVX, HVY]] = 1.0 / VELOCITY_SCALE
-    head[JW] = 1.0 / SPIN_SCALE
-    return np.concatenate([head, np.array(inside)])
+@inlined
+def set_weights(weight):
+    """Set the error weights of the copies, the first `INSIDE` of a bearing's `weight` (n,)."""
+    weight[JX] = weight[JY] = weight[HX] = weight[HY] = 1.0 / POSITION_SCALE
+    weight[JVX] = weight[JVY] = weight[HVX] = weight[HVY] = 1.0 / VELOCITY_SCALE
+    weight[JW] = 1.0 / SPIN_SCALE

@@ -34,8 +34,8 @@ from touchdown.bearings.seat.layout import (
     QX,
     QY,
 )
-from touchdown.modelkit import oscillator
 from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.numerics import oscillator
 from touchdown.modelkit.ports import Load
 
 STIFFEST = 3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load

@@ -138,7 +138,8 @@ def advance_timed(ready, react, integrate, report, words, m, work, time, step):
             _, status, evaluations = integrate(m, work, step)
             hand_over(q, m, step)
             ahead = handed_over(m)
-            words[:] = kept
+            for i in range(len(words)):  # a slice would bring the texts of refusals into the machine code
+                words[i] = kept[i]
             m.evaluations += evaluations
             hand_instead(m, ahead)
         if status == OK and not is_finite(m):

@@ -10,10 +10,10 @@ from inspect import cleandoc
 from pathlib import Path
 
 from touchdown.fmus.description import causality
-from touchdown.fmus.host import NEEDED
-from touchdown.fmus.link import Interpreter
+from touchdown.fmus.python.host import NEEDED
+from touchdown.fmus.python.link import Interpreter
+from touchdown.fmus.python.sources import ROOT
 from touchdown.fmus.recipes import Recipe
-from touchdown.fmus.sources import ROOT
 from touchdown.fmus.version import VERSION
 from touchdown.modelkit.model import Model, Slot, slots
 from touchdown.modelkit.variables import Causality
@@ -37,10 +37,13 @@ td:first-child { font-family: monospace }
 """
 
 
-def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
-    """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to."""
+def page(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = "") -> str:
+    """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to.
+
+    needs: what it needs in a host, where that is no Python.
+    """
     title = _plain(recipe.model.title)
-    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter)]
+    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter, needs)]
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
@@ -49,21 +52,21 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None) -> str:
     )
 
 
-def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]:
+def article(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = "") -> list[str]:
     """What stands below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
     own, *parts = _documented(recipe.model)
     body = [
         f"<p>{_plain(model.about)}.</p>",
-        *_prose(own),
-        f"<p>Numbers in parentheses are equations, tables, figures and sections of the source: {SOURCE}, "
-        "with its errata corrected.</p>",
+        *_physics(own),
         *_validity(slots(model)),
-        *_host(interpreter),
+        "<h2>What it needs</h2>",
+        *([f"<p>{_plain(needs)}</p>"] if needs else _host(interpreter)),
         *_example(recipe),
         *_tables(slots(model)),
-        "<h2>The equations of its parts</h2>",
     ]
+    if parts:
+        body.append("<h2>The equations of its parts</h2>")
     for text in parts:
         body += _prose(text, heading="h3")
     return body
@@ -73,7 +76,12 @@ def article(recipe: Recipe, interpreter: Interpreter | None = None) -> list[str]
 
 
 def _documented(model: Model) -> list[str]:
-    """Docstrings of the module that declares the model's kernels, and of the parts that one imports."""
+    """Docstrings of the module that declares the model's kernels, and of the parts that one imports.
+
+    Of a model that is not the project's: one that is empty.
+    """
+    if not model.advance.__module__.startswith(PHYSICS):
+        return [""]
     text = _source(model.advance.__module__)
     parts = (name for name in _imports(text) if name.startswith(PHYSICS))
     return [_docstring(text), *(_docstring(_source(name)) for name in parts)]
@@ -121,6 +129,16 @@ def _prose(text: str, heading: str = "") -> Iterator[str]:
             yield f"<p>{_words(block)}</p>"
 
 
+def _physics(own: str) -> Iterator[str]:
+    """What a model of the project's is made after."""
+    if own:
+        yield from _prose(own)
+        yield (
+            "<p>Numbers in parentheses are equations, tables, figures and sections of the source: "
+            f"{SOURCE}, with its errata corrected.</p>"
+        )
+
+
 def _words(text: str) -> str:
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", _plain(" ".join(text.split())))
 
@@ -157,7 +175,6 @@ def _validity(exposed: Sequence[Slot]) -> Iterator[str]:
 
 
 def _host(interpreter: Interpreter | None) -> Iterator[str]:
-    yield "<h2>What it needs</h2>"
     if interpreter is None:
         yield (
             f"<p>Python 3.11 or later with {', '.join(NEEDED)}, as the program that loads it. A host "

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from touchdown.fmus import build as builder
-from touchdown.fmus.link import LinkError, interpreter
+from touchdown.fmus.native.build import MODES, Native, prepare
+from touchdown.fmus.native.build import build as build_native
+from touchdown.fmus.native.in_c import recipe_in_c
+from touchdown.fmus.native.targets import NativeError, chosen
+from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
@@ -24,22 +29,61 @@ def build(
     folder: PathLike = "build",
     *,
     link_python: bool = False,
+    native: bool = False,
+    targets: Iterable[str] = (),
+    modes: Iterable[int] | None = None,
 ) -> list[Path]:
     """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
 
-    Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine.
-    Raises TouchdownError for an unknown name, and where the folder cannot be written.
+    Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine; native:
+    for hosts without Python anywhere, of the machines `targets` (none: this one's kind), rotors with
+    constants for these numbers of `modes`. Raises TouchdownError for an unknown name, where the folder
+    cannot be written, and where a compiler is missing.
 
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
     """
-    recipes = [_recipe(os.fspath(fmu)) for fmu in (names() if fmus is None else several(fmus))]
+    made = built_one_by_one(
+        fmus, folder, link_python=link_python, native=native, targets=targets, modes=modes
+    )
+    return list(made)
+
+
+def built_one_by_one(
+    fmus: PathLike | Iterable[PathLike] | None,
+    folder: PathLike,
+    *,
+    link_python: bool,
+    native: bool,
+    targets: Iterable[str],
+    modes: Iterable[int] | None,
+) -> Iterator[Path]:
+    """`build`, each file when it is there."""
+    if native and link_python:
+        raise TouchdownError("an FMU is native or linked to a Python; choose one")
     try:
-        linked = interpreter() if link_python else None
+        given = names() if fmus is None else several(fmus)
+        recipes = [_recipe(os.fspath(fmu), native) for fmu in given]
+        make = _native(recipes, targets, modes) if native else partial(_in_python, linked=link_python)
         with writing_to(Path(folder)):
-            return [builder.build(recipe, Path(folder), linked) for recipe in recipes]
-    except LinkError as error:
+            for recipe in recipes:
+                yield make(recipe, Path(folder))
+    except (LinkError, NativeError) as error:
         raise TouchdownError(str(error)) from None
+
+
+def _in_python(recipe: Recipe, folder: Path, linked: bool) -> Path:
+    return builder.build(recipe, folder, interpreter() if linked else None)
+
+
+def _native(
+    recipes: Sequence[Recipe], targets: Iterable[str], modes: Iterable[int] | None
+) -> Callable[[Recipe, Path], Path]:
+    """How to build each of `recipes`, whose kernels are compiled beside each other first."""
+    native = Native(chosen(list(several(targets))), MODES if modes is None else tuple(modes), modes is None)
+    native.check()
+    prepare(recipes)
+    return partial(build_native, native=native)
 
 
 def check(
@@ -61,7 +105,9 @@ def check(
     return check_fmu(os.fspath(fmu), role, names, call_timeout)
 
 
-def _recipe(name: str) -> Recipe:
+def _recipe(name: str, native: bool) -> Recipe:
+    if native and name.endswith(".py"):
+        return recipe_in_c(Path(name))
     recipe = locate(name)
     if not isinstance(recipe, Recipe):
         raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")

@@ -35,6 +35,40 @@ NUMBERS = (Kind.REAL, Kind.INTEGER)  # what is recorded and kept
 SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 
 
+class Call(StrEnum):
+    """What a component is called for at a macro step, as people are told."""
+
+    SET = "setting inputs"
+    STEP = "the step"
+    GET = "reading outputs"
+    FETCH = "reading"
+
+
+@dataclass(frozen=True)
+class InMemory:
+    """A component that is stepped by one function, its values words of its memory. Arrays stay in place."""
+
+    advance: int  # address of `Model.advance`, as numba compiled it; it answers 0 where it can go on
+    words: np.ndarray  # float64, the memory
+    work: np.ndarray  # float64 (rows, columns), scratch
+    taken: np.ndarray  # int64, which words the exchanged inputs are
+    given: np.ndarray  # and the exchanged outputs
+
+
+@dataclass(frozen=True)
+class ByFunctions:
+    """A component that has FMI 2.0's C functions, by their addresses. Arrays stay in place."""
+
+    component: int  # address
+    set_real: int
+    do_step: int
+    get_real: int
+    get_integer: int
+    taken: np.ndarray  # uint32, value references of the exchanged inputs
+    given: np.ndarray  # and of the exchanged outputs
+    checked: bool  # whether it is to be seen that these are finite numbers
+
+
 @dataclass(frozen=True)
 class Variable:
     """One scalar variable of a component."""
@@ -145,6 +179,21 @@ class Component(ABC):
     @abstractmethod
     def step(self, time: float, step: float) -> None:
         """Advance from `time` by `step` (s)."""
+
+    def by_address(self) -> InMemory | ByFunctions | None:
+        """How compiled code takes the steps of this component, as it is bound now; None: it cannot.
+
+        It takes the place of push, step and pull: where one of them is overridden, this counts no more
+        unless it is, too.
+        """
+        return None
+
+    def refuse(self, call: Call, status: int, time: float, step: float) -> None:
+        """Raise TouchdownError: compiled code got `status` from `call`, its step from `time` by `step` (s).
+
+        Says what the method for the same call would have said.
+        """
+        raise NotImplementedError(f"{self.origin} is not stepped by address")
 
     @abstractmethod
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:

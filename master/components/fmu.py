@@ -27,7 +27,7 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component, Kind
+from touchdown.master.components.component import ByFunctions, Call, Component, Kind
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
 
@@ -86,6 +86,15 @@ class _Fetch(NamedTuple):
     data: np.ndarray
     of: int  # address of `references`
     into: int  # address of `data`
+
+
+def _address(held: Any) -> int:
+    """Where a function, or what ctypes points to, stands."""
+    return ctypes.cast(held, ctypes.c_void_p).value or 0
+
+
+def _step_from(time: float) -> str:
+    return f"{Call.STEP} from t = {time:.9g} s"
 
 
 class ArchivedFmu(Component):
@@ -225,12 +234,29 @@ class FmuComponent(ArchivedFmu):
     def push(self) -> None:
         status = self._set_real(self._component, *self._in)
         if status > WARNING:
-            self._check(status, "setting inputs")
+            self._check(status, Call.SET)
 
     def pull(self) -> None:
         status = self._get_real(self._component, *self._out)
         if status > WARNING:
-            self._check(status, "reading outputs")
+            self._check(status, Call.GET)
+
+    def by_address(self) -> ByFunctions:
+        """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here."""
+        taken, given = self._held
+        return ByFunctions(
+            component=_address(self._component),
+            set_real=_address(self._set_real),
+            do_step=_address(self._do_step),
+            get_real=_address(self._get_real),
+            get_integer=_address(self._get_integer),
+            taken=taken,
+            given=given,
+            checked=False,
+        )
+
+    def refuse(self, call: Call, status: int, time: float, step: float) -> None:
+        self._check(status, _step_from(time) if call is Call.STEP else call)
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values = np.zeros(len(names))
@@ -249,7 +275,7 @@ class FmuComponent(ArchivedFmu):
             for call, at, references, data, of, into in fetches:
                 status = call(self._component, of, len(references), into)
                 if status > WARNING:
-                    self._check(status, "reading")
+                    self._check(status, Call.FETCH)
                 values[at] = data
             return values
 
@@ -270,7 +296,7 @@ class FmuComponent(ArchivedFmu):
     def step(self, time: float, step: float) -> None:
         status = self._do_step(self._component, time, step, 1)
         if status > WARNING:
-            self._check(status, f"the step from t = {time:.9g} s")
+            self._check(status, _step_from(time))
 
     def save(self) -> object:
         state = ctypes.c_void_p()

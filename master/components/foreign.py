@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import ByFunctions, Call
 from touchdown.master.components.fmu import FmuComponent, untold
 
 
@@ -63,6 +65,14 @@ class ForeignFmu(FmuComponent):
         # the sum tells for less; during initialisation outputs may lack what they follow from
         if self._stepping and not np.isfinite(self.outputs.sum()):
             self._refuse_what_is_no_number()
+
+    def by_address(self) -> ByFunctions:
+        return replace(super().by_address(), checked=True)
+
+    def refuse(self, call: Call, status: int, time: float, step: float) -> None:
+        self._reached = time + step
+        super().refuse(call, status, time, step)
+        self._refuse_what_is_no_number()  # the FMU itself had nothing against going on
 
     def close(self) -> str:
         if not self._open:

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from touchdown.fmus.build import cached
+from touchdown.fmus.native.build import cached as cached_native
+from touchdown.fmus.native.targets import NativeError
 from touchdown.fmus.recipes import Recipe, names, recipe
 from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
@@ -51,6 +53,7 @@ class Stepping:
     in_process: bool = False  # the project's own: the model, without its FMU
     isolate: bool = False  # an FMU: in a process of its own
     call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
+    native: bool = False  # the project's own: its FMU that needs no Python
 
 
 def load_component(
@@ -60,7 +63,7 @@ def load_component(
     source = locate(fmu, folder)
     if isinstance(source, Recipe) and stepping.in_process:
         return TwinComponent(name, source.model)
-    path, origin = (source, "") if isinstance(source, Path) else (built(source), fmu)
+    path, origin = (source, "") if isinstance(source, Path) else (built(source, stepping.native), fmu)
     if stepping.isolate:
         return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
     if origin:
@@ -74,10 +77,15 @@ def foreign(fmu: str) -> bool:
     return is_file(fmu) and not fmu.endswith(".toml")
 
 
-def built(recipe: Recipe) -> Path:
-    """The FMU of a recipe, built if it is not there. Raises TouchdownError where that cannot be written."""
+def built(recipe: Recipe, native: bool = False) -> Path:
+    """The FMU of a recipe, built if it is not there; native: the one that needs no Python.
+
+    Raises TouchdownError where it cannot be written or, native, cannot be built here.
+    """
     try:
-        path = cached(recipe)
+        path = cached_native(recipe) if native else cached(recipe)
+    except NativeError as error:
+        raise TouchdownError(str(error)) from None
     except OSError as error:
         raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
     tidy()

@@ -12,8 +12,9 @@ import numpy as np
 
 from touchdown.fmus.description import causality
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component, Kind, Variable
-from touchdown.modelkit.instance import Instance
+from touchdown.master.components.component import Call, Component, InMemory, Kind, Variable
+from touchdown.modelkit.instance import Instance, explanation
+from touchdown.modelkit.kernel.address import advance_address
 from touchdown.modelkit.model import Model, ModelError, Slot
 from touchdown.modelkit.variables import Scalar
 
@@ -95,6 +96,14 @@ class TwinComponent(Component):
         except ModelError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None
 
+    def by_address(self) -> InMemory | None:
+        """None before the first step, which has `advance` compiled and constants derived."""
+        address = advance_address(self.instance.model.advance)
+        return InMemory(address, self._words, self.instance.work, self._in, self._out) if address else None
+
+    def refuse(self, call: Call, status: int, time: float, step: float) -> None:
+        raise TouchdownError(f"component {self.name}: {explanation(self.instance, status, time, step)}")
+
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values = np.zeros(len(names))
         variables = [self.variable(n) for n in names]
@@ -130,12 +139,3 @@ class TwinComponent(Component):
             self.instance.start(self._start_time)
         except ModelError as error:
             raise TouchdownError(f"component {self.name}: {error}") from None
-        except (
-            ArithmeticError,
-            ValueError,
-            RuntimeError,
-        ) as error:  # what is derived of them does not exist
-            raise TouchdownError(
-                f"component {self.name}: it cannot start ({error}); look for a parameter that is out of "
-                "all proportion"
-            ) from None

@@ -10,6 +10,7 @@ import numpy as np
 from touchdown.master.components.component import Component
 from touchdown.master.components.contract import JUMP, WORK
 from touchdown.master.coupling.connections import Attachment, Connection, full
+from touchdown.master.coupling.loop.kernels.exchange import scale
 
 
 @dataclass(frozen=True)
@@ -21,8 +22,7 @@ class Scaling:
 
     def cut(self, inputs: np.ndarray, number: int = 0) -> None:
         """Apply them to `inputs`, in whatever macro step."""
-        inputs *= self.factors
-        inputs += self.offsets
+        scale(inputs, self.factors, self.offsets)
 
 
 @dataclass(frozen=True)
@@ -91,5 +91,5 @@ def _intake(fed: Sequence[Connection], position: Mapping[str, int]) -> Intake:
     places = np.array([position[c.source_name] for c in fed], dtype=np.intp)
     scalings: tuple[Scaling, ...] = ()
     if any(c.scale for c in fed):
-        scalings = (Scaling(*np.array([c.scale or (1.0, 0.0) for c in fed]).T),)
+        scalings = (Scaling(*np.ascontiguousarray(np.array([c.scale or (1.0, 0.0) for c in fed]).T)),)
     return Intake(tuple(c.input for c in fed), places, scalings)

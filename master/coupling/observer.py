@@ -40,6 +40,11 @@ class Moment:
         self.last = done == self.steps
         self.beat = self.last or done % BEAT == 0
 
+    @property
+    def next_beat(self) -> int:
+        """The next macro step at which slow looks are taken."""
+        return min(self.steps, (self.done // BEAT + 1) * BEAT)
+
     def keep(self) -> None:
         """Have this moment recorded, whatever the scene's record_every is."""
         self.kept = self.done
@@ -63,6 +68,13 @@ class Observer(ABC):
     @abstractmethod
     def stepped(self, now: Moment) -> None:
         """A macro step was taken; `now.stop(reason)` ends the run here."""
+
+    def due(self, now: Moment) -> int:
+        """The next macro step that it must be told of, after `now.done`; earlier ones it may be told of.
+
+        Macro steps that no observer must be told of are taken in compiled code, where that can be.
+        """
+        return now.next_beat if self.at_beats_only else now.done + 1
 
     def retired(self, names: Sequence[str]) -> None:  # noqa: B027 - most have nothing to do
         """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""

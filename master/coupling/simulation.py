@@ -17,9 +17,11 @@ from touchdown.master.components.component import Component
 from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
-from touchdown.master.coupling.observer import EveryBeat, Moment, Observer
+from touchdown.master.coupling.loop.retirement import Retirement
+from touchdown.master.coupling.loop.steps import MacroSteps
+from touchdown.master.coupling.loop.stretches import Stretches
+from touchdown.master.coupling.observer import BEAT, Moment, Observer
 from touchdown.master.coupling.recorder import Recorder
-from touchdown.master.coupling.retirement import Retirement
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
@@ -72,7 +74,8 @@ def open_system(scene: Scene, in_process: bool = False) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up."""
 
     def load_one(name: str, fmu: str) -> Component:
-        stepping = Stepping(in_process, scene.components[name].isolate, scene.run.call_timeout)
+        spec = scene.components[name]
+        stepping = Stepping(in_process, spec.isolate, scene.run.call_timeout, spec.native)
         return load_component(name, fmu, scene.folder, stepping)
 
     return assemble(scene, load_one)
@@ -109,30 +112,34 @@ def simulate(
         coupling = stepper(system, scene.run)
         with (
             _kept(scene, system, coupling) as ledger,
-            _recording(scene, now, record_to, begin) as recording,
+            _recording(scene, now, record_to, begin) as recorder,
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
-            told = [judge, shortening, *observers, *recording]
+            told = [judge, shortening, *observers]
+            if recorder is not None:
+                told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
-            told.append(EveryBeat(lambda now: progress(now.since_zero, ledger.worst_share)))
+            told.append(_Progress(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
-            wall_time, compiling = _loop(_Steps(coupling, ledger, shortening), told, now, interrupted)
+            steps = Stretches(MacroSteps(coupling, ledger, shortening), judge, recorder, told)
+            wall_time, compiling = _loop(steps, told, now, interrupted)
     return replace(
-        _heard(ledger, judge, shortening),
-        steps=now.done,
-        zero=zero,
-        end=now.time,
+        _seen(now, ledger, judge, shortening),
         wall_time=wall_time,
         start_up=start_up + compiling,
-        ended=now.ended or Ended.COMPLETED,
-        reason=now.reason,
         coupling=coupling.figures,
     )
 
 
-def _heard(ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
-    """What the ledger heard, and what came of it."""
+def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
+    """Where the run ended, what the ledger heard, and what came of it."""
     return Outcome(
+        steps=now.done,
+        zero=now.zero,
+        end=now.time,
+        ended=now.ended or Ended.COMPLETED,
+        reason=now.reason,
+        shorter_steps=shortening.times(now),
         residual=ledger.residual,
         share=ledger.worst_share,
         worst=ledger.worst_title,
@@ -141,7 +148,6 @@ def _heard(ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
         unaudited=ledger.unaudited,
         warned_at=judge.warned_at,
         warning=judge.warning,
-        shorter_steps=shortening.times,
     )
 
 
@@ -207,26 +213,8 @@ def fall_energy(system: System) -> float:
     return max(energies)
 
 
-class _Steps:
-    """Macro steps, whole or divided, each part of them booked."""
-
-    def __init__(self, coupling: Stepper, ledger: Ledger, shortening: Shortening) -> None:
-        self._coupling, self._ledger, self._shortening = coupling, ledger, shortening
-        self.length = coupling.run.macro_step  # s
-        self._taken = 0  # with the parts of those divided
-
-    def take(self, number: int) -> None:
-        """Take macro step `number` (from 0)."""
-        parts = 2**self._shortening.halvings
-        part = self.length / parts
-        for k in range(parts):
-            self._coupling.step(number * parts + k, number * self.length + k * part, part)
-            self._taken += 1
-            self._ledger.book(self._taken, part)
-
-
 def _loop(
-    steps: _Steps, observers: Sequence[Observer], now: Moment, interrupted: Interrupts
+    steps: Stretches, observers: Sequence[Observer], now: Moment, interrupted: Interrupts
 ) -> tuple[float, float]:
     """Take macro steps until the end, or until the run is to end.
 
@@ -237,18 +225,15 @@ def _loop(
     at_steps = [observer.stepped for observer in observers if not observer.at_beats_only]
     began = settled = clock.perf_counter()
     try:
-        for number in range(now.steps):
+        while not now.last and now.ended is None:
             if interrupted.is_set():
                 now.stop(interrupted.reason, Ended.INTERRUPTED)
                 break
-            steps.take(number)
-            now.move(number + 1, steps.length)
+            steps.take(now)
             for stepped in at_beats if now.beat else at_steps:
                 stepped(now)
-            if number == 0:
+            if now.done == 1:
                 settled = clock.perf_counter()
-            if now.ended is not None:
-                break
     except TouchdownError as error:
         now.fail(str(error))
     ended = clock.perf_counter()
@@ -279,22 +264,42 @@ class _Recording(Observer):
         if now.done % self._every == 0 or now.last or now.kept == now.done or now.ended:
             self._recorder.append(now.since_zero)
 
+    def due(self, now: Moment) -> int:
+        """At the end; compiled code records, and what somebody wants kept is told to all."""
+        return now.steps
+
     def retired(self, names: Sequence[str]) -> None:
         self._recorder.rest(names)
+
+
+class _Progress(Observer):
+    """Tells how far the run is, not more often than there are beats."""
+
+    def __init__(self, tell: Callable[[Moment], object]) -> None:
+        self._tell, self._told = tell, 0
+
+    def stepped(self, now: Moment) -> None:
+        if now.last or now.done >= self._told + BEAT:
+            self._told = now.done
+            self._tell(now)
+
+    def due(self, now: Moment) -> int:
+        """Whenever macro steps stop for others, or because time has passed."""
+        return now.steps
 
 
 @contextmanager
 def _recording(
     scene: Scene, now: Moment, path: Path | None, begin: Callable[[], object]
-) -> Generator[list[Observer]]:
-    """The observer that records into a file at `path`, if there is one; the file is closed at the end."""
+) -> Generator[Recorder | None]:
+    """What records into a file at `path`, if there is one; the file is closed at the end."""
     if path is None:
-        yield []
+        yield None
         return
     recorder = Recorder(path, scene, now.system, now.steps + 1, begin)
     try:
         recorder.append(-now.zero)
-        yield [_Recording(recorder, scene.run.record_every)]
+        yield recorder
     finally:
         problem = recorder.close()
         if problem:

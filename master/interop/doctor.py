@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from touchdown.fmus.host import NEEDED
-from touchdown.fmus.link import (
+from touchdown.fmus.python.host import NEEDED
+from touchdown.fmus.python.link import (
     LinkError,
     interpreter,
     patchelf,

@@ -18,6 +18,7 @@ fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
 preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
 every = 2             # macro steps of the run that it takes in one (default: 1)
 isolate = true        # step its FMU in a process of its own (default: false)
+native = true         # one of the project's own: take its FMU that needs no Python (default: false)
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
@@ -107,7 +108,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
 def _component(value: object, where: str, folder: Path) -> ComponentSpec:
     """A table of [components]."""
     given = table(value, where)
-    refuse_unknown(given, ("fmu", "preset", "every", "isolate", "set", "names"), where)
+    refuse_unknown(given, ("fmu", "preset", "every", "isolate", "native", "set", "names"), where)
     if not isinstance(given.get("fmu"), str):
         raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
     settings = flat(table(given.get("set", {}), where))
@@ -115,7 +116,8 @@ def _component(value: object, where: str, folder: Path) -> ComponentSpec:
     every = whole(given.get("every", 1), f"{where} every")
     names = _names(given.get("names", {}), where, folder)
     isolate = switch(given.get("isolate", False), f"{where} isolate")
-    return ComponentSpec(given["fmu"], settings, preset, every, names, isolate=isolate)
+    native = switch(given.get("native", False), f"{where} native")
+    return ComponentSpec(given["fmu"], settings, preset, every, names, isolate=isolate, native=native)
 
 
 def read_names(path: Path) -> dict[str, str]:

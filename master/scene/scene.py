@@ -28,6 +28,7 @@ class ComponentSpec:
     inherited: Mapping[str, object] = field(default_factory=dict[str, object])
     """The scene's settings for what it was swapped for; those it can take are applied before `set`."""
     isolate: bool = False  # its FMU is stepped in a process of its own
+    native: bool = False  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
 
@@ -40,6 +41,7 @@ class ComponentSpec:
             preset=self.preset if "preset" in self.own else None,
             every=self.every,
             isolate=self.isolate,
+            native=self.native,
             inherited={**self.inherited, **theirs},
             instead_of=self.instead_of or self.fmu,
             own=self.own,
@@ -87,7 +89,8 @@ class Scene:
 
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
         catalogue, COMPONENT.every how many macro steps a component takes in one, COMPONENT.isolate whether
-        its FMU is stepped in a process of its own. Raises TouchdownError where there is no such component,
+        its FMU is stepped in a process of its own, COMPONENT.native whether one of the project's own is
+        taken as its native FMU. Raises TouchdownError where there is no such component,
         key or preset; a component's variables are looked up when a run begins.
         """
         scene = self
@@ -108,6 +111,8 @@ class Scene:
             changed = replace(spec, every=whole(value, name))
         elif tail == "isolate":
             changed = replace(spec, isolate=switch(value, name))
+        elif tail == "native":
+            changed = replace(spec, native=switch(value, name))
         else:
             changed = replace(spec, set={**spec.set, tail: plain(value)}, own=_with(spec.own, tail))
         return replace(self, components={**self.components, head: changed})

@@ -40,6 +40,13 @@ def fmus(**_: object) -> list[str]:
     return list(scripts())
 
 
+def targets(**_: object) -> list[str]:
+    """Machines that native FMUs are built for."""
+    from touchdown.fmus.native.targets import TARGETS
+
+    return list(TARGETS)
+
+
 def settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """NAME= of what --set takes: the keys of [run], and what the scene itself sets."""
     from touchdown.master.scene.run_spec import RunSpec

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from touchdown.master.common.errors import STOPPED
+from touchdown.master.common.errors import STOPPED, TouchdownError
 from touchdown.master.verbs.arguments import add_output, add_quiet, add_scene, chosen_scene
 from touchdown.master.verbs.screen import BROKEN_OFF, complain, say_whose_code_runs, warn
 from touchdown.master.verbs.verb import Verb
@@ -22,6 +22,9 @@ def declare(verb: argparse.ArgumentParser) -> None:
     add_scene(verb)
     add_output(verb, "runs/SCENE", "folder for the results")
     verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
+    verb.add_argument(
+        "--native", action="store_true", help="take FMUs that need no Python, built on first use"
+    )
     verb.add_argument("--isolate", action="store_true", help="step each .fmu in a process of its own")
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="draw nothing")
@@ -40,6 +43,10 @@ def execute(options: argparse.Namespace) -> int:
     files = [name for name, spec in chosen.components.items() if foreign(spec.fmu)]
     if options.isolate:
         chosen = chosen.set({f"{name}.isolate": True for name in files})
+    if options.native:
+        if options.in_process:
+            raise TouchdownError("--native takes FMUs and --in-process takes none; choose one")
+        chosen = chosen.set({f"{name}.native": True for name in chosen.components if name not in files})
     say_whose_code_runs({name: chosen.components[name].isolate for name in files})
     result = run_scene(
         chosen,

@@ -9,9 +9,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from touchdown.modelkit.kernel.compiled import PHYSICS_PACKAGES, inlined, kernel, source_hash, woven
+    from touchdown.modelkit.kernel.compiled import (
+        PHYSICS_PACKAGES,
+        inlined,
+        kernel,
+        kernel_of,
+        source_hash,
+        woven,
+    )
 
-__all__ = ["PHYSICS_PACKAGES", "inlined", "kernel", "source_hash", "woven"]
+__all__ = ["PHYSICS_PACKAGES", "inlined", "kernel", "kernel_of", "source_hash", "woven"]
 
 
 def __getattr__(name: str) -> object:

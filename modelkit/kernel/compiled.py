@@ -53,7 +53,19 @@ def kernel(function: F) -> F:
     IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in process
     must agree bit for bit.
     """
-    return _compiled(function, forceinline=False)
+    return _compiled(function, PHYSICS_PACKAGES)
+
+
+def kernel_of(*folders: str) -> Callable[[F], F]:
+    """`kernel` for functions that call none but those in `folders`, which stand beside `modelkit`.
+
+    Their machine code hangs on these sources alone.
+    """
+
+    def kernel(function: F) -> F:
+        return _compiled(function, folders)
+
+    return kernel
 
 
 def woven(function: F) -> F:
@@ -61,22 +73,22 @@ def woven(function: F) -> F:
 
     For the bodies of loops that are to become vector code, which a call left in them would prevent.
     """
-    return _compiled(function, forceinline=True)
+    return _compiled(function, PHYSICS_PACKAGES, forceinline=True)
 
 
-def _compiled(function: F, forceinline: bool) -> F:
+def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False) -> F:
     compiled = numba.njit(error_model="numpy", forceinline=forceinline)(function)
-    folder = _machine_code_folder()
+    folder = _machine_code_folder(packages)
     if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
         cast(Any, compiled)._cache = KernelCache(function, folder)
     return cast(F, compiled)
 
 
 @cache
-def _machine_code_folder() -> Path | None:
+def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
     """Where machine code of these sources is kept; None where nothing can be."""
     try:
-        return own_folder("machine-code", source_hash())
+        return own_folder("machine-code", source_hash(packages))
     except OSError:
         return None
 

@@ -35,6 +35,8 @@ _VERSION = (numba.__version__, sys.implementation.cache_tag)
 class KernelCache(_Cache):
     """What numba asks for code of one kernel before it compiles, and gives it afterwards."""
 
+    active = True  # in this process; code that is kept has been through code generation for one machine
+
     def __init__(self, kernel: Callable[..., object], folder: Path) -> None:
         """`folder` is one for the sources of all that the kernel calls."""
         name = f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
@@ -59,7 +61,7 @@ class KernelCache(_Cache):
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         target_context.refresh()
         key = self._key(sig, target_context.codegen())
-        data = _unsealed(self._path(key)) if self._enabled else None
+        data = unsealed(self._path(key)) if self.active and self._enabled else None
         if data is None:
             return None
         kept_for, code = pickle.loads(data)
@@ -72,10 +74,10 @@ class KernelCache(_Cache):
         """
         arguments, _ = normalize_signature(sig)
         fixed = not any(isinstance(argument, types.Callable) for argument in arguments)
-        if self._enabled and fixed and not data.library.has_dynamic_globals:
+        if self.active and self._enabled and fixed and not data.library.has_dynamic_globals:
             key = self._key(sig, data.codegen)
             with contextlib.suppress(OSError):
-                _replace(self._path(key), _sealed(dumps((key, data._reduce()))))
+                _replace(self._path(key), sealed(dumps((key, data._reduce()))))
 
     def _key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
         """All that decides the code beside other sources: types, processor, numba, the kernel itself."""
@@ -98,13 +100,13 @@ def _text_of(file: str) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
 
 
-def _sealed(data: bytes) -> bytes:
+def sealed(data: bytes) -> bytes:
     """`data` behind a digest of it."""
     return hashlib.sha256(data).digest() + data
 
 
-def _unsealed(path: Path) -> bytes | None:
-    """What `_sealed` was given; None where the file is missing, damaged or another user's."""
+def unsealed(path: Path) -> bytes | None:
+    """What `sealed` was given; None where the file is missing, damaged or another user's."""
     try:
         with path.open("rb") as file:
             if not is_own(os.fstat(file.fileno())):
@@ -113,7 +115,7 @@ def _unsealed(path: Path) -> bytes | None:
     except OSError:
         return None
     data = content[_DIGEST:]
-    return data if content and _sealed(data) == content else None
+    return data if content and sealed(data) == content else None
 
 
 def _replace(path: Path, content: bytes) -> None:

@@ -1,7 +1,8 @@
 """What the modal rotor's kernels read: modes at its stations, gyroscopics, unbalance, stresses.
 
-Prepared once from the shaft and the parameters, outside the kernels. Modal coordinates are
-mass-normalised and the same in both planes; the polar matrix couples the planes (`rotor.motion`).
+What hangs on the number of modes is tabulated once for each shaft, outside the kernels; what else follows
+from the parameters is settled by a kernel (`rotor.flexible`). Modal coordinates are mass-normalised and the
+same in both planes; the polar matrix couples the planes (`rotor.motion`).
 """
 
 from __future__ import annotations
@@ -62,16 +63,19 @@ class Derived:
     nodes: int = integer(0, "of the finite elements")
     mass: float = real(0.0, "kg", "of the rotor")
     inertia: float = real(0.0, "kg.m2", "polar")
-    damping_ratio: float = real(0.0, "1", "of the elastic modes")
+    own_damping_ratio: float = real(0.0, "1", "of the elastic modes, as the rotor's file says")
+    damping_ratio: float = real(0.0, "1", "of the elastic modes; settled")
     position: np.ndarray = array(MOST_NODES)  # of the nodes (N,), m
     stiffness: np.ndarray = array(MOST_MODES)  # omega^2 (n,), 1/s2
-    damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega (n,), 1/s
+    damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega (n,), 1/s; settled
+    reach: np.ndarray = array(MOST_MODES)  # largest deflection (n,), 1/kg^0.5
     weight: np.ndarray = array(MOST_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
-    sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5
+    sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5; settled
     shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the stations (S, n), 1/kg^0.5
     sensor_shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the sensors
     inv_m: np.ndarray = array(MOST_STATIONS)  # (S,), 1/kg
-    static_fy: np.ndarray = array(MOST_STATIONS)  # (S,), N, holds the rotor at rest at the start
+    held: np.ndarray = array(MOST_STATIONS)  # (S,), kg, what of the mass a station holds at the start
+    static_fy: np.ndarray = array(MOST_STATIONS)  # (S,), N, with which it does; settled
     slots: np.ndarray = array(MOST_STATIONS)  # modes told of at a station (S,)
     slot: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # of a mode there (S, n), from 0; -1: none
     lumped: np.ndarray = array(MOST_STATIONS)  # whether the last slot holds more than one mode (S,)
@@ -86,21 +90,12 @@ def seats(shaft: Shaft) -> list[int]:
 
 
 @lru_cache(maxsize=16)
-def chosen_basis(shaft: Shaft, modes: int, residual: int) -> Basis:
-    """The lowest `modes` free-free modes (0: all), with residual vectors at the seats where asked for."""
-    return basis(shaft, modes, tuple(dict.fromkeys(seats(shaft))) if residual else ())
+def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
+    """What hangs on `modes`, the lowest that are kept (0: all), and residual vectors where asked for.
 
-
-@lru_cache(maxsize=16)
-def prepare(
-    shaft: Shaft, modes: int, residual: int, damping_ratio: float, gravity: float, acceleration: int
-) -> Derived:
-    """All constants of a rotor with the lowest `modes` modes (0: all), residual vectors where asked for.
-
-    damping_ratio is that of the elastic modes, gravity in m/s2; `acceleration`: stresses by mode
-    acceleration. Raises ModelError where there are not so many modes.
+    What is to be settled is left at zero. Raises ModelError where there are not so many modes.
     """
-    kept = chosen_basis(shaft, modes, residual)
+    kept = basis(shaft, modes, tuple(dict.fromkeys(seats(shaft))) if residual else ())
     return Derived(
         modes=len(kept.omega),
         stations=len(shaft.stations),
@@ -108,49 +103,41 @@ def prepare(
         nodes=shaft.nodes,
         mass=shaft.mass,
         inertia=shaft.polar_inertia,
-        damping_ratio=damping_ratio,
+        own_damping_ratio=shaft.damping_ratio,
+        damping_ratio=0.0,
         position=_room(shaft.positions(), MOST_NODES),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),
-        stress=_stress_rows(shaft, kept, 1.0 if acceleration else 0.0),
-        **_of_modes(shaft, kept, damping_ratio),
-        **_of_stations(shaft, kept, gravity),
+        stress=_stress_rows(shaft, kept),
+        **_of_modes(shaft, kept),
+        **_of_stations(shaft, kept),
     )
 
 
-def _of_modes(shaft: Shaft, kept: Basis, damping_ratio: float) -> dict[str, np.ndarray]:
+def _of_modes(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
     """What `Derived` holds of each mode by itself."""
     weight = np.zeros(len(kept.omega))
     weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
     return {
         "stiffness": _room(kept.omega**2, MOST_MODES),
-        "damping": _room(2.0 * damping_ratio * kept.omega, MOST_MODES),
+        "reach": _room(np.max(np.abs(kept.shapes[::2]), axis=0), MOST_MODES),
         "weight": _room(weight, MOST_MODES),
     }
 
 
-def _of_stations(shaft: Shaft, kept: Basis, gravity: float) -> dict[str, np.ndarray]:
-    """What `Derived` holds of the stations and sensors, and the sag between the stations that hold."""
+def _of_stations(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
+    """What `Derived` holds of the stations and sensors."""
     shape = kept.deflections([s.node for s in shaft.stations])
-    static = static_forces(shaft, gravity)
     slots, slot = _slots(shape)
     return {
-        "sag": _room(_sag(shape, kept.omega**2, static), MOST_MODES),
         "shape": _room(shape, MOST_STATIONS, MOST_MODES),
         "sensor_shape": _room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
         "inv_m": _room(np.sum(shape**2, axis=1), MOST_STATIONS),
-        "static_fy": _room(static, MOST_STATIONS),
+        "held": _room(held_masses(shaft), MOST_STATIONS),
         "slots": _room(slots, MOST_STATIONS),
         "slot": _room(slot, MOST_STATIONS, MOST_MODES),
         "lumped": _room(np.sum(slot >= 0, axis=1) > slots, MOST_STATIONS),
     }
-
-
-def _sag(shape: np.ndarray, stiffness: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Modal coordinates (n,) at rest under vertical forces (S,); the rigid ones are zero."""
-    sag = np.zeros(len(stiffness))
-    sag[RIGID:] = (shape[:, RIGID:].T @ forces) / stiffness[RIGID:]
-    return sag
 
 
 def _gyroscopic(kept: Basis) -> Gyroscopic:
@@ -173,31 +160,30 @@ def _unbalance(shaft: Shaft, kept: Basis) -> ModalUnbalance:
     )
 
 
-def _stress_rows(shaft: Shaft, kept: Basis, per_load: float) -> StressRows:
-    """`per_load`: 1 where loads add what the modes left out would, else 0."""
+def _stress_rows(shaft: Shaft, kept: Basis) -> StressRows:
     stresses = recovery(shaft, kept, [s.node for s in shaft.stations])
     return StressRows(
         ends=len(stresses.node),
         node=_room(stresses.node, MOST_ENDS),
         bending=_room(stresses.bending.T, MOST_MODES, MOST_ENDS),
         shear=_room(stresses.shear.T, MOST_MODES, MOST_ENDS),
-        bending_load=_room(per_load * stresses.bending_load.T, MOST_STATIONS, MOST_ENDS),
-        shear_load=_room(per_load * stresses.shear_load.T, MOST_STATIONS, MOST_ENDS),
+        bending_load=_room(stresses.bending_load.T, MOST_STATIONS, MOST_ENDS),
+        shear_load=_room(stresses.shear_load.T, MOST_STATIONS, MOST_ENDS),
     )
 
 
-def static_forces(shaft: Shaft, gravity: float) -> np.ndarray:
-    """Vertical force (N) at each station that holds the rotor at rest, by those that levitate it.
+def held_masses(shaft: Shaft) -> np.ndarray:
+    """Mass (kg) that each station holds at the start, by those that levitate the rotor (S,).
 
     Two of them share the weight as levers do; more, by the smallest forces that balance it; none: zero.
     """
-    force = np.zeros(len(shaft.stations))
+    held = np.zeros(len(shaft.stations))
     holding = [i for i, s in enumerate(shaft.stations) if s.name in shaft.levitated_at]
     if holding:
         arms = np.array([shaft.positions()[shaft.stations[i].node - 1] for i in holding])
         balance = np.vstack([np.ones(len(holding)), arms - shaft.centre_of_mass])
-        force[holding] = np.linalg.lstsq(balance, [shaft.mass * gravity, 0.0], rcond=None)[0]
-    return force
+        held[holding] = np.linalg.lstsq(balance, [shaft.mass, 0.0], rcond=None)[0]
+    return held
 
 
 def _slots(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -132,7 +132,7 @@ def _recover(per_mode, per_load, q, m, since_middle, stress):
         stress.x[i], stress.y[i] = 0.0, 0.0
     for k in range(m.d.modes):
         _add(per_mode[k], px[k], py[k], stress)
-    for j in range(m.d.stations):
+    for j in range(m.d.stations if m.p.stress.mode_acceleration == 1 else 0):
         load = m.u.station[j]
         fx, fy = load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle
         if fx != 0.0 or fy != 0.0:

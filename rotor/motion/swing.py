@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.modelkit import oscillator
 from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.numerics import oscillator
 from touchdown.modelkit.variables import array, real
 from touchdown.rotor.modal.data import MOST_MODES
 from touchdown.rotor.motion.state import ANGLE, SPIN, modal, rest

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from ball_sets import problem_of, settled, stiffness_of
 
 from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.master.common.errors import TouchdownError
@@ -20,20 +21,19 @@ STIFFNESS = {  # inner, outer, series in 1e10 N/m^1.5, by (2.43)-(2.46) as corre
 
 @pytest.mark.parametrize("name", sorted(CATALOGUE))
 def test_contact_stiffness(name: str) -> None:
-    balls = CATALOGUE[name].balls
-    found = [
-        1e-10 * k for k in (balls.inner_stiffness(), balls.outer_stiffness(), balls.series_stiffness())
-    ]
+    found = [1e-10 * k for k in stiffness_of(CATALOGUE[name].balls)]
     assert found == pytest.approx(STIFFNESS[name], abs=6e-4)
 
 
 @pytest.mark.parametrize("name", sorted(CATALOGUE))
 def test_the_parts_fit_together(name: str) -> None:
     bearing = CATALOGUE[name]
-    assert bearing.balls.problem() is None
-    assert bearing.bore / 2 < bearing.balls.inner_radius
-    assert bearing.balls.outer_radius < bearing.outside / 2
-    assert bearing.balls.diameter < bearing.width
+    balls = bearing.balls
+    assert problem_of(balls) is None
+    assert bearing.bore < balls.pitch_diameter - balls.diameter
+    assert balls.pitch_diameter + balls.diameter < bearing.outside
+    assert balls.diameter < bearing.width
+    assert bearing.settings()["cage.mass"] == 2.0 * settled(balls)["mass"]
 
 
 @pytest.mark.parametrize("name", sorted(CATALOGUE))

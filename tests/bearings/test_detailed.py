@@ -12,7 +12,6 @@ from systems import history, rotor_on
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS
-from touchdown.bearings.rolling.bodies import cage
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
@@ -341,9 +340,13 @@ def test_energy_at_the_default_steps(name: str) -> None:
 
 def test_weights_and_states_match() -> None:
     for model in MODELS.values():
-        p = model.parameters()
-        extra = len(cage.cage_weights(p.balls)) if model.name == "detailed_caged" else 0
-        assert len(model.weights(p)) == BALLS + SIZE * p.balls.count + extra
+        instance = Instance(model)
+        instance.start(0.0)
+        m = instance.record
+        extra = SIZE if model.name == "detailed_caged" else 0
+        assert m["n"] == BALLS + SIZE * m["p"]["balls"]["count"] + extra
+        assert m["weight"][m["n"] - 1] > 0.0
+        assert not np.any(m["weight"][m["n"] :])
 
 
 @pytest.mark.long

@@ -21,10 +21,10 @@ from fmpy import extract
 from places import COMMAND, SUPPORT
 from pythonfmu import FmuBuilder
 
-from touchdown.fmus import link
 from touchdown.fmus.build import build
-from touchdown.fmus.link import Interpreter, LinkError, interpreter
 from touchdown.fmus.presentation.documentation import page
+from touchdown.fmus.python import link
+from touchdown.fmus.python.link import Interpreter, LinkError, interpreter
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED

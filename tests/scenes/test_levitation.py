@@ -14,7 +14,7 @@ from touchdown.master.scene.scene import Scene
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import load as load_rotor
 from touchdown.rotor.file import shipped
-from touchdown.rotor.modal.data import prepare
+from touchdown.rotor.modal.data import tabulate
 
 SCENES = {"rotor1-9000": "rotor_I", "rotor2-case1": "rotor_II"}
 ENDS = "AB"
@@ -43,13 +43,14 @@ def closed_loop(name: str, modes: int, residual: int, speed: float) -> np.ndarra
     The equations of `rotor.motion.equations` with the law of `bearings.amb`, about the rotor at rest.
     """
     rotor, scene = shaft(name), load_scene(name)
-    d = prepare(rotor, modes, residual, rotor.damping_ratio, GRAVITY, 0)
+    d = tabulate(rotor, modes, residual)
     n = d.modes
     p, v = slice(0, n), slice(n, 2 * n)
     a = np.zeros((2 * n + len(ENDS),) * 2, complex)
     a[p, v] = np.eye(n)
     a[v, p] = -np.diag(d.stiffness[:n])
-    a[v, v] = 1j * speed * d.gyroscopic.polar[:n, :n] - np.diag(d.damping[:n])
+    damping = 2.0 * rotor.damping_ratio * np.sqrt(d.stiffness[:n])
+    a[v, v] = 1j * speed * d.gyroscopic.polar[:n, :n] - np.diag(damping)
     for i, end in enumerate(ENDS, 2 * n):
         control = scene.components[f"amb_{end}"].set
         assert control["sensed"] == 1
@@ -98,10 +99,11 @@ def test_the_linear_equations_are_the_components(name: str, modes: int, step: fl
     scene = scene.set({"rotor.x": off, "rotor.unbalance_scale": 0.0})
     scene = scene.set({"run.macro_step": step})
     times, motion, _ = history(scene, JOURNALS)
-    d = prepare(shaft(name), modes, 1, shaft(name).damping_ratio, GRAVITY, 0)
+    d = tabulate(shaft(name), modes, 1)
     n = d.modes
     loop = closed_loop(name, modes, 1, full_speed(name))
-    sag = 1j * np.append(d.sag[:n], np.zeros(n + 2))  # the control takes it for a displacement
+    bent = d.shape[:, 2:n].T @ (d.held * GRAVITY) / d.stiffness[2:n]
+    sag = 1j * np.concatenate((np.zeros(2), bent, np.zeros(n + 2)))  # a displacement to the control
     push = np.where(np.arange(len(loop)) >= 2 * n, loop @ sag, 0.0)
     ahead = expm(np.block([[loop, push[:, None]], [np.zeros((1, len(loop) + 1))]]) * times[0])
     state = np.concatenate((off * d.weight[:n], np.zeros(n + 2), [1.0]))

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 from touchdown.bearings import seat
 from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, press
 from touchdown.bearings.rolling.ball_state import BALLS
-from touchdown.bearings.rolling.balls import BallSet
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
-from touchdown.bearings.rolling.side import heat_of, note, note_apart
-from touchdown.modelkit.kernel import kernel
+from touchdown.bearings.rolling.sides.contact import heat_of, note, note_apart
+from touchdown.modelkit.kernel import inlined, kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
 
@@ -131,7 +130,15 @@ def report(q, m):
     return kinetic, p.gravity * p.cage.mass * o.y
 
 
-def cage_weights(balls: BallSet) -> list[float]:
-    """Error weights of the cage's components; its angle matters where the pockets are."""
-    length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
-    return [length, length, speed, speed, length * balls.pitch_radius, spin]
+@inlined
+def set_weights(m):
+    """Set the error weights of the cage's components, behind the m.n others, and count them.
+
+    Its angle matters where the pockets are.
+    """
+    i, w = m.n, m.weight
+    w[i + X] = w[i + Y] = 1.0 / seat.POSITION_SCALE
+    w[i + VX] = w[i + VY] = 1.0 / seat.VELOCITY_SCALE
+    w[i + ANGLE] = 1.0 / seat.POSITION_SCALE * (0.5 * m.p.balls.pitch_diameter)
+    w[i + SPIN] = 1.0 / seat.SPIN_SCALE
+    m.n = i + SIZE

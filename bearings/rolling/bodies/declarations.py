@@ -4,24 +4,38 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings.contact import profile as race_profile
-from touchdown.bearings.contact.friction import FrictionLaw, prepared
-from touchdown.bearings.contact.laws import ContactLaw, damped
+from touchdown.bearings.contact import friction, profile
+from touchdown.bearings.contact.friction import FrictionLaw
+from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.contact.profile import RaceProfile
 from touchdown.bearings.contact.search import SearchReport
+from touchdown.bearings.rolling import declarations
 from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts
+from touchdown.bearings.rolling.balls.geometry import (
+    ball_inertia,
+    ball_mass,
+    inner_radius,
+    outer_radius,
+    set_race_law,
+)
+from touchdown.bearings.rolling.balls.rest import place_balls
 from touchdown.bearings.rolling.bodies.race import Contacts
 from touchdown.bearings.rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
     RollingParameters,
-    race_stiffness,
 )
-from touchdown.bearings.rolling.declarations import problem as rolling_problem
-from touchdown.bearings.rolling.micro_step import MICRO_STEP, KickMemory, step_limits
-from touchdown.bearings.rolling.side import SideContacts
+from touchdown.bearings.rolling.micro_step import (
+    MICRO_STEP,
+    RESOLUTION,
+    KickMemory,
+    refined,
+    step_in_hit,
+)
+from touchdown.bearings.rolling.sides.contact import SideContacts
+from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.variables import array, group, groups, integer, real
 
 
@@ -116,49 +130,60 @@ class BallBodiesMemory(RollingMemory, KickMemory):
     search: SearchReport = group(SearchReport)
 
 
-def derived(p: BallBodiesParameters, side: ContactLaw, lighter: float) -> dict[str, object]:
-    """Fields of `BallBodiesDerived` by name, but for `size` and what the model has of its own.
+STATIC = BallBodiesParameters().race_friction.static
+RACES = declarations.OWN + 4  # problems ahead of those of the races' profiles
 
-    side, lighter: law and mass (kg) of the balls' contacts with each other or the cage.
+
+def problems(side: str) -> tuple[str, ...]:
+    """What is found wrong by `problem`; side: name of the friction law at the balls' sides."""
+    profiles = (*profile.problems("inner_profile"), *profile.problems("outer_profile"))
+    return (*declarations.problems("race_friction", side), *profiles)
+
+
+@inlined
+def problem(p, crowded, side, usual, told):
+    """What is wrong between the parameters p of journal, balls and races: its number, or 0.
+
+    crowded: 1 where more balls are admitted than fit; side: friction law of the balls' contacts with each
+    other or the cage, a record, and `usual`, its static coefficient by default; told: `Model`'s m.told.
     """
     b = p.balls
-    inner, outer = b.race_law(b.inner_stiffness()), b.race_law(b.outer_stiffness())
-    hit = [(p.contact, p.ring.mass), (inner, b.ball_mass), (outer, b.ball_mass), (side, lighter)]
-    rest = b.resting_place(p.ring.mass * p.gravity)
-    places = b.starting_places(rest)
-    unused = [0.0] * (MOST_BALLS - b.count)
-    inner_radius = b.inner_radius - 0.5 * b.play
-    return {
-        "contact": damped(p.contact, p.ring.mass),
-        "friction": prepared(p.friction),
-        "race_friction": prepared(p.race_friction),
-        "stiffness": race_stiffness(b),
-        "inner": inner,
-        "outer": outer,
-        **step_limits(p.micro_step, hit),
-        "mass": b.ball_mass,
-        "inertia": b.ball_inertia,
-        "ball_radius": b.ball_radius,
-        "inner_radius": inner_radius,
-        "outer_radius": b.outer_radius + 0.5 * b.play,
-        "searched": int(p.inner_profile.active or p.outer_profile.active),
-        "rest_x": rest[0],
-        "rest_y": rest[1],
-        "x": tuple([x for x, _ in places] + unused),
-        "y": tuple([y for _, y in places] + unused),
-    }
+    found = declarations.problem(p, crowded, told)
+    found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
+    found = declarations.law_problem(found, side, usual, declarations.OWN + 2, told)
+    if found == 0:
+        inner = inner_radius(b) - 0.5 * b.play
+        found = profile.problem(p.inner_profile, inner, 0.5 * b.diameter, -1.0, told)
+        found = RACES + found if found != 0 else 0
+    if found == 0:
+        outer = outer_radius(b) + 0.5 * b.play
+        found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, told)
+        found = RACES + 3 + found if found != 0 else 0
+    return found
 
 
-def problem(p: BallBodiesParameters, side: str) -> str | None:
-    """What is wrong between the parameters of journal, balls and races, or None.
+@inlined
+def settle(m, spread, side, lighter):
+    """Set in m.d what both detailed models share, but for the size; spread: as in `balls.geometry`.
 
-    side: name of the friction law of the balls' contacts with each other or the cage.
+    side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage.
     """
-    b = p.balls
-    inner, outer = b.inner_radius - 0.5 * b.play, b.outer_radius + 0.5 * b.play
-    problems = (
-        rolling_problem(p, "friction", "race_friction", side),
-        race_profile.problem("inner_profile", p.inner_profile, inner, b.ball_radius, hollow=False),
-        race_profile.problem("outer_profile", p.outer_profile, outer, b.ball_radius, hollow=True),
+    p, d, b = m.p, m.d, m.p.balls
+    declarations.settle(m, spread)
+    d.mass, d.ball_radius = ball_mass(b.rows, b.diameter, b.density), 0.5 * b.diameter
+    d.inertia = ball_inertia(d.mass, b.diameter)
+    d.inner_radius, d.outer_radius = inner_radius(b) - 0.5 * b.play, outer_radius(b) + 0.5 * b.play
+    set_race_law(d.inner, b, d.stiffness.inner, d.mass)
+    set_race_law(d.outer, b, d.stiffness.outer, d.mass)
+    d.race_friction = p.race_friction
+    friction.settle(d.race_friction)
+    d.micro_step = min(
+        p.micro_step,
+        step_in_hit(p.micro_step, d.contact, p.ring.mass),
+        step_in_hit(p.micro_step, d.inner, d.mass),
+        step_in_hit(p.micro_step, d.outer, d.mass),
+        step_in_hit(p.micro_step, side, lighter),
     )
-    return next((text for text in problems if text), None)
+    d.resolution = refined(p.micro_step) * RESOLUTION
+    d.searched = 1 if profile.active(p.inner_profile) or profile.active(p.outer_profile) else 0
+    place_balls(d, b, spread)

@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 
 from touchdown.bearings import seat
+from touchdown.bearings.contact.profile import active
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, part
-from touchdown.bearings.rolling.bodies.declarations import BallBodiesParameters
+from touchdown.bearings.rolling.balls.geometry import inner_radius
 from touchdown.bearings.rolling.bodies.race import Balls
-from touchdown.modelkit.kernel import kernel, woven
+from touchdown.modelkit.kernel import inlined, kernel, woven
 from touchdown.modelkit.ports import Motion
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
@@ -89,15 +90,20 @@ def fastest(m):
     return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 
 
-def ring_weights(p: BallBodiesParameters) -> list[float]:
-    """Error weights of the ring's components; its angle matters where its race is no circle."""
-    weights = ring.error_weights()
-    if p.inner_profile.active:
-        weights[ring.RANGLE - ring.RX] = p.balls.inner_radius / seat.POSITION_SCALE
-    return weights
+@inlined
+def set_weights(m):
+    """Set the error weights up to the balls', and m.n to what is in use without a cage.
 
-
-def ball_weights(count: int) -> list[float]:
-    """Error weights of the balls' components."""
+    The ring's angle matters where its race is no circle; that of a ball does not.
+    """
+    p, w, n = m.p, m.weight, m.p.balls.count
     length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
-    return [w for w in (length, length, speed, speed, 0.0, spin) for _ in range(count)]
+    seat.set_weights(w)
+    ring.set_weights(w)
+    if active(p.inner_profile):
+        w[ring.RANGLE] = inner_radius(p.balls) / seat.POSITION_SCALE
+    for i in range(BALLS, BALLS + n):
+        w[i + X * n] = w[i + Y * n] = length
+        w[i + VX * n] = w[i + VY * n] = speed
+        w[i + SPIN * n] = spin
+    m.n = BALLS + SIZE * n

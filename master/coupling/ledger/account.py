@@ -2,29 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.loop.kernels.books import BOOK
 
 
-@dataclass(slots=True)
 class Account:
-    """One connection's."""
+    """One connection's: a name for what stands in its record, which kernels book in."""
 
-    attachment: Attachment
-    every: int = 1  # macro steps after which both sides have taken the same time
-    total: float = 0.0  # sum of |r_n|, J
-    made: float = 0.0  # minus the sum of r_n, J
-    turned: float = 0.0  # sum of |mean force times displacement|, J
-    kinetic: float = 0.0  # largest along the force, J; 0 where the body states no velocity
-    unaudited: str = ""  # why, where it is not audited
+    def __init__(self, attachment: Attachment, record: Any = None) -> None:
+        """`record`: a row of an array of BOOK; a blank one where none is given."""
+        self.attachment = attachment
+        self.record = np.zeros(1, BOOK)[0] if record is None else record
+        self.unaudited = ""  # why, where it is not audited
+
+    @property
+    def total(self) -> float:
+        """Sum of |r_n| (J)."""
+        return float(self.record["total"])
+
+    @property
+    def made(self) -> float:
+        """Minus the sum of r_n (J)."""
+        return float(self.record["made"])
+
+    @property
+    def turned(self) -> float:
+        """Sum of |mean force times displacement| (J)."""
+        return float(self.record["turned"])
 
     @property
     def turnover(self) -> float:
-        """Energy that the motion turned over at the port (J)."""
-        return self.turned + self.kinetic
+        """Energy that the motion turned over at the port, its kinetic energy with it (J)."""
+        return float(self.record["turned"] + self.record["kinetic"])
 
     def book(self, residual: float) -> None:
         """Add a macro step's (J)."""
-        self.total += abs(residual)
-        self.made -= residual
+        self.record["total"] += abs(residual)
+        self.record["made"] -= residual

@@ -21,19 +21,23 @@ class Judge(Observer):
         self.warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
         self.warning = ""  # the connection, by how much, and what to do
         self._ledger, self._run = ledger, run
-        self._limit = run.warn_residual
+        self.limit = run.warn_residual  # share of residual in turnover
 
     def stepped(self, now: Moment) -> None:
         share = self._ledger.worst_share
-        if share <= self._limit:
+        if share <= self.limit:
             return
         now.keep()  # what is not a number is over every limit
         said = self._said(now, share)
         if share <= self._run.stop_residual:
             self.warned_at, self.warning = now.since_zero, said
-            self._limit = self._run.stop_residual
+            self.limit = self._run.stop_residual
         else:
             now.stop(said, Ended.STOPPED)
+
+    def due(self, now: Moment) -> int:
+        """Where the ledger passes the limit, which compiled code sees."""
+        return now.steps
 
     def _said(self, now: Moment, share: float) -> str:
         worst = self._ledger.worst()

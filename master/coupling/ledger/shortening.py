@@ -30,16 +30,31 @@ class Shortening(Observer):
         self._most = run.whirl_halvings if able else 0
         self._order = max(run.scheme.error_order, 1)
         self.ledger, self._step = ledger, run.macro_step
-        self._times: dict[int, float] = {}  # s, by halvings
+        self._taken: dict[int, int] = {}  # divided macro steps, by halvings
+        self._told = 0  # the last macro step it knows of
         self._since = self._turned = self._made = 0.0  # the window's begin: s, J, J
 
     def stepped(self, now: Moment) -> None:
         if self._most == 0:
             return
-        if self.halvings:
-            self._times[self.halvings] = self._times.get(self.halvings, 0.0) + self._step
+        self._count(now)
         if now.time - self._since >= WINDOW:
             self._look_back(now.time)
+
+    def due(self, now: Moment) -> int:
+        """At the end of the window."""
+        if self._most == 0:
+            return now.steps
+        done = max(now.done + 1, int((self._since + WINDOW) / self._step) - 1)
+        while done * self._step - self._since < WINDOW:
+            done += 1
+        return done
+
+    def _count(self, now: Moment) -> None:
+        """Count the macro steps taken since it was told last, all alike."""
+        if self.halvings:
+            self._taken[self.halvings] = self._taken.get(self.halvings, 0) + now.done - self._told
+        self._told = now.done
 
     def _look_back(self, time: float) -> None:
         ledger = self.ledger
@@ -51,7 +66,9 @@ class Shortening(Observer):
             wanted = math.ceil(math.log2(made / (GOAL * turned)) / self._order)
             self.halvings = min(self.halvings + wanted, self._most)
 
-    @property
-    def times(self) -> dict[float, float]:
-        """How long (s) the run took which shorter step (s)."""
-        return {self._step / 2**halvings: time for halvings, time in sorted(self._times.items())}
+    def times(self, now: Moment) -> dict[float, float]:
+        """How long (s) the run took which shorter step (s), up to now."""
+        self._count(now)
+        return {
+            self._step / 2**halvings: taken * self._step for halvings, taken in sorted(self._taken.items())
+        }

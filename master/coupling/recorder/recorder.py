@@ -83,7 +83,25 @@ class Recorder:
             values = self._resting[name] if name in self._resting else fetch()
             row[column : column + len(values)] = values
             column += len(values)
-        self._filled += 1
+        self.took(1)
+
+    @property
+    def room(self) -> np.ndarray:
+        """Rows to be filled next, at least one: the time (s), then what is recorded, by component."""
+        return self._block[self._filled :]
+
+    @property
+    def recorded(self) -> dict[str, list[str]]:
+        """Variables that are recorded, by component, in the order of the columns."""
+        return {name: chosen.recorded for name, chosen in self._chosen.items()}
+
+    def resting(self, name: str) -> np.ndarray | None:
+        """What is recorded of a component that changes no more; None while it does."""
+        return self._resting.get(name)
+
+    def took(self, count: int) -> None:
+        """As many rows of `room` were filled. Raises TouchdownError where the file cannot grow."""
+        self._filled += count
         now = clock.monotonic()
         next_one = now + (now - self._appended)  # when it is to be expected
         self._appended = now

@@ -34,7 +34,7 @@ class GaussSeidel(Stepper):
 
     def follow(self) -> None:
         rates = Rates(self.system, self.run.macro_step)
-        self._turns = [self._turn(name, rates) for name in self.system.order]
+        self.turns = [self._turn(name, rates) for name in self.system.order]
 
     def _turn(self, name: str, rates: Rates) -> Turn:
         system, intake = self.system, self.system.intakes[name]
@@ -43,7 +43,7 @@ class GaussSeidel(Stepper):
 
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
-        for component, places, every, cuts in self._turns:
+        for component, places, every, cuts in self.turns:
             if number % every:
                 continue
             component.inputs[:] = signals[places]

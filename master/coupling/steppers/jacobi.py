@@ -19,12 +19,15 @@ class Jacobi(GaussSeidel):
         super().__init__(system, run)
         self._expected = run.macro_step  # s, the step for which leading bearings gave their load
 
-    def step(self, number: int, time: float, step: float) -> None:
-        signals = self.system.signals
+    def expect(self, step: float) -> None:
         if self.run.scheme.lead and step != self._expected:
             self._shift_loads(0.5 * (step - self._expected))
             self._expected = step
-        due = [turn for turn in self._turns if number % turn.every == 0]
+
+    def step(self, number: int, time: float, step: float) -> None:
+        signals = self.system.signals
+        self.expect(step)
+        due = [turn for turn in self.turns if number % turn.every == 0]
         for component, places, _, cuts in due:
             component.inputs[:] = signals[places]
             for part in cuts:
@@ -32,7 +35,7 @@ class Jacobi(GaussSeidel):
             component.push()
         for turn in due:
             turn.component.step(time, turn.every * step)
-        for turn in self._turns:
+        for turn in self.turns:
             if (number + 1) % turn.every == 0:  # until its own step ends, what it gave before holds
                 turn.component.pull()
 

@@ -15,6 +15,7 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.contract import LOAD, SLOPE
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.loop.kernels.exchange import cut
 from touchdown.master.coupling.system import System
 
 
@@ -31,11 +32,7 @@ class Part:
 
     def cut(self, inputs: np.ndarray, number: int) -> None:
         """Leave in `inputs` what acts in the body's step that begins with macro step `number`."""
-        begins = number % self.bearing
-        middle = (begins + 0.5 * (self.body - self.bearing)) * self.step  # from that of the bearing's step
-        inputs[self.means[: len(self.slopes)]] += inputs[self.slopes] * middle
-        if begins + self.body < self.bearing:
-            inputs[self.last] = 0.0
+        cut(inputs, self.means, self.slopes, self.last, self.bearing, self.body, self.step, number)
 
 
 class Rates:

@@ -50,6 +50,9 @@ class Stepper(ABC):
         """
         raise NotImplementedError(f"{type(self).__name__} must say how it steps")
 
+    def expect(self, step: float) -> None:  # noqa: B027 - most have nothing to do
+        """The steps to come are of `step` (s)."""
+
     def follow(self) -> None:  # noqa: B027 - most have nothing to do
         """Components were retired: find what is used where it now stands."""
 

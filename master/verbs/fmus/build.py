@@ -6,7 +6,6 @@ import argparse
 from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
 from touchdown.master.verbs import completion
 from touchdown.master.verbs.arguments import add_output
 from touchdown.master.verbs.completion import complete
@@ -16,13 +15,18 @@ EXAMPLES = (
     "touchdown build -o build",
     "touchdown build simplified_caged housing --link-python -o build/linked",
     "touchdown build my-rotor.toml",
+    "touchdown build --native -o build/native",
+    "touchdown build housing --native --target linux-x86_64 windows-x86_64 -o build/native",
+    "touchdown build --native examples/rubber_ring.py -o build/native",
 )
 
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     names = verb.add_argument(
-        "names", nargs="*", help="FMUs to build, or paths of rotor files (.toml) (default: all)"
+        "names",
+        nargs="*",
+        help="FMUs to build, rotor files (.toml), or models in C (.py, which is run) (default: all)",
     )
     complete(names, completion.fmus)
     add_output(verb, Path("build"))
@@ -31,31 +35,48 @@ def declare(verb: argparse.ArgumentParser) -> None:
         action="store_true",
         help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
     )
+    verb.add_argument("--native", action="store_true", help="FMUs that need no Python anywhere")
+    targets = verb.add_argument(
+        "--target",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="TARGET",
+        help="machines that native FMUs are for, all in one file (default: this one)",
+    )
+    complete(targets, completion.targets)
+    verb.add_argument(
+        "--modes",
+        metavar="N,N,...",
+        help="numbers of modes that native rotors hold constants for (default: 2,5,10)",
+    )
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.fmus.build import build
-    from touchdown.fmus.link import LinkError, interpreter
-    from touchdown.fmus.recipes import Recipe, names
-    from touchdown.master.components.library import locate
+    from touchdown.master.api.fmus import built_one_by_one
 
-    recipes = [locate(name) for name in options.names or names()]
-    for name, one in zip(options.names, recipes, strict=False):
-        if not isinstance(one, Recipe):
-            raise TouchdownError(f"{name} is an FMU already; give the name of one or a rotor's .toml")
-    try:
-        linked = interpreter() if options.link_python else None
-    except LinkError as error:
-        raise TouchdownError(str(error)) from None
-    for one in recipes:
-        assert isinstance(one, Recipe)
-        try:
-            with writing_to(options.output):
-                print(build(one, options.output, linked))
-        except LinkError as error:
-            raise TouchdownError(str(error)) from None
+    if not options.native and (options.target or options.modes):
+        raise TouchdownError("--target and --modes are for native FMUs; add --native")
+    made = built_one_by_one(
+        options.names or None,
+        options.output,
+        link_python=options.link_python,
+        native=options.native,
+        targets=options.target,
+        modes=None if options.modes is None else _counts(options.modes),
+    )
+    for path in made:
+        print(path, flush=True)
     return 0
+
+
+def _counts(text: str) -> list[int]:
+    """Numbers of modes in a text such as "2,5,10"."""
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise TouchdownError(f"--modes {text}: give whole numbers with commas between, as in 2,5") from None
 
 
 VERB = Verb("build", "build the FMUs", EXAMPLES, declare, execute)

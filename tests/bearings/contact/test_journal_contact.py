@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from friction_records import prepared
 
 from touchdown.bearings.contact.friction import (
     COULOMB,
@@ -13,7 +14,6 @@ from touchdown.bearings.contact.friction import (
     STRIBECK,
     FrictionLaw,
     coefficient,
-    prepared,
 )
 from touchdown.bearings.contact.journal import (
     ContactMemory,
@@ -57,7 +57,7 @@ def random_pair(seed: int, indentation: float = 20e-6) -> tuple[Motion, Motion]:
 def touched(pair: tuple[Motion, Motion], law: ContactLaw = LAWS["damped"], kind: int = MAKKAR) -> Touch:
     """The contact of a pair of bodies."""
     friction = prepared(FrictionLaw(kind=kind))
-    return Touch(*touch(*pair, RADIUS, CLEARANCE, as_record(law), as_record(friction)))
+    return Touch(*touch(*pair, RADIUS, CLEARANCE, as_record(law), friction))
 
 
 def direction(pair: tuple[Motion, Motion]) -> tuple[np.ndarray, np.ndarray]:
@@ -110,7 +110,7 @@ def test_force_is_normal_and_friction(seed, kind):
     journal, ring = pair
     rate = np.array([journal.vx - ring.vx, journal.vy - ring.vy]) @ n
     normal = normal_force(20e-6, rate, as_record(law))
-    mu = coefficient(sliding_speed(pair), as_record(prepared(FrictionLaw(kind=kind))))
+    mu = coefficient(sliding_speed(pair), prepared(FrictionLaw(kind=kind)))
     assert normal > 0.0
     assert (found.indentation, found.rate) == pytest.approx((20e-6, rate), rel=1e-10)
     assert found.normal == pytest.approx(normal, rel=1e-10)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from friction_records import prepared
 
 from touchdown.bearings.contact.friction import (
     COULOMB,
@@ -15,9 +16,8 @@ from touchdown.bearings.contact.friction import (
     FrictionLaw,
     coefficient,
     curve,
-    prepared,
 )
-from touchdown.bearings.contact.kick import Kick, damped_normal, force_on, friction_line
+from touchdown.bearings.contact.kick import damped_normal, force_on, friction_line
 from touchdown.modelkit.variables import as_record
 
 NORMAL = 250.0  # N
@@ -28,7 +28,7 @@ LAWS = {
     "Makkar": FrictionLaw(kind=MAKKAR),
     "steep Makkar": FrictionLaw(kind=MAKKAR, slope=1e4, g2=1e4, g3=1e3),
 }
-every_law = pytest.mark.parametrize("law", [as_record(prepared(law)) for law in LAWS.values()], ids=LAWS)
+every_law = pytest.mark.parametrize("law", [prepared(law) for law in LAWS.values()], ids=LAWS)
 
 
 def viscous(slope: float) -> Curve:
@@ -39,7 +39,7 @@ def viscous(slope: float) -> Curve:
 def rubbed(sliding: float, others: float, answer: float, normal: float, law: Curve) -> tuple[float, float]:
     """(Friction (N), sliding speed after the kick (m/s)) of a contact driven by `others` (m/s)."""
     line = friction_line(sliding, sliding + others, answer, normal, law)
-    force = force_on(line, Kick(answer, 0.0, others, 0.0))
+    force = force_on(line, answer, others)
     return force, sliding + others + answer * force
 
 

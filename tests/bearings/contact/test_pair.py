@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from friction_records import prepared
 
 from touchdown.bearings.contact.friction import (
     COULOMB,
@@ -15,7 +16,6 @@ from touchdown.bearings.contact.friction import (
     FrictionLaw,
     coefficient,
     curve,
-    prepared,
 )
 from touchdown.bearings.contact.kick import STILL, Kick
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
@@ -41,7 +41,7 @@ from touchdown.modelkit.variables import as_record, layout
 BALL = 3.2e-3  # m
 SIDES = {"inside": INSIDE, "outside": OUTSIDE}
 FRICTIONS = {
-    name: as_record(prepared(FrictionLaw(kind=kind)))
+    name: prepared(FrictionLaw(kind=kind))
     for name, kind in {"Coulomb": COULOMB, "Stribeck": STRIBECK, "Makkar": MAKKAR}.items()
 }
 LAWS = {

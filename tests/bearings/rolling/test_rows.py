@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
+from ball_sets import resting_place, settled
 from systems import rotor_on
 
 from touchdown.bearings.rolling.balls import BallSet
@@ -22,14 +22,13 @@ SIDE = {
 
 def test_two_rows_carry_twice_the_load() -> None:
     one, two = BallSet(damping=1e3, damping_ratio=0.02), BallSet(damping=1e3, damping_ratio=0.02, rows=2)
-    single, pair = one.race_law(one.series_stiffness()), two.race_law(two.series_stiffness())
-    assert two.series_stiffness() == one.series_stiffness()  # of a ball
-    assert pair.stiffness == 2.0 * single.stiffness
-    assert pair.damping == pytest.approx(2.0 * single.damping)
-    assert (two.ball_mass, two.ball_inertia) == (2.0 * one.ball_mass, 2.0 * one.ball_inertia)
+    single, pair = settled(one), settled(two)
+    assert pair["stiffness"] == single["stiffness"]  # of a ball
+    assert pair["race"]["stiffness"] == 2.0 * single["race"]["stiffness"]
+    assert pair["race"]["damping"] == pytest.approx(2.0 * single["race"]["damping"])
+    assert (pair["mass"], pair["inertia"]) == (2.0 * single["mass"], 2.0 * single["inertia"])
     for weight in (0.1, 1.0):
-        assert two.resting_place(2.0 * weight) == pytest.approx(one.resting_place(weight), abs=1e-15)
-    assert replace(one, rows=1) == one
+        assert resting_place(two, 2.0 * weight) == pytest.approx(resting_place(one, weight), abs=1e-15)
 
 
 def landed(bearing: str, **settings: object) -> System:

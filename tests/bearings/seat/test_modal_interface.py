@@ -12,8 +12,8 @@ from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.studies.drop.monolithic import Monolith
-from touchdown.modelkit import oscillator
 from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.numerics import oscillator
 
 JOURNALS = ["rotor.A.x", "rotor.A.y", "rotor.B.x", "rotor.B.y"]
 

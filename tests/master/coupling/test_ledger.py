@@ -244,7 +244,7 @@ def test_some_runs_have_whole_steps_only(settings: dict[str, object]) -> None:
         moment = Moment(system, 0.0, 1000)
         for number in range(1000):
             for account in shortening.ledger.accounts:
-                account.turned += 1.0
+                account.record["turned"] += 1.0
                 account.book(-0.1)
             moment.move(number + 1, 4e-5)
             shortening.stepped(moment)

@@ -2,7 +2,7 @@
 
 pythonfmu's library leaves the symbols of Python open, so a host that is not Python cannot load it unless
 libpython is there before. Here the library is told, by its full path, which libpython to load, and the FMU
-where the packages are (`fmus.host`). Such an FMU is bound to the machine it was built on.
+where the packages are (`fmus.python.host`). Such an FMU is bound to the machine it was built on.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from touchdown.fmus.host import NEEDED
+from touchdown.fmus.python.host import NEEDED
 
 
 class LinkError(Exception):

@@ -13,9 +13,9 @@ NEEDED = ("numpy", "scipy", "numba")
 def prepare(linked=None):
     """Make the packages importable where the host has no Python of its own, and see that they are there.
 
-    `linked` says what `touchdown build --link-python` found (`fmus.link.Interpreter`). Raises ImportError
-    with one sentence, which pythonfmu hands to the host's logger; it goes to stderr, too, because hosts
-    that log nothing would learn of no reason.
+    `linked` says what `touchdown build --link-python` found (`fmus.python.link.Interpreter`). Raises
+    ImportError with one sentence, which pythonfmu hands to the host's logger; it goes to stderr, too,
+    because hosts that log nothing would learn of no reason.
     """
     embedded = not sys.orig_argv  # a Python program has a command line
     if linked and embedded and sys.version == linked["version"]:

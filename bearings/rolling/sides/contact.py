@@ -15,6 +15,7 @@ class SideContacts:
     """Contact of each ball with the next, or with the cage, at the last evaluation."""
 
     normal: tuple = array(MOST_BALLS)
+    highest: tuple = array(MOST_BALLS)  # N, of the normal force in the kick; `normal` is its mean
     tangential: tuple = array(MOST_BALLS)
     indentation: tuple = array(MOST_BALLS)
     stiffness: tuple = array(MOST_BALLS)
@@ -29,8 +30,12 @@ class SideContacts:
 
 @kernel
 def note(contacts, b, press, place, law):
-    """Remember the contact of ball `b`: its `Press` (N, m/s) at a `Place` (m); law: a record."""
+    """Remember the contact of ball `b`: its `Press` (N, m/s) at a `Place` (m); law: a record.
+
+    Linear damping pushes at once where bodies meet, at the speed before the kick, and least at its end.
+    """
     c = contacts
+    c.highest[b] = max(press.normal, law.viscous * press.rate)
     c.normal[b], c.tangential[b], c.damped[b] = press.normal, press.tangential, press.damped
     c.sliding[b], c.rate[b] = press.sliding, press.rate
     c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
@@ -55,7 +60,7 @@ def heat_of(contacts, b, h, first, second, side):
 @kernel
 def note_apart(contacts, b):
     """Remember that ball `b` has no contact (0 N)."""
-    contacts.normal[b], contacts.tangential[b] = 0.0, 0.0
+    contacts.normal[b], contacts.highest[b], contacts.tangential[b] = 0.0, 0.0, 0.0
     contacts.indentation[b], contacts.stiffness[b] = -1.0, 0.0
 
 

@@ -45,6 +45,10 @@ class Retirement(Observer):
         for name in idle:
             del self._signs[name]
 
+    def due(self, now: Moment) -> int:
+        """At beats, while there is who may retire."""
+        return now.next_beat if self._signs else now.steps
+
 
 def _can_rest(component: Component) -> bool:
     variable = component.variables.get(ACTIVE)

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from touchdown.modelkit.kernel import PHYSICS_PACKAGES, source_hash
 
-ROOT = Path(__file__).resolve().parents[1]
-SLAVE_MODULES = ("__init__.py", "slave.py", "description.py", "version.py")
+ROOT = Path(__file__).resolve().parents[2]
+SLAVE_MODULES = ("__init__.py", "slave.py", "description.py", "refusals.py", "version.py")
 _IMPORT = re.compile(r"^(from|import) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 
 
@@ -45,14 +45,14 @@ def write_package(folder: Path) -> Path:
             _copy(path, package / path.relative_to(ROOT))
     for name in SLAVE_MODULES:
         _copy(ROOT / "fmus" / name, package / "fmus" / name)
-    _copy(ROOT / "fmus" / "resident.py", package / "__init__.py")
+    _copy(ROOT / "fmus" / "python" / "resident.py", package / "__init__.py")
     return package
 
 
 def write_host(folder: Path) -> Path:
     """Write the module that meets the host's interpreter into `folder`; returns its path."""
     path = folder / f"{host_module()}.py"
-    _copy(ROOT / "fmus" / "host.py", path)
+    _copy(ROOT / "fmus" / "python" / "host.py", path)
     return path
 
 

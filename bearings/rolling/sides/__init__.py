@@ -1,0 +1,1 @@
+"""What touches a ball beside: its neighbours in the row, or its pocket in the cage."""

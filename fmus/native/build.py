@@ -1,0 +1,162 @@
+"""Build native FMUs: libraries for the targets, the description, documentation and icon."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from itertools import product
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import tostring
+
+from pythonfmu import Fmi2Slave
+
+from touchdown.fmus.build import kept_sound, write
+from touchdown.fmus.description import Making, describe, guid
+from touchdown.fmus.native.compiler import SOURCE, command, library
+from touchdown.fmus.native.in_c import ENTRIES, InC, sources
+from touchdown.fmus.native.kernels import bitcode
+from touchdown.fmus.native.tables import Choice, Held, source
+from touchdown.fmus.native.targets import NativeError, Target, chosen, places
+from touchdown.fmus.native.texts import header
+from touchdown.fmus.presentation.documentation import page
+from touchdown.fmus.presentation.icon import icon
+from touchdown.fmus.recipes import Recipe
+from touchdown.fmus.version import VERSION
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
+
+MODES = (2, 5, 10)  # per plane, that rotors hold constants for; the scenes ask for these
+_HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"
+
+
+@dataclass(frozen=True)
+class Native:
+    """What native FMUs are built for: machines, and numbers of modes of rotors.
+
+    lenient: leave out numbers of modes that a rotor does not have.
+    """
+
+    targets: tuple[Target, ...]
+    modes: tuple[int, ...] = MODES
+    lenient: bool = True
+
+    def check(self) -> None:
+        """Raise NativeError where the compiler for a target is not there."""
+        for target in self.targets:
+            command(target)
+
+
+def build(recipe: Recipe, folder: Path, native: Native) -> Path:
+    """Build a native FMU into `folder` as NAME.fmu; returns its path. An older one is replaced.
+
+    Raises NativeError where kernels cannot be compiled, or the compiler is missing or fails.
+    """
+    model, held = recipe.model, _held(recipe.model, native)
+    identity = _identity(model, held)
+    making = Making(f"touchdown-cosim {VERSION}, native", identity, needs_tool=False)
+    description = describe(model, recipe.identifier, Fmi2Slave.log_categories, making)
+    entries = {
+        "modelDescription.xml": _HEAD + tostring(description),
+        "documentation/index.html": page(recipe, needs=_needs(model, native, held)).encode(),
+        "model.png": icon(model),
+    }
+    code, texts = _code(model, identity, held)
+    made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
+    for place, target in places(native.targets).items():
+        entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
+    return write(entries, folder, recipe.name, compressed=True)
+
+
+def prepare(recipes: Sequence[Recipe]) -> None:
+    """Compile the kernels of several models beside each other, where there are processors for it."""
+    models = {r.model.advance: r.model for r in recipes if not isinstance(r.model.advance, InC)}
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(bitcode, models.values()))
+
+
+def cached(recipe: Recipe) -> Path:
+    """The native FMU of a recipe for this machine; built on first use, and where it is damaged.
+
+    Raises NativeError as `build` does, OSError where it cannot be written.
+    """
+    native = Native(chosen([]))
+    native.check()
+    made = (
+        recipe.content,
+        _sources(),
+        command(native.targets[0])[0],
+        version("numba"),
+        version("llvmlite"),
+    )
+    content = hashlib.sha256(" ".join(made).encode()).hexdigest()[:16]
+    return kept_sound(recipe.name, f"{content}-native", lambda folder: build(recipe, folder, native))
+
+
+def _code(model: Model, identity: str, held: Held) -> tuple[bytes | None, dict[str, str]]:
+    """What a library is made of: kernels as bitcode, if they are not in C, and sources in C by name."""
+    if isinstance(model.advance, InC):
+        table = source(model, identity, held, ENTRIES)
+        return None, {"model.c": table, "texts.h": header(), **sources(model)}
+    return bitcode(model), {"model.c": source(model, identity, held), "texts.h": header()}
+
+
+def _held(model: Model, native: Native) -> Held:
+    """What a rotor holds constants for: numbers of modes that it has, with and without the residual ones.
+
+    Raises NativeError where it does not have what is asked for.
+    """
+    if not model.tabulated:
+        return Held()
+    assert model.tabulated == ("modes", "residual")
+    held: list[Choice] = []
+    started: Any = model.parameters()  # with its own number of modes: hosts may set nothing
+    for choice in product(dict.fromkeys((*native.modes, started.modes)), (1, 0)):
+        problem = _refusal(model, dict(zip(model.tabulated, choice, strict=True)))
+        if problem and not native.lenient:
+            raise NativeError(f"{model.name}: {problem}")
+        if not problem:
+            held.append(choice)
+    return Held(tuple(held))
+
+
+def _refusal(model: Model, parameters: dict[str, int]) -> str:
+    """Why a model does not start with these whole parameters, or ""."""
+    instance = Instance(model)
+    for slot in instance.slots:
+        if slot.variable.name in parameters:
+            instance.integers[slot.index] = parameters[slot.variable.name]
+    try:
+        instance.start(0.0)
+    except ModelError as error:
+        return str(error)
+    return ""
+
+
+def _identity(model: Model, held: Held) -> str:
+    """GUID of a native FMU: another one than that of the model's FMU in Python, whose states are others."""
+    digest = hashlib.sha256(f"{guid(model)} native {_sources()} {held}".encode()).hexdigest()
+    return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"
+
+
+@cache
+def _sources() -> str:
+    """Hash over the sources in C."""
+    digest = hashlib.sha256()
+    for path in sorted(SOURCE.iterdir()):
+        digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _needs(model: Model, native: Native, held: Held) -> str:
+    """What a host needs for it, in words."""
+    machines = ", ".join(target.name for target in native.targets)
+    text = f"A C library and nothing else, on {machines}. No Python, no compiler: the first step steps."
+    if held.choices:
+        text += f" It holds constants for {held.told(model)}; others are refused."
+    return text

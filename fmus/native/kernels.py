@@ -1,0 +1,213 @@
+"""A model's kernels as LLVM bitcode, free of Python and of the machine that compiled them.
+
+numba compiles for the process it runs in: for its processor, with what it kept from other times, and behind
+wrappers that speak Python. So this module runs as a program of its own, in which nothing kept is used, the
+processor is a plain one, and each function's code is put aside before numba makes machine code of it, which
+leaves intrinsics of the machine behind. Entries take plain pointers. They have numba's own calling
+convention, which is no public one (`numba.core.callconv.CPUCallConv`: status = f(&result, &exception,
+arguments...)): hence `NUMBA`, the versions it was tried with.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, cast
+
+from touchdown.fmus.native.targets import NativeError
+from touchdown.modelkit.integrators import dopri
+from touchdown.modelkit.kernel import source_hash
+from touchdown.modelkit.kernel.cache_folder import own_folder, put
+from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
+from touchdown.modelkit.model import Model
+
+NUMBA = ((0, 68), (0, 68))  # the first and the last version that it was tried with
+ENTRIES = ("settle", "start", "advance")
+PREFIX = "kernel_"  # of the entries' names
+PROCESSOR = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}  # that loops are shaped for, by machine
+
+
+def bitcode(model: Model) -> bytes:
+    """LLVM bitcode of a model's settle, start and advance, compiled on first use and kept.
+
+    Raises NativeError where numba is of a version that this was not tried with, or cannot compile them.
+    """
+    _require_numba()
+    order = _order(model)
+    text = json.dumps(order, sort_keys=True)
+    own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+    made = (text, own, version("numba"), version("llvmlite"), _processor())
+    key = hashlib.sha256(" ".join(made).encode()).hexdigest()[:24]
+    kept = own_folder("machine-code", source_hash()) / f"native-{key}.bc"
+    code = unsealed(kept)
+    if code is None:
+        code = _compiled_elsewhere(model.name, text)
+        put(kept, sealed(code))
+    return code
+
+
+def scratch_words(model: Model) -> int:
+    """Size of the scratch that `advance` takes, in words."""
+    return dopri.scratch(_state_size(model)).size
+
+
+def _order(model: Model) -> dict[str, Any]:
+    """What to compile: kernels by the names of their entries, and the sizes of what they take."""
+    kernels = {name: getattr(model, name) for name in ENTRIES}
+    missing = [name for name, kernel in kernels.items() if kernel is None]
+    if missing:
+        raise NativeError(f"{model.name} has no kernel {', '.join(missing)}; without it Python is needed")
+    named = {name: f"{kernel.__module__}:{kernel.__name__}" for name, kernel in kernels.items()}
+    return {"kernels": named, "words": model.memory.itemsize // 8, "state": _state_size(model)}
+
+
+def _state_size(model: Model) -> int:
+    fields: Any = model.memory.fields
+    return fields["q"][0].shape[0]
+
+
+def _processor() -> str:
+    """That loops are shaped for, as LLVM calls it."""
+    return PROCESSOR.get(platform.machine(), "generic")
+
+
+def _require_numba() -> None:
+    found = version("numba")
+    numbers = tuple(int(part) for part in found.split(".")[:2])
+    first, last = (".".join(map(str, limit)) for limit in NUMBA)
+    if not NUMBA[0] <= numbers <= NUMBA[1]:
+        tried = first if first == last else f"{first} to {last}"
+        raise NativeError(
+            f"native FMUs are built with numba {tried}, this is {found}; "
+            f"python3 -m pip --python {sys.executable} install 'numba=={last}.*' brings one"
+        )
+
+
+def _compiled_elsewhere(name: str, order: str) -> bytes:
+    """Compile in a process of its own."""
+    with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
+        target = Path(folder) / "kernels.bc"
+        done = run_apart(str(target), order)
+        if done.returncode or not target.is_file():
+            said = done.stderr.strip().splitlines() or [f"exit status {done.returncode}"]
+            raise NativeError(f"the kernels of {name} cannot be compiled: {said[-1]}")
+        return target.read_bytes()
+
+
+def run_apart(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run this module as a program, which is told the processor before it imports numba.
+
+    What lies in the current folder is not imported (-P).
+    """
+    environment = {
+        **{name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")},
+        "NUMBA_CPU_NAME": _processor(),
+        "NUMBA_CPU_FEATURES": "",
+        "PYTHONHASHSEED": "0",  # equal sources, equal code
+        "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
+    }
+    command = [sys.executable, "-P", "-m", __name__, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
+
+
+# -- in the process of its own -----------------------------------------------------------------------
+
+
+def compile_entries(order: Mapping[str, Any]) -> bytes:
+    """Compile what `_order` says; bitcode that defines kernel_settle, kernel_start and kernel_advance.
+
+    For a process that runs no kernels: numba's code generation is changed in all of it.
+    """
+    _put_code_aside()
+    KernelCache.active = False
+    whole = None
+    for name, place in order["kernels"].items():
+        module, _, function = place.partition(":")
+        kernel = getattr(import_module(module), function)
+        part = _compiled_entry(name, kernel, order["words"], order["state"])
+        if whole is None:
+            whole = part
+        else:
+            whole.link_in(part)
+    assert whole is not None
+    _drop_unused(whole)
+    whole.verify()
+    left = [
+        f.name
+        for f in whole.functions
+        if f.is_declaration and f.name.startswith(("llvm.x86", "llvm.aarch64", "Py"))
+    ]
+    if left:
+        raise NativeError(f"they need {', '.join(left)}")
+    return whole.as_bitcode()
+
+
+def _put_code_aside() -> None:
+    """Have numba keep each function's optimised code as it was before machine code was made of it."""
+    from numba.core.codegen import CPUCodeLibrary
+
+    finalize = CPUCodeLibrary._finalize_final_module
+
+    def keeping(library: Any) -> None:
+        clean = library._final_module.clone()
+        for function in clean.functions:
+            if not function.is_declaration and function.linkage.name == "external":
+                function.linkage = "linkonce_odr"
+        library._shared_module = clean  # what callers link
+        finalize(library)
+
+    cast(Any, CPUCodeLibrary)._finalize_final_module = keeping
+
+
+def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:
+    """LLVM module with one kernel behind an entry of plain pointers; all else in it is internal."""
+    import numba
+    from numba import types
+
+    rows = dopri.STAGES + 1
+
+    def on_words(memory):  # type: ignore[no-untyped-def]
+        return kernel(carray(memory, (words,)))
+
+    def on_words_and_scratch(memory, scratch, time, step):  # type: ignore[no-untyped-def]
+        return kernel(carray(memory, (words,)), carray(scratch, (rows, state)), time, step)
+
+    pointer, real = types.CPointer(types.float64), types.float64
+    stepping = name == "advance"
+    signature = (pointer, pointer, real, real) if stepping else (pointer,)
+    carray, njit = cast(Any, numba).carray, cast(Any, numba).njit
+    plain = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+    entry = plain(on_words_and_scratch if stepping else on_words)
+    entry.compile(signature)
+    compiled = entry.overloads[signature]
+    module = compiled.library._get_module_for_linking()
+    for defined in [*module.functions, *module.global_variables]:
+        if not defined.is_declaration:
+            defined.linkage = "internal"
+    first = module.get_function(compiled.fndesc.mangled_name)
+    first.linkage, first.visibility, first.name = "external", "hidden", f"{PREFIX}{name}"
+    return module
+
+
+def _drop_unused(module: Any) -> None:
+    """Remove what no entry needs."""
+    from llvmlite import binding as llvm
+
+    machine = llvm.Target.from_default_triple().create_target_machine()
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+    passes = llvm.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
+    passes.run(module, builder)
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1]).write_bytes(compile_entries(json.loads(sys.argv[2])))

@@ -1,0 +1,195 @@
+"""model.c: a model's declarations as tables in C, and its entries under the names the FMI side calls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from touchdown.fmus.native.kernels import PREFIX, scratch_words
+from touchdown.fmus.native.texts import printf, quoted, word
+from touchdown.modelkit.instance import FIRST_STEP, Instance
+from touchdown.modelkit.model import Model, Slot, slots
+from touchdown.modelkit.variables import Causality, Scalar, as_tuple, layout
+
+Choice = tuple[int, ...]  # values of the parameters that tables hang on
+_CAUSES = {Causality.PARAMETER: "PARAMETER", Causality.INPUT: "INPUT", Causality.OUTPUT: "OUTPUT"}
+_KINDS = {Scalar.REAL: "REAL", Scalar.INTEGER: "INTEGER"}
+ENTRIES = f"""
+/* numba's convention: 0, or the code gave up; what it returns goes to *result */
+int {PREFIX}settle(int64_t *result, void **why, double *words);
+int {PREFIX}start(int64_t *result, void **why, double *words);
+int {PREFIX}advance(int64_t *result, void **why, double *words, double *scratch, double time, double step);
+
+int64_t settle(double *words)
+{{
+    int64_t result = 0;
+    void *why = NULL;
+    return {PREFIX}settle(&result, &why, words) ? RAISED : result;
+}}
+
+int64_t start(double *words)
+{{
+    int64_t result = 0;
+    void *why = NULL;
+    return {PREFIX}start(&result, &why, words) ? RAISED : 0;
+}}
+
+int64_t advance(double *words, double *scratch, double time, double step)
+{{
+    int64_t result = 0;
+    void *why = NULL;
+    return {PREFIX}advance(&result, &why, words, scratch, time, step) ? RAISED : result;
+}}
+"""
+
+
+@dataclass(frozen=True)
+class Held:
+    """For which values of the parameters that its tables hang on an FMU holds constants."""
+
+    choices: tuple[Choice, ...] = ()
+
+    def told(self, model: Model) -> str:
+        """In words."""
+        columns = zip(model.tabulated, zip(*self.choices, strict=True), strict=False)
+        return "; ".join(f"{name} = {', '.join(map(str, dict.fromkeys(c)))}" for name, c in columns)
+
+
+ARRAYS = ("slots", "access", "defaults", "begun", "problems", "keys", "tables")  # by their names in C
+PARTS = {  # of the memory, by what the FMI side calls where they begin
+    "parameters": "p",
+    "inputs": "u",
+    "outputs": "o",
+    "hidden": "s",
+    "weights": "weight",
+    "derived": "d",
+    "told": "told",
+    "time": "time",
+    "evaluations": "evaluations",
+}
+
+
+def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> str:
+    """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
+
+    entries: `settle`, `start` and `advance` of model.h in C, where its kernels are not numba's.
+    """
+    exposed = slots(model)
+    begins, begun = Instance(model).words, _begun(model)
+    keys = [next(s.index for s in exposed if s.variable.name == name) for name in model.tabulated]
+    at = _places(model)
+    sections = [
+        '#include "model.h"\n\n#include <math.h>',
+        entries,
+        *_slots(exposed, at["hidden"]),
+        _words("DEFAULTS", begins),
+        _words("BEGUN", begun),
+        *_problems(model),
+        *_tables(model, held),
+        f"static const uint32_t KEYS[] = {{{_listed([*keys, 0])}}};",
+    ]
+    members = {
+        "guid": quoted(identity),
+        "held": quoted(held.told(model)),
+        **{name: name.upper() for name in ARRAYS},
+        "slot_count": len(exposed),
+        "default_count": _filled(begins),
+        "begun_count": _filled(begun),
+        "problem_count": len(model.problems),
+        "key_count": len(keys),
+        "table_count": len(held.choices),
+        "words": len(begins),
+        "scratch": scratch_words(model),
+        **at,
+    }
+    body = "".join(f"    .{name} = {value},\n" for name, value in members.items())
+    return "\n".join([*sections, f"const Model MODEL = {{\n{body}}};\n"])
+
+
+def _places(model: Model) -> dict[str, int]:
+    """Where the parts of the memory begin that the FMI side knows, in words."""
+    fields: Any = model.memory.fields
+    return {name: fields[part][1] // 8 for name, part in PARTS.items()}
+
+
+def constants(model: Model, choice: Choice) -> np.ndarray:
+    """Words of m.d for values of the parameters that a model's tables hang on."""
+    assert model.tables is not None
+    parameters = replace(model.parameters(), **dict(zip(model.tabulated, choice, strict=True)))
+    return model.tables(parameters).view("f8").ravel()
+
+
+def _slots(exposed: Sequence[Slot], end: int) -> Iterator[str]:
+    """The variables, and by word what may be done to it."""
+    yield "static const Slot SLOTS[] = {"
+    for slot in exposed:
+        spec = slot.variable.spec
+        unit = "" if spec.unit == "1" else f" {spec.unit}"
+        bounds = (
+            _number(spec.above, "-INFINITY"),
+            _number(spec.minimum, "-INFINITY"),
+            _number(spec.maximum, "INFINITY"),
+        )
+        yield (
+            f"    {{{word(slot.variable.name)}, {word(unit)}, {', '.join(bounds)}, {slot.index}, "
+            f"{_access(slot)}}},"
+        )
+    yield "};"
+    access = ", ".join(f"[{slot.index}] = {_access(slot)}" for slot in exposed)
+    yield f"static const uint8_t ACCESS[{end}] = {{{access}}};"
+
+
+def _access(slot: Slot) -> str:
+    return f"{_KINDS[slot.variable.spec.kind]} | {_CAUSES[slot.causality]}"
+
+
+def _begun(model: Model) -> np.ndarray:
+    """Words that an instance has at its start, whatever its parameters; the others of these parts are 0."""
+    begun = np.zeros(1, model.memory)
+    begun["h"] = FIRST_STEP
+    for part, declaration in (("o", model.outputs), ("s", model.hidden)):
+        begun[part] = np.array([as_tuple(declaration())], layout(declaration))
+    return begun.view("f8")
+
+
+def _problems(model: Model) -> Iterator[str]:
+    yield "static const Problem PROBLEMS[] = {"
+    for text in model.problems:
+        form, names = printf(text)
+        told = [int(name) for name in names]
+        yield f"    {{{quoted(form)}, {{{_listed([*told, *[0] * (4 - len(told))])}}}}},"
+    yield "    {0}};"
+
+
+def _tables(model: Model, held: Held) -> Iterator[str]:
+    """Constants for each choice that is held; their words count from the beginning of the memory."""
+    fields: Any = model.memory.fields
+    rows: list[str] = []
+    for number, choice in enumerate(held.choices):
+        words = constants(model, choice)
+        yield f"static const int64_t VALUES_{number}[] = {{{_listed(choice)}}};"
+        yield _words(f"CONSTANTS_{number}", words, fields["d"][1] // 8)
+        rows.append(f"    {{VALUES_{number}, CONSTANTS_{number}, {_filled(words)}}},")
+    yield "\n".join(["static const Table TABLES[] = {", *rows, "    {0}};"])
+
+
+def _words(name: str, values: np.ndarray, first: int = 0) -> str:
+    """The words of `values` that are not zero, and one more that is."""
+    bits = np.ascontiguousarray(values).view("u8")
+    rows = [f"    {{{first + i}, 0x{int(bits[i]):x}u}}," for i in np.flatnonzero(bits)]
+    return "\n".join([f"static const Word {name}[] = {{", *rows, "    {0}};"])
+
+
+def _filled(values: np.ndarray) -> int:
+    return int(np.count_nonzero(np.ascontiguousarray(values).view("u8")))
+
+
+def _listed(values: Iterable[int]) -> str:
+    return ", ".join(map(str, values))
+
+
+def _number(value: float | None, nothing: str) -> str:
+    return nothing if value is None else repr(float(value))

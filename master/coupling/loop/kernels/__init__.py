@@ -1,0 +1,10 @@
+"""Kernels of the loop: exchange, ledger and stretches of macro steps. They know no model, and no scene.
+
+Components stand in tables, by their addresses, so each kernel is compiled once for all scenes.
+"""
+
+from __future__ import annotations
+
+from touchdown.modelkit.kernel import kernel_of
+
+kernel = kernel_of("modelkit/kernel", "master/coupling/loop/kernels")

@@ -1,0 +1,79 @@
+"""Tables by which a stretch of macro steps knows a system: all that is called or copied, by address."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def _table(*fields: str) -> np.dtype:
+    """A record of 8-byte integers."""
+    return np.dtype([(field, "i8") for field in fields])
+
+
+TURN = np.dtype(
+    [
+        ("every", "i8"),  # macro steps of the run that the component takes in one
+        ("inputs", "i8"),  # address of its inputs
+        ("takes", "i8"),  # how many there are
+        ("places", "i8"),  # address of their places in the signals
+        ("factors", "i8"),  # address of their factors, 0: none is scaled
+        ("offsets", "i8"),
+        ("first_part", "i8"),  # of PART, that cut the inputs
+        ("end_part", "i8"),
+        ("taken", "i8"),  # address of what it calls them: words of its memory, or value references
+        ("outputs", "i8"),  # address of its part of the signals
+        ("gives", "i8"),
+        ("given", "i8"),
+        ("functions", "i8"),  # whether it has FMI's functions; otherwise, its memory is written and read
+        ("of", "i8"),  # address of the component, or of its memory
+        ("words", "i8"),  # of the memory
+        ("work", "i8"),  # address of scratch
+        ("rows", "i8"),
+        ("columns", "i8"),
+        ("step", "i8"),  # addresses of functions
+        ("set_real", "i8"),
+        ("get_real", "i8"),
+        ("finite", "i8"),  # whether it is to be seen that outputs are finite numbers
+        ("time", "f8"),  # of its last step, s
+        ("span", "f8"),
+    ]
+)
+"""What a component does in a macro step. In the order of their steps."""
+
+PART = np.dtype(
+    [
+        *((field, "i8") for field in ("bearing", "body", "means", "slopes", "slope_count", "last")),
+        *(("last_count", "i8"), ("step", "f8")),
+    ]
+)
+"""`Part` with its arrays' addresses."""
+
+READ = _table("turn", "call", "of", "references", "count", "into")
+"""A call of FMI that fetches values for a recorded row."""
+
+COLUMN = _table("address", "kind")
+"""Where a number of a recorded row is found, and of which kind it is."""
+REAL, LONG, INT = 0, 1, 2
+
+PLAN = np.dtype(
+    [
+        ("at_once", "i8"),  # whether all take their inputs before any steps
+        ("length", "f8"),  # of a macro step, s
+        ("parts", "i8"),  # that each is divided into
+        ("done", "i8"),  # macro steps taken
+        ("until", "i8"),  # where the stretch ends
+        ("span", "f8"),  # of a part, s
+        ("booked", "i8"),  # steps, with the parts of those divided
+        ("fall", "f8"),  # J
+        ("limit", "f8"),  # share of residual in turnover that ends the stretch
+        ("record_every", "i8"),  # macro steps; 0: nothing is recorded
+        ("row", "i8"),  # that is filled next
+        ("zero", "f8"),  # s, the scene's zero on the simulation's clock
+        ("failed", "i8"),  # turn that failed
+        ("call", "i8"),  # and at what
+        ("status", "i8"),  # what it answered
+    ]
+)
+"""What a stretch is to do, and how far it came."""
+SET, STEP, GET, FETCH = 0, 1, 2, 3  # what a component is called for
+NOT_FINITE = -1  # status: an output is no finite number

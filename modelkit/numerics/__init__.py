@@ -1,0 +1,1 @@
+"""Mathematics that kernels need and no library has as they need it."""

@@ -1,0 +1,29 @@
+"""What a running model says where it cannot go on.
+
+Templates for `str.format`, kept to what C's printf can say, too: plain texts, numbers as `g` or `.9g`,
+whole numbers as `d`. The Python instance and the native FMUs (`fmus.native`) speak from the same ones.
+"""
+
+from __future__ import annotations
+
+# bounds of one variable; unit: with a space before it, or empty
+NOT_FINITE = "{name} = {value:g} is not a finite number"
+NOT_ABOVE = "{name} = {value:g}{unit} must be above {bound:g}{unit}"
+TOO_SMALL = "{name} = {value:g}{unit} must be at least {bound:g}{unit}"
+TOO_LARGE = "{name} = {value:g}{unit} must be at most {bound:g}{unit}"
+
+# macro steps; time and step in s
+NO_STEP = "cannot step from t = {time:.9g} s by {step:g} s; the step must be positive"
+BAD_INPUT = "input {name} is {value:g} at t = {time:.9g} s; look at the component that feeds it"
+BAD_LOAD = (
+    "the load at t = {time:.9g} s is not a finite number; look for an input or a parameter that is out of "
+    "all proportion"
+)
+TOO_MANY_STEPS = (
+    "more than {most:d} micro-steps within one macro step of {step:g} s at t = {time:.9g} s; "
+    "take a smaller macro step or a larger interface.tolerance"
+)
+UNRESOLVED = (
+    "the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; take a "
+    "smaller macro step, or look for a contact that starts with a deep overlap"
+)

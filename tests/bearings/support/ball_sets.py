@@ -1,0 +1,50 @@
+"""Ball sets as the kernels of a bearing settle them."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.simplified_cageless import MODEL
+from touchdown.modelkit.instance import Instance
+
+
+def memory_of(balls: BallSet, weight: float = 1.0) -> tuple[Any, int]:
+    """Memory of a bearing with these `balls` and a ring of `weight` (N), settled; number of a problem."""
+    instance = Instance(MODEL)
+    p = instance.record["p"]
+    for field in fields(balls):
+        p["balls"][field.name] = getattr(balls, field.name)
+    p["ring"]["mass"], p["gravity"] = 1.0, weight
+    return instance.record, MODEL.settle(instance.words)
+
+
+def settled(balls: BallSet, weight: float = 1.0) -> Any:
+    """Constants of a bearing with these `balls` and a ring of `weight` (N)."""
+    memory, problem = memory_of(balls, weight)
+    assert problem == 0
+    return memory["d"]
+
+
+def problem_of(balls: BallSet) -> str | None:
+    """Why these balls cannot be put together, or None."""
+    memory, number = memory_of(balls)
+    return MODEL.problems[number - 1].format(*memory["told"]) if number else None
+
+
+def stiffness_of(balls: BallSet) -> tuple[float, float, float]:
+    """Of inner race, outer race and both in series (N/m^1.5)."""
+    inner, outer, series = settled(balls)["stiffness"]
+    return float(inner), float(outer), float(series)
+
+
+def resting_place(balls: BallSet, weight: float) -> tuple[float, float]:
+    """Of a ring of `weight` (N), from the middle (m)."""
+    d = settled(balls, weight)
+    return float(d["rest_x"]), float(d["rest_y"])
+
+
+def angles_of(balls: BallSet) -> list[float]:
+    """Attitude angles at the start (rad)."""
+    return settled(balls)["angles"][: balls.count].tolist()

@@ -1,0 +1,37 @@
+"""Native FMUs for tests, each built once; those of the dear models only by tests marked `native`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+from fmpy import extract
+
+from touchdown.fmus.native.build import cached
+from touchdown.fmus.native.compiler import command
+from touchdown.fmus.native.targets import NativeError, here
+from touchdown.fmus.recipes import recipe
+
+Native = Callable[[str], Path]
+
+
+@pytest.fixture(scope="session")
+def native_file() -> Native:
+    """The native FMU of a model, by name."""
+    target = here()
+    if target is None:
+        pytest.skip("native FMUs are not built for this machine")
+    try:
+        command(target)
+    except NativeError as error:
+        pytest.skip(str(error))
+    return cache(lambda name: cached(recipe(name)))
+
+
+@pytest.fixture(scope="session")
+def native(native_file: Native, tmp_path_factory: pytest.TempPathFactory) -> Native:
+    """The folder that a native FMU is unpacked to, by name."""
+    folder = tmp_path_factory.mktemp("native")
+    return cache(lambda name: Path(extract(str(native_file(name)), str(folder / name))))

@@ -1,0 +1,115 @@
+"""Scenes on native FMUs: recorded to the last bit as in process, and a bearing in C in one of them."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from places import COMMAND, ROOT
+
+from touchdown.fmus.native.targets import here
+from touchdown.master.cli import main
+from touchdown.master.common.errors import FAILED
+
+EXAMPLE = ROOT / "examples" / "rubber_ring.py"
+DISK = """
+title = "A disk drops onto a bushing"
+attach = [["bearing.journal", "rotor.A"], ["bearing.housing", "housing.seat"]]
+[run]
+duration = "30 ms"
+macro_step = "50 us"
+[components.rotor]
+fmu = "rigid_rotor"
+[components.housing]
+fmu = "housing"
+[components.bearing]
+fmu = "bushing"
+"""
+
+pytestmark = pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine")
+
+
+@pytest.fixture
+def disk(tmp_path: Path) -> Path:
+    """A scene of the models that are cheap to build."""
+    path = tmp_path / "disk.toml"
+    path.write_text(DISK)
+    return path
+
+
+def recorded(folder: Path) -> dict[str, bytes]:
+    """All that a run recorded, by name."""
+    found: dict[str, bytes] = {}
+
+    def take(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
+            found[name] = np.asarray(item[...]).tobytes()
+
+    with h5py.File(folder / "result.h5") as file:
+        file.visititems(take)
+    return found
+
+
+def run(*arguments: object) -> None:
+    """`touchdown run`, quietly."""
+    assert main(["run", *map(str, arguments), "--quiet", "--no-pictures"]) == 0
+
+
+def test_a_scene_is_recorded_as_in_process(disk: Path, tmp_path: Path):
+    run(disk, "--native", "-o", tmp_path / "native")
+    run(disk, "--in-process", "-o", tmp_path / "within")
+    native, within = recorded(tmp_path / "native"), recorded(tmp_path / "within")
+    assert len(within) > 10
+    assert {name for name in within if native[name] != within[name]} == set()
+
+
+def test_native_fmus_and_none_at_all_exclude_each_other(disk: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["run", str(disk), "--native", "--in-process"]) == FAILED
+    assert "choose one" in capsys.readouterr().err
+
+
+def test_a_bearing_in_c_is_built_checked_and_swapped_into_a_scene(
+    disk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    """It catches the disk: hit hard enough, it gives way, and not by more than its clearance and a half."""
+    assert main(["build", "--native", str(EXAMPLE), "-o", str(tmp_path)]) == 0
+    fmu = tmp_path / "rubber_ring.fmu"
+    assert main(["check", str(fmu), "--as", "bearing"]) == 0
+    assert "it can stand in for a bearing" in capsys.readouterr().out
+    run(disk, "--swap", f"bearing={fmu}", "--in-process", "-o", tmp_path / "drop")
+    with h5py.File(tmp_path / "drop" / "result.h5") as file:
+        height, force = file["rotor/A.y"][...], file["bearing/journal.fy"][...]  # type: ignore[index]
+    assert -0.3e-3 < height.min() < -0.2e-3
+    assert force.max() > 50.0
+
+
+def test_its_refusals_are_its_own_and_the_fmi_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["build", "--native", str(EXAMPLE), "-o", str(tmp_path)]) == 0
+    disk = tmp_path / "disk.toml"
+    disk.write_text(DISK.replace('fmu = "bushing"', 'fmu = "rubber_ring.fmu"\nset = {clearance = 0.02}'))
+    assert main(["run", str(disk), "--quiet", "-o", str(tmp_path / "run")]) == FAILED
+    assert "clearance = 0.02 m is no touchdown bearing's; take less than 10 mm" in capsys.readouterr().err
+
+
+def test_its_example_fits_on_a_screen_or_two():
+    lines = [*EXAMPLE.read_text().splitlines(), *EXAMPLE.with_suffix(".c").read_text().splitlines()]
+    assert len(lines) < 120
+
+
+def test_mistakes_in_a_bearing_in_c_are_named(tmp_path: Path):
+    """By the compiler's first line; the Python file's by its error."""
+    for name in ("rubber_ring.py", "rubber_ring.c"):
+        text = (EXAMPLE.parent / name).read_text()
+        (tmp_path / name).write_text(text.replace("m->p.stiffness", "m->p.stifness"))
+    done = subprocess.run(
+        [*COMMAND, "build", "--native", "rubber_ring.py"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == FAILED
+    assert "stifness" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    (tmp_path / "rubber_ring.py").write_text("1 / 0\n")
+    assert main(["build", "--native", str(tmp_path / "rubber_ring.py")]) == FAILED

@@ -1,0 +1,299 @@
+"""Macro steps in compiled code are those of the Python loop: recordings, ledgers, ends, to the last bit."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from misbehaving import COMPILER, compiled, misbehaving, scene_with
+from systems import rotor_on
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.components.twin import TwinComponent
+from touchdown.master.coupling.ledger import shortening
+from touchdown.master.coupling.loop import stretches
+from touchdown.master.coupling.loop.steps import MacroSteps
+from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
+from touchdown.master.coupling.simulation import Outcome, opened, simulate
+from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
+from touchdown.master.scene.file import load_scene, parse
+from touchdown.master.scene.scene import Scene
+
+Observing = Callable[[], Observer]
+UNLIKE = {"wall_time": 0.0, "start_up": 0.0}  # of two equal runs
+SCALED = {
+    "components": {
+        "rotor": {"fmu": "rigid_rotor", "set": {"y": "10 um"}},
+        "amb": {"fmu": "amb", "every": 2},
+    },
+    "attach": [["amb.journal", "rotor.amb"]],
+    "connect": [["rotor.A.y", "amb.sensor.y", 2.0, 1e-6], ["rotor.A.x", "amb.sensor.x"]],
+    "run": {"duration": 4e-3, "macro_step": 2e-5},
+}
+
+
+class Both:
+    """Runs a scene in compiled stretches and in the Python loop."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.folder, self._patch = folder, monkeypatch
+        self.stepped = 0  # macro steps that the last run took one by one
+        take = MacroSteps.take
+
+        def counting(steps: MacroSteps, now: Moment) -> None:
+            self.stepped += 1
+            take(steps, now)
+
+        monkeypatch.setattr(MacroSteps, "take", counting)
+
+    def run(
+        self, scene: Scene, path: Path, observing: Observing | None = None, in_process: bool = True
+    ) -> Outcome:
+        self.stepped = 0
+        with opened(scene, in_process) as system:
+            observers = [observing()] if observing else []
+            outcome = simulate(scene, system, path, observers=observers)
+        return replace(outcome, **UNLIKE)
+
+    def compared(
+        self, scene: Scene, observing: Observing | None = None, in_process: bool = True
+    ) -> Outcome:
+        """The outcome, once everything that both leave behind was found equal."""
+        paths = self.folder / "compiled.h5", self.folder / "python.h5"
+        found = self.run(scene, paths[0], observing, in_process)
+        assert self.stepped == 1  # the first, which compiles
+        with self._patch.context() as patch:
+            patch.setattr(stretches, "AT_ONCE", {})
+            wanted = self.run(scene, paths[1], observing, in_process)
+        assert self.stepped in (wanted.steps, wanted.steps + 1)  # one may fail
+        assert repr(found) == repr(wanted)
+        assert bits(paths[0]) == bits(paths[1])
+        return found
+
+
+def bits(path: Path) -> Mapping[str, object]:
+    """All that a recording holds: numbers as words, attributes as they are said."""
+    found: dict[str, object] = {}
+
+    def keep(name: str, item: h5py.Dataset | h5py.Group) -> None:
+        found[name] = (
+            item[:].tobytes() if isinstance(item, h5py.Dataset) else repr(sorted(item.attrs.items()))
+        )
+
+    with h5py.File(path) as file:
+        file.visititems(keep)
+    assert len(found["time"]) > 8 * 2  # type: ignore[arg-type]
+    return found
+
+
+@pytest.fixture
+def both(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Both:
+    return Both(tmp_path, monkeypatch)
+
+
+def disk(**settings: object) -> Scene:
+    """The disk from before the shutdown, where the magnetic bearing retires, to after the first impact."""
+    scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 1e-3, "run.duration": 9e-3})
+    return scene.set({"run.macro_step": 2e-5} | {k.replace("__", "."): v for k, v in settings.items()})
+
+
+# -- what is taken in compiled code --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scheme", ["interface", "hold", "jacobi-interface", "jacobi-lead"])
+def test_schemes(scheme: str, both: Both) -> None:
+    assert both.compared(disk(run__scheme=scheme)).steps > 3 * BEAT
+
+
+@pytest.mark.parametrize("scheme", ["interface", "jacobi-interface"])
+def test_macro_steps_of_their_own(scheme: str, both: Both) -> None:
+    both.compared(disk(run__scheme=scheme, bearing__every=4))
+
+
+def test_scaled_connections(both: Both) -> None:
+    both.compared(parse(SCALED, "scaled", both.folder))
+
+
+def test_all_that_can_be_recorded_after_every_step(both: Both) -> None:
+    """Integers too; and more rows than are held at once."""
+    scene = disk(run__record_every=1, run__record_arrays=True, run__duration=3e-3)
+    both.compared(scene)
+
+
+def test_seven_components_of_which_two_retire(both: Both) -> None:
+    scene = load_scene("rotor1-9000").set({"run.duration": 4e-3})
+    both.compared(scene.set({f"amb_{end}.shutdown_time": 1e-3 for end in "AB"}))
+
+
+@pytest.mark.parametrize("scheme", ["interface", "jacobi-lead"])
+def test_macro_steps_that_are_halved(scheme: str, both: Both, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a whirl, by thresholds that a landing passes."""
+    for name, value in (("WINDOW", 1e-3), ("WHIRL", 1e-3), ("OVER", 0.0), ("GOAL", 1e-12)):
+        monkeypatch.setattr(shortening, name, value)
+    assert both.compared(disk(run__scheme=scheme)).shorter_steps
+
+
+# -- how a run ends ------------------------------------------------------------------------------------
+
+
+def test_a_ledger_that_warns_then_stops(both: Both) -> None:
+    outcome = both.compared(disk(run__scheme="hold", run__macro_step=1e-4, run__warn_residual=1e-3))
+    assert outcome.warned_at is not None
+    assert outcome.ended is Ended.STOPPED
+    assert "energy ledger" in outcome.reason
+
+
+def test_a_model_that_cannot_go_on(both: Both) -> None:
+    def spoil(now: Moment) -> None:
+        rotor = now.system.components["rotor"]
+        assert isinstance(rotor, TwinComponent)
+        if now.done == BEAT:
+            rotor.instance.record["q"][0] = np.nan
+
+    outcome = both.compared(disk(), lambda: EveryBeat(spoil))
+    assert outcome.ended is Ended.STOPPED
+    assert outcome.reason.startswith("component rotor: the load at t = 0.00128 s is not a finite number")
+
+
+def test_ctrl_c(both: Both) -> None:
+    """Noted between two stretches, and the recording is whole."""
+
+    def interrupt(now: Moment) -> None:
+        if now.done == 2 * BEAT:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    outcome = both.compared(disk(), lambda: EveryBeat(interrupt))
+    assert (outcome.ended, outcome.steps) == (Ended.INTERRUPTED, 2 * BEAT)
+
+
+def test_ctrl_c_within_a_stretch(both: Both) -> None:
+    """The run ends with the stretch at hand, long before its time."""
+    hand = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+
+    class Begun(Observer):
+        at_beats_only = True
+
+        def stepped(self, now: Moment) -> None:
+            if now.done == BEAT:
+                hand.start()
+
+        def due(self, now: Moment) -> int:
+            return BEAT if now.done < BEAT else now.steps
+
+    scene = disk(run__duration=200.0, run__record_every=1000)
+    outcome = both.run(scene, both.folder / "broken-off.h5", Begun)
+    assert outcome.ended is Ended.INTERRUPTED
+    assert BEAT < outcome.steps < 0.1 * 200.0 / 2e-5
+    assert both.stepped == 1
+
+
+def test_what_an_observer_keeps_and_ends(both: Both) -> None:
+    """At a beat that `record_every` leaves out."""
+
+    def keep(now: Moment) -> None:
+        now.keep()
+        if now.done == 3 * BEAT:
+            now.stop("seen enough")
+
+    outcome = both.compared(disk(run__record_every=5), lambda: EveryBeat(keep))
+    assert (outcome.reason, outcome.steps) == ("seen enough", 3 * BEAT)
+
+
+# -- FMUs -----------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    if COMPILER is None:
+        pytest.skip("there is no C compiler (cc, gcc)")
+    return compiled(tmp_path_factory.mktemp("misbehaving"))
+
+
+@pytest.mark.parametrize(
+    ("deed", "said"),
+    [
+        ("nothing", ""),
+        ("null", ""),  # says nothing, by the host's logger
+        (
+            "error",
+            "component bearing: it answered 'error' and gave no reason (at the step from t = 4e-05 s)",
+        ),
+        ("nan", "component bearing: its FMU gives journal.fy = nan at t = 6e-05 s"),
+    ],
+)
+def test_an_fmu_whose_code_is_its_own(deed: str, said: str, library: Path, both: Both) -> None:
+    scene = load_scene(str(scene_with(misbehaving(library, "step", deed))))
+    outcome = both.compared(scene)
+    assert outcome.reason == said
+    assert outcome.steps == (2 if said else 100)
+
+
+def test_fmus_of_pythonfmu(both: Both) -> None:
+    """Their Python runs within compiled code, which holds the interpreter's lock."""
+    both.compared(disk(run__duration=4e-3), in_process=False)
+
+
+@pytest.mark.parametrize("in_process", [True, False])
+def test_who_refuses_a_step_says_why(in_process: bool, both: Both) -> None:
+    """A contact that is far too stiff for steps under held loads."""
+    run = {"duration": 0.1, "macro_step": 1e-4, "scheme": "jacobi-hold", "record_every": 1}
+    scene = rotor_on("bushing", {"mass": 1.0, "vy": -1.0}, {"contact.stiffness": 1e12}, **run)
+    scene = scene.set({"run.warn_residual": 1e300, "run.stop_residual": 1e300})
+    outcome = both.compared(scene, in_process=in_process)
+    assert outcome.reason.startswith(
+        "component bearing: the motion inside cannot be resolved at t = 0.0011 s"
+    )
+
+
+# -- what is not ---------------------------------------------------------------------------------------
+
+
+def test_who_looks_at_every_step_sees_every_step(both: Both) -> None:
+    seen: list[int] = []
+    scene = disk(run__duration=1e-3)
+    both.run(scene, both.folder / "r.h5", lambda: EveryStep(lambda now: seen.append(now.done)))
+    assert seen == list(range(1, both.stepped + 1))
+    assert len(seen) > BEAT
+
+
+def test_a_sequence_of_ones_own_is_kept(both: Both, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that steps otherwise is taken as it says; one that only counts at the end is not in the way."""
+
+    class Otherwise(GaussSeidel):
+        def step(self, number: int, time: float, step: float) -> None:
+            super().step(number, time, step)
+
+    scene = rotor_on("bushing", {"mass": 1.0}, duration=1e-3, macro_step=1e-5)
+    for kind, stepped in ((GaussSeidel, 1), (Otherwise, 100)):
+        monkeypatch.setattr("touchdown.master.coupling.simulation.stepper", kind)
+        both.run(scene, both.folder / "r.h5")
+        assert both.stepped == stepped
+
+
+def test_a_method_that_was_replaced_is_called(both: Both) -> None:
+    """Of one component, or of its kind."""
+
+    class Late(TwinComponent):
+        def step(self, time: float, step: float) -> None:
+            calls.append(time)
+            super().step(time, step)
+
+    calls: list[float] = []
+    scene = rotor_on("bushing", {"mass": 1.0}, duration=1e-3, macro_step=1e-5)
+    for replaced in (False, True):
+        with opened(scene, in_process=True) as system:
+            rotor = system.components["rotor"]
+            assert isinstance(rotor, TwinComponent)
+            if replaced:
+                rotor.step = lambda time, step, own=rotor.step: (calls.append(time), own(time, step))[1]
+            else:
+                rotor.__class__ = Late
+            simulate(scene, system)
+        assert len(calls) == 100 * (1 + replaced)
