@@ -42,7 +42,10 @@ def base_unit(unit: str) -> dict[str, int] | None:
         return None
     exponents: dict[str, int] = {}
     sign = 1
-    for token in re.findall(r"[A-Za-z]+-?\d*|1|[/.()]", unit):
+    tokens = re.findall(r"[A-Za-z]+-?\d*|1|[/.()]", unit)
+    if "".join(tokens) != unit:
+        raise ValueError(f"unknown unit {unit!r}")
+    for token in tokens:
         if token == "/":
             sign = -1
             continue

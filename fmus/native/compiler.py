@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -22,6 +24,9 @@ _LINKING = {
     ".dll": ("-shared", "-s", "-D__USE_MINGW_ANSI_STDIO=1"),
     ".dylib": ("-dynamiclib", "-Wl,-s"),
 }
+
+
+_TELLING = re.compile(r"undefined (reference|symbol)|\berror:")  # a line of a compiler or a linker
 
 
 def library(code: bytes | None, sources: Mapping[str, str], target: Target, identifier: str) -> bytes:
@@ -97,6 +102,9 @@ def _run(line: list[str], folder: Path) -> None:
     done = subprocess.run(
         line, cwd=folder, capture_output=True, text=True, check=False, env={**os.environ, "LC_ALL": "C"}
     )
+    if done.returncode == -signal.SIGINT:  # it goes to all of the terminal's processes
+        raise KeyboardInterrupt
     if done.returncode:
-        said = [text for text in done.stderr.splitlines() if "error" in text] or done.stderr.splitlines()
-        raise NativeError(f"{Path(line[0]).name} failed: {said[0] if said else done.returncode}")
+        said = done.stderr.splitlines()
+        telling = [text for text in said if _TELLING.search(text)] or said
+        raise NativeError(f"{Path(line[0]).name} failed: {telling[0] if telling else done.returncode}")

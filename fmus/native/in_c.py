@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from touchdown.fmus.description import base_unit
 from touchdown.fmus.native.targets import NativeError
 from touchdown.fmus.recipes import Recipe
 from touchdown.modelkit import status
-from touchdown.modelkit.model import Model, memory_layout
+from touchdown.modelkit.model import Model, memory_layout, slots
 from touchdown.modelkit.variables import Nothing
 
 ENTRIES = """
@@ -37,6 +38,9 @@ int64_t advance(double *words, double *scratch, double time, double step)
     return model_advance((Memory *)words, time, step);
 }
 """
+
+
+TAKEN = ("fmi2.c", "model.c", "numba.c")  # names of the other sources
 
 
 class InC:
@@ -95,6 +99,7 @@ def recipe_in_c(path: Path) -> Recipe:
         raise NativeError(f"cannot read {path}: {type(error).__name__}: {error}") from None
     if not isinstance(model, Model) or not isinstance(model.advance, InC):
         raise NativeError(f"{path} declares no MODEL made by in_c")
+    _check_declarations(path, model)
     identifier = "".join(part.capitalize() for part in re.split(r"\W|_", model.name))
     if not re.fullmatch(r"[A-Za-z]\w*", identifier, re.ASCII):
         raise NativeError(
@@ -105,10 +110,27 @@ def recipe_in_c(path: Path) -> Recipe:
     return Recipe(model.name, identifier, "", content, replace(model, content=content))
 
 
+def _check_declarations(path: Path, model: Model) -> None:
+    """Raise NativeError where a variable is in no unit of SI, or its default is out of its own bounds."""
+    for variable in (slot.variable for slot in slots(model)):
+        problem = variable.problem(variable.default)
+        if problem:
+            raise NativeError(f"{path}: {problem}, and this is its default")
+        try:
+            base_unit(variable.spec.unit)
+        except ValueError:
+            raise NativeError(
+                f"{path}: {variable.name} is in {variable.spec.unit!r}; units are m, kg, s, rad, N, J, W, "
+                "Pa, 1 and what is made of them, such as N.s/m2"
+            ) from None
+
+
 def sources(model: Model) -> dict[str, str]:
     """The C files of a model in C: its own, and the header that declares its memory."""
     assert isinstance(model.advance, InC)
-    return {"kernels.c": _text(model.advance.source), "memory.h": _header(model.memory)}
+    own = model.advance.source
+    name = own.name if own.suffix == ".c" and own.name not in TAKEN else "kernels.c"
+    return {name: _text(own), "memory.h": _header(model.memory)}
 
 
 def _text(path: Path) -> str:

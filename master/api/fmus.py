@@ -106,7 +106,9 @@ def check(
 
 
 def _recipe(name: str, native: bool) -> Recipe:
-    if native and name.endswith(".py"):
+    if name.endswith(".py"):
+        if not native:
+            raise TouchdownError(f"{name} declares a model in C, whose FMU is native; add --native")
         return recipe_in_c(Path(name))
     recipe = locate(name)
     if not isinstance(recipe, Recipe):
