@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from touchdown.fmus.build import cached
-from touchdown.fmus.native.build import cached as cached_native
-from touchdown.fmus.native.targets import NativeError
 from touchdown.fmus.recipes import Recipe, names, recipe
 from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
@@ -83,10 +81,18 @@ def built(recipe: Recipe, native: bool = False) -> Path:
     Raises TouchdownError where it cannot be written or, native, cannot be built here.
     """
     try:
-        path = cached_native(recipe) if native else cached(recipe)
-    except NativeError as error:
-        raise TouchdownError(str(error)) from None
+        path = _native(recipe) if native else cached(recipe)
     except OSError as error:
         raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
     tidy()
     return path
+
+
+def _native(recipe: Recipe) -> Path:
+    from touchdown.fmus.native.build import cached as cached_native  # what compiles is for those who ask
+    from touchdown.fmus.native.targets import NativeError
+
+    try:
+        return cached_native(recipe)
+    except NativeError as error:
+        raise TouchdownError(str(error)) from None
