@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
+import hosting
 import pytest
 from fmpy import extract
-from places import COMMAND, SUPPORT
+from hosting import READ, Alone, drop, dropped_through_fmpy, numbers
+from places import COMMAND
 from pythonfmu import FmuBuilder
 
 from touchdown.fmus.build import build
@@ -33,44 +33,8 @@ from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import slots
 
 every_fmu = pytest.mark.parametrize("fmu", names())
-Alone = Callable[..., subprocess.CompletedProcess[str]]
-
-COMPILER = shutil.which("cc") or shutil.which("gcc")
-STEPS, STEP = 150, 2e-5  # s; the journal touches the bore of 0.3 mm in the middle of it
-READ = (
-    "journal.fx",
-    "journal.fy",
-    "journal.mz",
-    "contact.force",
-    "contact.peak_force",
-    "contact.first_time",
-)
-
-
-def drop(k: int) -> dict[str, float]:
-    """Motion of a journal at macro step k: it falls, drifts, touches, and is taken back."""
-    t = k * STEP
-    return {
-        "journal.x": 0.02 * t,
-        "journal.vx": 0.02,
-        "journal.y": -0.32e-3 * math.sin(math.pi * k / STEPS),
-        "journal.vy": -0.32e-3 * math.pi / (STEPS * STEP) * math.cos(math.pi * k / STEPS),
-        "journal.omega": 900.0,
-    }
-
 
 # -- hosts without Python ----------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A host in C, compiled."""
-    if COMPILER is None:
-        pytest.skip("there is no C compiler (cc, gcc)")
-    path = tmp_path_factory.mktemp("host") / "host"
-    source = SUPPORT / "host.c"
-    subprocess.run([COMPILER, "-Wall", "-Wextra", "-Werror", "-o", path, source, "-ldl"], check=True)
-    return path
 
 
 @pytest.fixture(scope="module")
@@ -98,57 +62,20 @@ def linked(here: Interpreter, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def hosted(host: Path, folder: Path, commands: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """Let the host do `commands` to the FMU in `folder`, knowing nothing of this environment."""
-    guid = fromstring((folder / "modelDescription.xml").read_bytes()).attrib["guid"]
-    library = next((folder / "binaries" / "linux64").glob("*.so"))
-    return subprocess.run(
-        [host, library, guid, (folder / "resources").as_uri()],
-        input=commands,
-        env={"TOUCHDOWN_CACHE": str(user_cache()), **environment},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
+    resources = (folder / "resources").as_uri()
+    return hosting.hosted(
+        host, folder, commands, resources, {"TOUCHDOWN_CACHE": str(user_cache()), **environment}
     )
-
-
-def references(folder: Path) -> dict[str, str]:
-    """Value references by name."""
-    xml = fromstring((folder / "modelDescription.xml").read_bytes())
-    return {v.attrib["name"]: v.attrib["valueReference"] for v in xml.iter("ScalarVariable")}
-
-
-DROPPED = """
-import json
-from slave_driver import Slave
-rows = json.loads(sys.argv[2])
-slave = Slave(sys.argv[1]).start()
-for k, row in enumerate(rows):
-    slave.set(row)
-    slave.fmu.doStep(k * float(sys.argv[3]), float(sys.argv[3]))
-    print(*(float(v).hex() for v in slave.get(json.loads(sys.argv[4])).values()))
-slave.free()
-"""
 
 
 def test_a_host_in_c_gets_the_same_numbers_to_the_last_bit(
     host: Path, linked: Path, unpacked: Mapping[str, Path], alone: Alone
 ):
     """A journal with given motion touches and leaves; the FMU for Python hosts is stepped through fmpy."""
-    known = references(linked)
-    lines = ["start"]
-    for k in range(STEPS):
-        lines += [f"set {known[name]} {value.hex()}" for name, value in drop(k).items()]
-        lines += [f"step {(k * STEP).hex()} {STEP.hex()}"]
-        lines += [f"get {known[name]}" for name in READ]
-    done = hosted(host, linked, "\n".join(lines))
+    done = hosted(host, linked, drop(linked))
     assert done.returncode == 0, done.stderr
-    found = [float.fromhex(text) for text in done.stdout.split()]
-
-    rows = json.dumps([drop(k) for k in range(STEPS)])
-    through_fmpy = alone(DROPPED, unpacked["bushing"], rows, STEP, json.dumps(READ))
-    assert through_fmpy.returncode == 0, through_fmpy.stderr
-    assert found == [float.fromhex(text) for text in through_fmpy.stdout.split()]
-
+    found = numbers(done.stdout)
+    assert found == dropped_through_fmpy(alone, unpacked["bushing"])
     force = found[READ.index("contact.force") :: len(READ)]
     assert force[0] == 0.0
     assert max(force) > 10.0

@@ -3,90 +3,30 @@
 from __future__ import annotations
 
 import json
-import math
-import shutil
 import subprocess
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from xml.etree.ElementTree import fromstring
 
+import hosting
 import pytest
-from places import SUPPORT
+from hosting import READ, Alone, drop, dropped_through_fmpy, numbers
 
-Alone = Callable[..., subprocess.CompletedProcess[str]]
 Native = Callable[[str], Path]
-STEPS, STEP = 150, 2e-5  # s
-READ = ("journal.fx", "journal.fy", "journal.mz", "contact.force", "contact.peak_force")
 LIFE = "renew start step 0 1e-5 "
-
-
-@pytest.fixture(scope="module")
-def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A host in C, compiled."""
-    compiler = shutil.which("cc") or shutil.which("gcc")
-    if compiler is None:
-        pytest.skip("there is no C compiler (cc, gcc)")
-    path = tmp_path_factory.mktemp("host") / "host"
-    subprocess.run([compiler, "-o", path, SUPPORT / "host.c", "-ldl"], check=True)
-    return path
 
 
 def hosted(host: Path, folder: Path, commands: str) -> subprocess.CompletedProcess[str]:
     """Let the host do `commands` to the FMU in `folder`, with an environment that is empty."""
-    guid = fromstring((folder / "modelDescription.xml").read_bytes()).attrib["guid"]
-    library = next((folder / "binaries" / "linux64").glob("*.so"))
-    return subprocess.run(
-        [host, library, guid, "file:///nowhere"],
-        input=commands, env={}, capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
-
-
-def references(folder: Path) -> dict[str, str]:
-    """Value references by name."""
-    xml = fromstring((folder / "modelDescription.xml").read_bytes())
-    return {v.attrib["name"]: v.attrib["valueReference"] for v in xml.iter("ScalarVariable")}
-
-
-def drop(k: int) -> dict[str, float]:
-    """Motion of a journal at macro step k: it falls, drifts, touches, and is taken back."""
-    phase = math.pi * k / STEPS
-    return {
-        "journal.x": 0.02 * k * STEP,
-        "journal.vx": 0.02,
-        "journal.y": -0.32e-3 * math.sin(phase),
-        "journal.vy": -0.32e-3 * math.pi / (STEPS * STEP) * math.cos(phase),
-        "journal.omega": 900.0,
-    }
-
-
-DROPPED = """
-import json
-from slave_driver import Slave
-rows = json.loads(sys.argv[2])
-slave = Slave(sys.argv[1]).start()
-for k, row in enumerate(rows):
-    slave.set(row)
-    slave.fmu.doStep(k * float(sys.argv[3]), float(sys.argv[3]))
-    print(*(float(v).hex() for v in slave.get(json.loads(sys.argv[4])).values()))
-slave.free()
-"""
+    return hosting.hosted(host, folder, commands, "file:///nowhere", {})
 
 
 def test_a_host_in_c_without_an_environment_gets_the_numbers_of_the_fmu_in_python(
     host: Path, native: Native, unpacked: Mapping[str, Path], alone: Alone
 ):
-    known = references(native("bushing"))
-    lines = ["start"]
-    for k in range(STEPS):
-        lines += [f"set {known[name]} {value.hex()}" for name, value in drop(k).items()]
-        lines += [f"step {(k * STEP).hex()} {STEP.hex()}", *(f"get {known[name]}" for name in READ)]
-    done = hosted(host, native("bushing"), "\n".join(lines))
+    done = hosted(host, native("bushing"), drop(native("bushing")))
     assert (done.returncode, done.stderr) == (0, "")
-    found = [float.fromhex(text) for text in done.stdout.split()]
-    rows = json.dumps([drop(k) for k in range(STEPS)])
-    in_python = alone(DROPPED, unpacked["bushing"], rows, STEP, json.dumps(READ))
-    assert in_python.returncode == 0, in_python.stderr
-    assert found == [float.fromhex(text) for text in in_python.stdout.split()]
+    found = numbers(done.stdout)
+    assert found == dropped_through_fmpy(alone, unpacked["bushing"])
     assert max(found[READ.index("contact.force") :: len(READ)]) > 10.0
 
 
