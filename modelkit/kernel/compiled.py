@@ -17,6 +17,7 @@ import numba
 from numba.core.dispatcher import Dispatcher
 
 from touchdown.modelkit.kernel.cache_folder import own_folder
+from touchdown.modelkit.kernel.linked import KernelDispatcher
 from touchdown.modelkit.kernel.machine_code import KernelCache
 
 
@@ -77,7 +78,10 @@ def woven(function: F) -> F:
 
 
 def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False) -> F:
-    compiled = numba.njit(error_model="numpy", forceinline=forceinline)(function)
+    if numba.config.DISABLE_JIT:
+        return function
+    options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
+    compiled = KernelDispatcher(function, targetoptions=options)
     folder = _machine_code_folder(packages)
     if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
         cast(Any, compiled)._cache = KernelCache(function, folder)
