@@ -104,4 +104,4 @@ def inlined(function: F) -> F:
     name known at compile time, and the caller is cached as usual. Right also for a piece of one kernel
     that stands apart to be read: a kernel of its own is compiled again for every kernel above it.
     """
-    return cast(F, numba.njit(inline="always", error_model="numpy")(function))
+    return _compiled(function, PHYSICS_PACKAGES)
