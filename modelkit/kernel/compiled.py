@@ -1,6 +1,6 @@
 """How kernels are compiled.
 
-A kernel's machine code holds pieces of other kernels, inlined, and would go on using them after they
+A kernel's machine code holds that of the kernels it calls (`linked`), and would go on using it after they
 changed. So the folder it is kept in (`machine_code`) is named by a hash over the sources of all physics
 packages: any edit starts a fresh folder, and nothing stale is ever run.
 """
@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba.core.dispatcher import Dispatcher
 
 from touchdown.modelkit.kernel.cache_folder import own_folder
 from touchdown.modelkit.kernel.linked import KernelDispatcher
@@ -51,8 +50,9 @@ def source_hash(packages: tuple[str, ...] = PHYSICS_PACKAGES) -> str:
 def kernel(function: F) -> F:
     """Compile `function` on first call and keep the machine code for later processes.
 
-    IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in process
-    must agree bit for bit.
+    It may take other kernels as arguments; then it is for kernels to call, as Python's calls of it cannot
+    be kept. IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in
+    process must agree bit for bit.
     """
     return _compiled(function, PHYSICS_PACKAGES)
 
@@ -83,8 +83,8 @@ def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False)
     options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
     compiled = KernelDispatcher(function, targetoptions=options)
     folder = _machine_code_folder(packages)
-    if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
-        cast(Any, compiled)._cache = KernelCache(function, folder)
+    if folder is not None:
+        compiled._cache = KernelCache(function, folder)
     return cast(F, compiled)
 
 
@@ -95,13 +95,3 @@ def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
         return own_folder("machine-code", source_hash(packages))
     except OSError:
         return None
-
-
-def inlined(function: F) -> F:
-    """Compile `function` into each caller, so that it may take other kernels as arguments.
-
-    numba cannot cache a kernel that was handed another one as a value; inlined, the argument is a
-    name known at compile time, and the caller is cached as usual. Right also for a piece of one kernel
-    that stands apart to be read: a kernel of its own is compiled again for every kernel above it.
-    """
-    return _compiled(function, PHYSICS_PACKAGES)
