@@ -81,7 +81,7 @@ def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False)
     if numba.config.DISABLE_JIT:
         return function
     options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
-    compiled = KernelDispatcher(function, targetoptions=options)
+    compiled: Any = KernelDispatcher(function, targetoptions=options)
     folder = _machine_code_folder(packages)
     if folder is not None:
         compiled._cache = KernelCache(function, folder)

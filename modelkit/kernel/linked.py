@@ -12,10 +12,11 @@ from __future__ import annotations
 from typing import Any
 
 from numba import extending
-from numba.core import compiler, types, typing
+from numba.core import compiler, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
+from numba.core.typing.templates import make_concrete_template
 
 from touchdown.modelkit.kernel.front_end import FrontEnd
 
@@ -53,6 +54,9 @@ class _Linked(FrontEnd):
 class KernelDispatcher(CPUDispatcher):
     """A kernel: to Python a function in machine code, to other kernels its `LinkedCode`."""
 
+    _compiler: Any  # numba's: holds the function and what is known of its parameters
+    _compiling_counter: Any  # by which numba finds recursion
+
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
         super().__init__(py_func, locals, targetoptions, pipeline_class=_Whole)
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
@@ -63,7 +67,7 @@ class KernelDispatcher(CPUDispatcher):
         taken = tuple(map(_general, folded))
         signature = self._linked_for(taken).signature
         name = self.py_func.__name__
-        template = typing.make_concrete_template(f"Linked({name})", key=name, signatures=[signature])
+        template = make_concrete_template(f"Linked({name})", key=name, signatures=[signature])
         return template, parameters, taken, {}
 
     def get_overload(self, sig: Any) -> Any:
@@ -77,7 +81,7 @@ class KernelDispatcher(CPUDispatcher):
         return self._linked[taken]
 
     def _link(self, taken: tuple[types.Type, ...]) -> CompileResult:
-        flags = compiler.Flags()
+        flags: Any = compiler.Flags()
         self.targetdescr.options.parse_as_flags(flags, self.targetoptions)
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
         given = self.typingctx, self.targetctx, self.py_func, taken, None, flags, self.locals
