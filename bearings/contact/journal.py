@@ -18,7 +18,6 @@ from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import PARTED
 from touchdown.modelkit.variables import group, real
 
-
 FAR = 1.0  # s; a contact that is farther off is of no account to a macro step
 
 
@@ -51,7 +50,7 @@ def place_in_bore(journal, ring, journal_radius, clearance):
 
 @kernel
 def time_to_touch(journal, ring, clearance):
-    """Time (s) until a journal touches the bore of `ring`, wider by `clearance` (m), if both go straight on.
+    """Time (s) until a journal touches the bore of `ring`, wider by `clearance` (m); both go straight on.
 
     journal, ring: Motion (m, m/s). 0 where they touch, `FAR` where that is farther off or never: the
     positive root of |d + v t| = clearance, d and v the journal's place and velocity in the bore.

@@ -8,7 +8,6 @@ will do in the next step its last load does not tell. So these steps, some per c
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 

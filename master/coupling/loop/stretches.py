@@ -95,10 +95,9 @@ class Stretches:
             self._refuse(found, plan)
 
     def _run(self, found: Tables, rows: np.ndarray) -> bool:
-        seats, books = self._steps.impacts.seats, self._steps.ledger.books
-        return run(
-            self._plan, found.turns, found.parts, seats, books, found.signals, found.reads, found.columns, rows
-        )
+        steps, f = self._steps, found
+        seats, books = steps.impacts.seats, steps.ledger.books
+        return run(self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows)
 
     def _refuse(self, found: Tables, plan: Any) -> None:
         """Raise what the component that failed has to say."""

@@ -24,7 +24,7 @@ SEAT = np.dtype(
 
 @kernel
 def met(seats: np.ndarray, signals: np.ndarray, time: float, step: float) -> bool:
-    """Whether a body is hit by two bearings in the step of `step` (s) from `time` (s), one of them newly."""
+    """Whether two bearings hit a body in the step of `step` (s) from `time` (s), one of them newly."""
     for i in range(len(seats)):
         s = seats[i]
         if signals[s.reach] <= AHEAD * step:
