@@ -54,6 +54,7 @@ FIGURES = (
     Figure("loaded_balls_end", "balls.loaded"),
 )
 LAST_PART = 0.2  # of a run, for means
+_DIVIDED = "macro_steps_divided_in_impacts"
 
 
 ENERGIES = (
@@ -346,6 +347,7 @@ def _run_figures(
         "scheme": scene.run.scheme.name,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
+        **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),
         **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
 

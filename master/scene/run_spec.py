@@ -30,6 +30,7 @@ class RunSpec:
     stop_residual: float = 0.2  # the same: stop
     call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take
     whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
+    impact_step: float = 1e-6  # s, at most, while two bearings hit a rotor; 0: macro steps are not divided
 
 
 def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
@@ -52,6 +53,13 @@ def _above_zero(unit: str) -> Callable[[object, str], float]:
         return above_zero(value, unit, name)
 
     return read
+
+
+def _time(value: object, name: str) -> float:
+    seconds = to_si(value, "s", name)
+    if seconds < 0.0:
+        raise TouchdownError(f"{name} = {value} must not be below 0 s")
+    return seconds
 
 
 def _steps_above_zero(value: object, name: str) -> int:
@@ -79,4 +87,5 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "stop_residual": _above_zero("1"),
     "call_timeout": _above_zero("s"),
     "whirl_halvings": _count,
+    "impact_step": _time,
 }

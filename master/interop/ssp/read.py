@@ -27,7 +27,7 @@ PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene"
 
 RUN_KEYS = (
     "scheme", "tolerance", "record_every", "record", "record_also", "record_arrays", "warn_residual",
-    "stop_residual", "whirl_halvings",
+    "stop_residual", "whirl_halvings", "impact_step",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 

@@ -247,6 +247,7 @@ def _experiment(root: Element, scene: Scene, zero: float) -> None:
         "warn_residual": repr(run.warn_residual),
         "stop_residual": repr(run.stop_residual),
         "whirl_halvings": str(run.whirl_halvings),
+        "impact_step": repr(run.impact_step),
     }
     annotation = SubElement(
         SubElement(root, "ssd:Annotations"), "ssc:Annotation", {"type": SCENE_ANNOTATION}
