@@ -48,7 +48,7 @@ def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
             raise TouchdownError(f"{path} holds an entry {name!r} that leads out of its folder; refused")
         if unportable := next((mark for mark in UNPORTABLE if mark in name), None):
             raise TouchdownError(
-                f"{path} holds an entry {name!r} with a {UNPORTABLE[unportable]}, which means another file on "
+                f"{path} holds an entry {name!r} with a {UNPORTABLE[unportable]}, which is another file on "
                 "each system; refused (pack it anew, with / between folders)"
             )
         if stat.S_ISLNK(entry.external_attr >> 16):

@@ -68,7 +68,9 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: Report) ->
     else:  # what this master does not need
         report.lines += [f"not valid FMI 2.0: {complaint}" for complaint in complaints]
     if optional:
-        report.lines.append("it lists no InitialUnknowns: tools cannot tell what its first outputs follow from")
+        report.lines.append(
+            "it lists no InitialUnknowns, so tools cannot tell what its first outputs follow from"
+        )
 
 
 def _dry_run(component: Component, report: Report) -> None:
