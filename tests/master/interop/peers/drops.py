@@ -59,7 +59,7 @@ class Fall:
         return write_package(self.with_scheme(scheme), path, True, making).path
 
     def ours(self, in_process: bool = True, scheme: str | None = None) -> tuple[dict[str, float], Outcome]:
-        """What the project's own master gives at the same macro step, with its default scheme or another."""
+        """What the project's own master gives at the same macro step, by its default or another scheme."""
         scene = self.scene if scheme is None else self.with_scheme(scheme)
         system = open_system(scene, in_process)
         try:
