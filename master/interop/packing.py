@@ -13,7 +13,7 @@ from touchdown.fmus.build import build
 from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import Component, Kind
 from touchdown.master.components.fmu import ArchivedFmu
 from touchdown.master.components.library import built, locate
 from touchdown.master.coupling.system import System
@@ -36,13 +36,18 @@ AS_IN_SCENE = Making()
 
 
 def start_values(system: System, name: str) -> dict[str, float]:
-    """What a component of an initialised system starts from (SI, by the scene's names).
+    """What a component of an initialised system starts from (SI, by the scene's names), integers as such.
 
     Its settings, and what its connected inputs hold at t = 0.
     """
-    settings = {variable: value for (owner, variable), value in system.settings.items() if owner == name}
+    component = system.components[name]
+    starts: dict[str, float] = {
+        variable: value if component.variable(variable).kind is Kind.REAL else int(value)
+        for (owner, variable), value in system.settings.items()
+        if owner == name
+    }
     fed = [c.input for c in system.connections if c.target == name]
-    return {**settings, **dict(zip(fed, system.components[name].read(fed), strict=True))}
+    return starts | dict(zip(fed, component.read(fed), strict=True))
 
 
 def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> dict[str, Path]:
