@@ -58,7 +58,7 @@ def read(path: Path) -> Scene:
     settings = _settings(system, sides, str(path))
     scene = Scene(
         name=path.stem,
-        title=system.title,
+        title=system.scene.get("title", system.title),
         about=system.scene.get("about", ""),
         components={name: _component(system, name, settings[name]) for name in system.parts},
         connect=tuple(
@@ -73,11 +73,13 @@ def read(path: Path) -> Scene:
 def _component(system: Structure, name: str, settings: Mapping[str, float]) -> ComponentSpec:
     names = system.names.get(name, {})
     given = {_here(system, name, variable): value for variable, value in settings.items()}
+    given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
     return ComponentSpec(
         str(system.parts[name].path.absolute()),
-        {variable: value for variable, value in given.items() if variable not in SCHEME_SETS},
+        given,
         every=system.every(name),
         names=names,
+        own=tuple(changed for changed in system.changed.get(name, ()) if changed in given),
     )
 
 
