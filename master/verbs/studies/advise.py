@@ -21,7 +21,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.coupling.advisor import advise
+    from touchdown.master.studies.schemes.advisor import advise
     from touchdown.master.interop.scenes import find_scene
     from touchdown.master.scene.schemes import SCHEMES
 
