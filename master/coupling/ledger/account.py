@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from touchdown.master.coupling.bonds.crossing import Crossing
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.loop.kernels.books import BOOK
 
@@ -13,9 +14,9 @@ from touchdown.master.coupling.loop.kernels.books import BOOK
 class Account:
     """One connection's: a name for what stands in its record, which kernels book in."""
 
-    def __init__(self, attachment: Attachment, record: Any = None) -> None:
+    def __init__(self, title: str, record: Any = None) -> None:
         """`record`: a row of an array of BOOK; a blank one where none is given."""
-        self.attachment = attachment
+        self.title = title  # of the connection, for people
         self.record = np.zeros(1, BOOK)[0] if record is None else record
         self.unaudited = ""  # why, where it is not audited
 
@@ -43,3 +44,24 @@ class Account:
         """Add a macro step's (J)."""
         self.record["total"] += abs(residual)
         self.record["made"] -= residual
+
+
+class SeatAccount(Account):
+    """Of a bearing's port on a body's port."""
+
+    def __init__(self, attachment: Attachment, record: Any = None) -> None:
+        super().__init__(attachment.title, record)
+        self.attachment = attachment
+
+
+class BondAccount(Account):
+    """Of a bond, whose crossing hears what is made."""
+
+    def __init__(self, crossing: Crossing, record: Any = None) -> None:
+        super().__init__(crossing.bond.title, record)
+        self.crossing = crossing
+
+    def fetch(self) -> None:
+        """Take over what was heard so far."""
+        heard = self.crossing.past.audit
+        self.record["total"], self.record["made"], self.record["turned"] = heard.total, heard.made, heard.turned

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.steppers.bonded import Bonded
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.coupling.steppers.halving import Halving
 from touchdown.master.coupling.steppers.iterated import Iterated
@@ -20,6 +21,8 @@ _OWN: Mapping[str, type[Stepper]] = {
     "iterated": Iterated,
     "halving": Halving,
 }
+BONDED: Mapping[type[Stepper], type[Stepper]] = {GaussSeidel: Bonded}
+"""What steps systems with bonds."""
 _sequences: dict[str, type[Stepper]] = dict(_OWN)
 SEQUENCES: Mapping[str, type[Stepper]] = MappingProxyType(_sequences)
 """All there are, by name: the project's own, then those that were registered."""
@@ -59,4 +62,5 @@ def stepper(system: System, run: RunSpec) -> Stepper:
             f"this process does not know the sequence {name}; put its stepper at the top of a module that "
             "can be imported, and register it from there"
         )
-    return SEQUENCES[name](system, run)
+    kind = SEQUENCES[name]
+    return BONDED.get(kind, kind)(system, run) if system.bonds else kind(system, run)
