@@ -51,7 +51,7 @@ class Crossing:
         self.bond, self.way, self.late = bond, way, late
         self.past = Past()
         self.trusted = True  # whether the force that the giver starts with may be used
-        self._time = self._step = 0.0
+        self._time = self._step = self._size = 0.0
         self._told: list[Polynomial] = []  # Bond.motion, as the giver is told
         self._taken = Polynomial([0.0])  # force, as the taker is told
         self._samples: list[Pushed] = []  # of this step
@@ -73,6 +73,7 @@ class Crossing:
     def begin(self, time: float, step: float) -> None:
         """Tell the motion ahead, from where the taker is, and a force that comes late."""
         self._time, self._step = time, step
+        self._size = self._size or step  # what is learned keeps its measure
         self._samples, self._under = [], []
         if not self.past.moved:
             force = [Pushed(time, float(self._signals[self._force]))] if self.trusted else []
@@ -200,7 +201,10 @@ class Crossing:
                 kept.append(point)
         return kept
 
+    def sizes(self, step: float) -> tuple[float, ...]:
+        """By which values of Bond.motion become places, of a velocity what it moves in a `step` (s)."""
+        position = () if self.bond.position is None else (1.0,)
+        return (*position, step) if self.bond.velocity else position
+
     def _scaled(self, motion: Sequence[float]) -> tuple[float, ...]:
-        """Position and velocity as numbers of one size."""
-        sizes = (1.0, self._step) if len(self._motion) == 2 else (1.0,)
-        return tuple(size * value for size, value in zip(sizes, motion, strict=True))
+        return tuple(size * value for size, value in zip(self.sizes(self._size), motion, strict=True))

@@ -6,7 +6,8 @@ growing from a thousandth of it: motion can be told ahead only from what has bee
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,13 @@ from touchdown.master.scene.run_spec import RunSpec
 RAMP = 10  # doublings of the first part of the first macro step until the whole of it is over
 
 
+class Memory(NamedTuple):
+    """What it knows of the past."""
+
+    ramped: bool
+    pasts: Sequence[Past]
+
+
 class Bonded(GaussSeidel):
     """Steps a system with bonds."""
 
@@ -32,9 +40,9 @@ class Bonded(GaussSeidel):
         _require_single_steps(system)
         place = {name: k for k, name in enumerate(system.order)}
         self._crossings = [Crossing(b, self.way, place[b.taker] < place[b.giver]) for b in system.bonds]
-        self._ramped = self.way.held or not all(c.any_step for c in system.components.values())
+        self.ramped = self.way.held or not all(c.any_step for c in system.components.values())
         for crossing in self._crossings:
-            crossing.trusted = self._ramped
+            crossing.trusted = self.ramped
         super().__init__(system, run)
 
     def follow(self) -> None:
@@ -43,7 +51,7 @@ class Bonded(GaussSeidel):
         live = [c for c in self._crossings if not system.retired & {c.bond.giver, c.bond.taker}]
         for crossing in live:
             crossing.find(system)
-        self._live = live
+        self.live = live
         bonded = {name for c in live for name in (c.bond.giver, c.bond.taker)}
         plain = {turn.component.name: turn for turn in self.turns}
         self._takes: list[Callable[[float, float], None]] = [
@@ -54,38 +62,44 @@ class Bonded(GaussSeidel):
         ]
 
     def step(self, number: int, time: float, step: float) -> None:
-        if self._ramped:
+        if self.ramped:
             self.sweep(time, step)
             return
-        self._ramped = True
+        self.ramped = True
         part, done = step / 2**RAMP, 0.0
         for _ in range(RAMP + 1):
             self.sweep(time + done, part)
             done += part
             part = done
 
-    def sweep(self, time: float, step: float, ends: Sequence[Sequence[float]] | None = None) -> None:
-        """One step of all components; `ends`: where the motion of each bond is told to end."""
-        for k, crossing in enumerate(self._live):
+    def told_ends(self, time: float, step: float) -> list[tuple[float, ...]]:
+        """Where the motion of each bond leads by itself in a step."""
+        for crossing in self.live:
             crossing.begin(time, step)
-            if ends is not None:
-                crossing.prescribe(ends[k])
+        return [crossing.told_end for crossing in self.live]
+
+    def sweep(self, time: float, step: float, ends: Iterable[float] | None = None) -> None:
+        """One step of all components; `ends`: where the motion of all bonds is told to end."""
+        told = None if ends is None else iter(ends)
+        for crossing in self.live:
+            crossing.begin(time, step)
+            if told is not None:
+                crossing.prescribe([next(told) for _ in crossing.bond.motion])
         for take in self._takes:
             take(time, step)
-        for crossing in self._live:
+        for crossing in self.live:
             crossing.end()
 
     @property
     def crossings(self) -> Sequence[Crossing]:
         return self._crossings
 
-    def memory(self) -> tuple[bool, list[Past]]:
-        """What it knows of the past, for `recall`."""
-        return self._ramped, [crossing.past for crossing in self._crossings]
+    def memory(self) -> Memory:
+        return Memory(self.ramped, [crossing.past for crossing in self._crossings])
 
-    def recall(self, memory: tuple[bool, list[Past]]) -> None:
-        """Go back to what it knew."""
-        self._ramped, pasts = memory
+    def recall(self, memory: object) -> None:
+        assert isinstance(memory, Memory)
+        self.ramped, pasts = memory
         for crossing, past in zip(self._crossings, pasts, strict=True):
             crossing.past = past
 

@@ -63,6 +63,13 @@ class Stepper(ABC):
         """The bonds that it steps as such."""
         return ()
 
+    def memory(self) -> object:
+        """What it knows of steps that are over, for `recall`; None: nothing."""
+        return None
+
+    def recall(self, memory: object) -> None:  # noqa: B027 - most know nothing
+        """Go back to what it knew."""
+
     @property
     def figures(self) -> dict[str, float]:
         """What it has to say of itself for the summary, named with units."""
