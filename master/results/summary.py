@@ -344,6 +344,7 @@ def _run_figures(
         "simulated_time_s": simulated,
         "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
         "scheme": scene.run.scheme.name,
+        "exchange": outcome.exchange,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
         **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},

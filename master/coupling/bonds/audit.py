@@ -26,6 +26,7 @@ class Audit:
     total: float = 0.0  # J, sum of |made| over steps
     made: float = 0.0  # J, by the exchange, less what it lost
     turned: float = 0.0  # J, sum of |work| over steps
+    loaded: int = 0  # steps in which work was done
     squares: tuple[float, ...] = ()  # of what was told apart, a matrix row by row
     products: tuple[float, ...] = ()  # of that and the force's difference
 
@@ -37,6 +38,7 @@ class Audit:
             total=self.total + abs(made),
             made=self.made + made,
             turned=self.turned + abs(factor * taken),
+            loaded=self.loaded + (taken != 0.0),
         )
 
     def learned(self, apart: Sequence[float], force: float) -> Audit:

@@ -10,6 +10,8 @@ from touchdown.master.coupling.bonds.crossing import Crossing
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.loop.kernels.books import BOOK
 
+SETTLED = 20  # steps in which a bond has done work, before it is judged
+
 
 class Account:
     """One connection's: a name for what stands in its record, which kernels book in."""
@@ -55,13 +57,34 @@ class SeatAccount(Account):
 
 
 class BondAccount(Account):
-    """Of a bond, whose crossing hears what is made."""
+    """Of a bond, whose crossing hears what is made.
+
+    It tells no mass, so how much energy the motion brings along is not known; it is judged once it has
+    turned some over.
+    """
 
     def __init__(self, crossing: Crossing, record: Any = None) -> None:
         super().__init__(crossing.bond.title, record)
         self.crossing = crossing
 
+    @property
+    def total(self) -> float:
+        return self.crossing.past.audit.total
+
+    @property
+    def made(self) -> float:
+        return self.crossing.past.audit.made
+
+    @property
+    def turned(self) -> float:
+        return self.crossing.past.audit.turned
+
+    @property
+    def turnover(self) -> float:
+        return self.turned
+
     def fetch(self) -> None:
-        """Take over what was heard so far."""
+        """Take over, for judgement, what was heard so far."""
         heard = self.crossing.past.audit
-        self.record["total"], self.record["made"], self.record["turned"] = heard.total, heard.made, heard.turned
+        if heard.loaded >= SETTLED:
+            self.record["total"], self.record["turned"] = heard.total, heard.turned
