@@ -84,7 +84,18 @@ def locate(name: str) -> Path:
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     """A scene from the tables of its TOML file."""
-    known = ("title", "about", "zero", "energy_scale", "attach", "sense", "connect", "bond", "run", "components")
+    known = (
+        "title",
+        "about",
+        "zero",
+        "energy_scale",
+        "attach",
+        "sense",
+        "connect",
+        "bond",
+        "run",
+        "components",
+    )
     refuse_unknown(data, known, f"scene {name}")
     components = {
         key: _component(part, f"scene {name}: [components.{key}]", folder)

@@ -61,7 +61,7 @@ def _wire(wire: Sequence[object], where: str) -> Wire:
 
 
 def bonds(value: object, where: str) -> tuple[BondSpec, ...]:
-    """One bond as a list of its wires, the force first; or a list of bonds, of which each may be a table."""
+    """A bond as a list of its wires, the force first; or a list of bonds, of which each may be a table."""
     listed = items(value)
     if listed is None:
         raise TouchdownError(f"{where} must be a list of wires, the force first, {BOND}")
@@ -81,7 +81,7 @@ def _bonds(listed: Sequence[object], where: str) -> Iterator[BondSpec]:
         named = {kind: wires([wire], f"{where}.{kind}")[0] for kind, wire in table.items()}
         if "force" not in named or len(named) == 1:
             raise TouchdownError(f"{where} needs force, and position or velocity or both")
-        yield BondSpec(**named)
+        yield BondSpec(named["force"], named.get("position"), named.get("velocity"))
 
 
 def _listed(listed: Sequence[object], where: str) -> BondSpec:

@@ -25,8 +25,12 @@ KINDS: tuple[tuple[Dimension, Dimension, Dimension], ...] = (  # force, position
     ({**NEWTON_METRE, "rad": -1}, {"rad": 1}, {"rad": 1, "s": -1}),
 )
 BY_NAME = {  # of units that an FMU names and does not define
-    **{"N": Unit(NEWTON), "N.m": Unit(NEWTON_METRE), "m": Unit({"m": 1}), "rad": Unit({"rad": 1})},
-    **{"m/s": Unit({"m": 1, "s": -1}), "rad/s": Unit({"rad": 1, "s": -1})},
+    "N": Unit(NEWTON),
+    "N.m": Unit(NEWTON_METRE),
+    "m": Unit({"m": 1}),
+    "m/s": Unit({"m": 1, "s": -1}),
+    "rad": Unit({"rad": 1}),
+    "rad/s": Unit({"rad": 1, "s": -1}),
 }
 
 
@@ -111,8 +115,8 @@ class _Recogniser:
         bond = self._bond(force, position, velocity)
         if not self._same_power(bond):
             raise TouchdownError(
-                f"{what}: its force and its motion are scaled so that the power that {force.source} gives is "
-                f"not what {force.target} takes; give both the same factor"
+                f"{what}: its force and its motion are scaled so that the power that {force.source} gives "
+                f"is not what {force.target} takes; give both the same factor"
             )
         return bond
 
@@ -122,8 +126,11 @@ class _Recogniser:
         )
 
     def recognised(self, connections: Sequence[Connection], seats: Sequence[Attachment]) -> Iterator[Bond]:
-        """All that are no matter of opinion: between two components that share no seat, one force of its kind
-        one way, and of its motion at most one position and one velocity back."""
+        """All that are no matter of opinion.
+
+        Between two components that share no seat: one force of its kind one way, and of its motion at most
+        one position and one velocity back.
+        """
         attached = {frozenset((a.bearing, a.body)) for a in seats}
         live = [c for c in connections if frozenset((c.source, c.target)) not in attached]
         for giver, taker in dict.fromkeys((c.source, c.target) for c in live if c.source != c.target):

@@ -1,12 +1,12 @@
-"""A bond while it is stepped: what was seen of it, and what both sides are told in the macro step to come."""
+"""A bond while it is stepped: what was seen of it, and what both sides are told of the step to come."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, TypeVar
 
-from touchdown.master.coupling.bonds.audit import Audit
+from touchdown.master.coupling.bonds.audit import Audit, Feedthrough
 from touchdown.master.coupling.bonds.bond import Bond
 from touchdown.master.coupling.bonds.holds import motion_holds
 from touchdown.master.coupling.bonds.polynomials import Polynomial, through, work
@@ -33,6 +33,9 @@ class Pushed(NamedTuple):
     lacking: float = 0.0  # what it lacks since the giver was told where the taker really came to
 
 
+Point = TypeVar("Point", Moved, Pushed)
+
+
 @dataclass(frozen=True)
 class Past:
     """What is known of a bond when a macro step begins; points are the latest first."""
@@ -40,7 +43,8 @@ class Past:
     moved: tuple[Moved, ...] = ()
     pushed: tuple[Pushed, ...] = ()
     behind: float = 0.0  # how far a giver that integrates velocity is behind the taker
-    audit: Audit = Audit()
+    feedthrough: Feedthrough = field(default_factory=Feedthrough)
+    audit: Audit = field(default_factory=Audit)
 
 
 class Crossing:
@@ -118,39 +122,46 @@ class Crossing:
 
     def end(self) -> None:
         """Both sides have taken the step: book it, and remember."""
-        came = Moved(self._time + self._step, self.here)
-        moved = (came, *self.past.moved)
-        path = self._path(moved, 2)
-        audit, lacking, behind = self._booked(path, came.values)
-        newest = self._samples[0]._replace(lacking=lacking)
-        pushed = (newest, *self._samples[1:], *self.past.pushed)
-        self.past = Past(moved[:KEPT], pushed[:KEPT], behind, audit)
-
-    def _booked(self, path: list[Polynomial], came: Sequence[float]) -> tuple[Audit, float, float]:
-        """The audit with this step, what the last force lacks, and how far the giver is behind now."""
-        audit, told, real = self.past.audit, self._place(self._told), self._place(path)
-        points = (*self._samples, *self.past.pushed)
-        given = self._course(points)
-        taken_work = work(self._taken, real)
+        past, came = self.past, Moved(self._time + self._step, self.here)
+        moved = (came, *past.moved)
+        real, told = self._place(self._path(moved, 2)), self._place(self._told)
+        feedthrough, lacking, behind = self._learned(), 0.0, 0.0
         if self.way.held:
-            given_work = self._held_work(told)
-            return audit.booked(self.bond.factor, taken_work, given_work), 0.0, 0.0
+            given = self._held_work(told)
+        else:
+            missed = [b - a for a, b in zip(self.told_end, came.values, strict=True)]
+            lacking = feedthrough.of(self._scaled(missed))
+            given = self._given_work(told, lacking, missed[0])
+            behind = real.at(1.0) - told.at(1.0) if self.bond.position is None else 0.0
+        audit = past.audit.booked(self.bond.factor, work(self._taken, real), given)
+        newest = self._samples[0]._replace(lacking=lacking)
+        pushed = (newest, *self._samples[1:], *past.pushed)
+        self.past = Past(moved[:KEPT], pushed[:KEPT], behind, feedthrough, audit)
+
+    def _learned(self) -> Feedthrough:
+        """With what this step has shown of it."""
+        found = self.past.feedthrough
+        if self.way.held:
+            return found
+        course = self._course((*self._samples, *self.past.pushed))
         for tau, held, force in self._under:
             apart = [p.at(tau) - h for p, h in zip(self._told, held, strict=True)]
-            audit = audit.learned(self._scaled(apart), given.at(tau) - force)
-        missed = [b - a for a, b in zip(self.told_end, came, strict=True)]
-        lacking = audit.feedthrough(self._scaled(missed))
-        given_work = work(given, told) + work(self._course(points, lacking=True), told)
-        behind = 0.0
-        if self.bond.position is not None:  # the giver is put where the taker is
-            given_work += (self._samples[0].force + 0.5 * lacking) * missed[0]
-        else:
-            given_work += given.mean(0.0, 1.0) * self.past.behind
-            behind = real.at(1.0) - told.at(1.0)
-        return audit.booked(self.bond.factor, taken_work, given_work), lacking, behind
+            found = found.learned(self._scaled(apart), course.at(tau) - force)
+        return found
+
+    def _given_work(self, told: Polynomial, lacking: float, missed: float) -> float:
+        """By a giver that moved as it was told; then it is put where the taker came to, by `missed`."""
+        points = (*self._samples, *self.past.pushed)
+        course = self._course(points)
+        given = work(course, told) + work(self._course(points, lacking=True), told)
+        if (
+            self.bond.position is None
+        ):  # it moved on its own; its first values made up for what it was behind
+            return given + course.mean(0.0, 1.0) * self.past.behind
+        return given + (self._samples[0].force + 0.5 * lacking) * missed
 
     def _held_work(self, told: Polynomial) -> float:
-        """By a giver under held motion; it was put there at the begin of the step, at a jump of its force."""
+        """By a giver under held motion; at the begin of the step it was put there, and its force jumped."""
         if len(self._under) < 2:
             return 0.0
         half, whole = (force for _, _, force in self._under[-2:])
@@ -191,13 +202,13 @@ class Crossing:
         values = [p.lacking if lacking else p.force for p in points]
         return through([self._tau(p.time) for p in points], values)
 
-    def _apart(self, points: Iterable[Moved] | Iterable[Pushed], count: int) -> list:
+    def _apart(self, points: Iterable[Point], count: int) -> list[Point]:
         """The latest `count` points that are not too near each other."""
-        kept: list = []
+        kept: list[Point] = []
         for point in points:
-            if len(kept) < count and (
-                not kept or kept[-1].time - point.time > NEAREST * self._step
-            ):
+            if len(kept) == count:
+                break
+            if not kept or kept[-1].time - point.time > NEAREST * self._step:
                 kept.append(point)
         return kept
 

@@ -1,7 +1,7 @@
 """What an FMU is given for a polynomial: two held values, one after the other, that act as it would.
 
-A held input acts as a smooth one, to fourth order in the step, where mean and first moment are kept. A force-
-giving FMU answers at once to the motion it is told, so the motion's last value must be that of the end.
+A held input acts as a smooth one, to fourth order in the step, where mean and first moment are kept. An FMU
+that gives force answers at once to the motion it is told, so the last of these must be that of the end.
 """
 
 from __future__ import annotations

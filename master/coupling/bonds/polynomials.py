@@ -55,13 +55,11 @@ class Polynomial:
 
 def work(force: Polynomial, place: Polynomial) -> float:
     """Integral of `force` along `place` over the whole step."""
-    return sum(
-        f * p * k / (i + k) for i, f in enumerate(force.c) for k, p in enumerate(place.c) if k > 0
-    )
+    return sum(f * p * k / (i + k) for i, f in enumerate(force.c) for k, p in enumerate(place.c) if k > 0)
 
 
 def through(nodes: Sequence[float], values: Sequence[float], slopes: Sequence[float] = ()) -> Polynomial:
-    """The polynomial with these values, and slopes in tau, at the first of the nodes (Lagrange, Hermite)."""
+    """The polynomial with these values, and slopes in tau, at the first nodes (Lagrange, Hermite)."""
     inverse = _inverse(tuple(round(tau, 9) for tau in nodes), len(values), len(slopes))
     return Polynomial((inverse @ np.array((*values, *slopes))).tolist())
 

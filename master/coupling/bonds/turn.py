@@ -1,4 +1,4 @@
-"""A component at the ends of bonds, in a macro step: it is stepped in parts, each with inputs of its own."""
+"""A component at the ends of bonds takes a macro step in parts, each with inputs of its own."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Stretch(NamedTuple):
 
 
 def stretches(count: int, split: float, any_step: bool) -> tuple[Stretch, ...]:
-    """A macro step in `count` stretches, each in two parts; in three equal ones for what cannot take others."""
+    """A macro step in `count` stretches, each in two parts; in equal ones for what takes no others."""
     return tuple(_stretch(k / count, (k + 1) / count, split, any_step) for k in range(count))
 
 
@@ -42,9 +42,11 @@ def _stretch(begin: float, end: float, split: float, any_step: bool) -> Stretch:
     length = end - begin
     if split == FIRST and not any_step:
         third = length / 3.0
-        parts = (
-            Part(begin, third, 0, False), Part(begin + third, third, 0, True), Part(end - third, third, 1, True),
-        )  # fmt: skip
+        parts: tuple[Part, ...] = (
+            Part(begin, third, 0, False),
+            Part(begin + third, third, 0, True),
+            Part(end - third, third, 1, True),
+        )
     else:
         first = split * length
         parts = Part(begin, first, 0, True), Part(begin + first, length - first, 1, True)
@@ -83,14 +85,18 @@ class Loads(NamedTuple):
 class BondedTurn:
     """Steps one component."""
 
-    def __init__(self, system: System, name: str, crossings: Sequence[Crossing], loads: Sequence[Loads]) -> None:
+    def __init__(
+        self, system: System, name: str, crossings: Sequence[Crossing], loads: Sequence[Loads]
+    ) -> None:
         self._system, self._name, self._loads = system, name, loads
         self._component = system.components[name]
         inputs = list(system.intakes[name].inputs)
 
         def found(crossing: Crossing, force: bool) -> Input:
             wires = [crossing.bond.force] if force else list(crossing.bond.motion)
-            return Input(crossing, tuple(inputs.index(c.input) for c in wires), tuple(c.scale for c in wires))
+            return Input(
+                crossing, tuple(inputs.index(c.input) for c in wires), tuple(c.scale for c in wires)
+            )
 
         self._gives = [found(c, force=False) for c in crossings if c.bond.giver == name]
         self._takes = [found(c, force=True) for c in crossings if c.bond.taker == name]

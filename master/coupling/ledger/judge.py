@@ -80,8 +80,8 @@ def _shorter_for_bond(run: RunSpec, share: float) -> str:
     way = way_of(run)
     other = "try run.bonds = smooth or contact, or" if way.held else "try"
     return (
-        f"the macro step of {run.macro_step:g} s is too long for a bond that crosses by {way.name}, {other} "
-        f"--macro-step {shorter_step(run, share, way.error_order):g}"
+        f"the macro step of {run.macro_step:g} s is too long for a bond that crosses by {way.name}, "
+        f"{other} --macro-step {shorter_step(run, share, way.error_order):g}"
     )
 
 

@@ -72,8 +72,8 @@ def stepper(system: System, run: RunSpec) -> Stepper:
         return kind(system, run)
     if kind is Jacobi and run.scheme.order != HOLD:
         raise TouchdownError(
-            f"scheme {run.scheme.name} steps all components at once, and {system.bonds[0].title} is a bond, "
-            "whose force must be known before it is taken; choose interface, iterated or halving, or "
+            f"scheme {run.scheme.name} steps all components at once, and {system.bonds[0].title} is a "
+            "bond, whose force must be known before it is taken; choose interface, iterated or halving, or "
             "jacobi-hold, which holds its values"
         )
     return BONDED.get(kind, kind)(system, run)

@@ -75,6 +75,6 @@ def require_any_step(system: System, scheme: str) -> None:
     for name, component in system.components.items():
         if not component.any_step:
             raise TouchdownError(
-                f"scheme {scheme} divides steps, and {name} ({component.origin}) says that it takes steps of "
-                "one length only; choose interface, or another FMU"
+                f"scheme {scheme} divides steps, and {name} ({component.origin}) says that it takes steps "
+                "of one length only; choose interface, or another FMU"
             )

@@ -24,7 +24,7 @@ AGAIN = MOST // 2  # repetitions after which K is found anew
 
 
 class IteratedBonds(Iterated):
-    """Repeats each step until the ends of all bonds stay. A velocity counts by what it moves in the step."""
+    """Repeats each step until the ends of all bonds stay; a velocity counts by what it moves in it."""
 
     def __init__(self, system: System, run: RunSpec) -> None:
         if system.attachments:

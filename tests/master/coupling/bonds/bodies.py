@@ -24,7 +24,7 @@ VARIABLES = (  # in the order of body.c
     *(("x", "output", "m"), ("v", "output", "m/s"), ("f", "output", "N")),
 )
 STARTS = {"m": 1.0}
-UNITS = {"m": 'm="1"', "m/s": 'm="1" s="-1"', "N": 'kg="1" m="1" s="-2"'}
+UNITS = {"m": 'm="1"', "m/s": 'm="1" s="-1"', "N": 'kg="1" m="1" s="-2"'}  # by name, whatever the factor
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,19 @@ class Kind:
     states: bool = True  # it can be taken back
     any_step: bool = True  # it takes steps of any length
     units: bool = True
+    newton: float = 1.0  # N in its unit of force
+    metre: float = 1.0  # m in its unit of length
 
 
 def description(kind: Kind) -> str:
     """Its modelDescription.xml."""
     flags = {"canHandleVariableCommunicationStepSize": kind.any_step, "canGetAndSetFMUstate": kind.states}
     said = " ".join(f'{name}="{str(value).lower()}"' for name, value in flags.items())
-    units = [f'<Unit name="{unit}"><BaseUnit {base}/></Unit>' for unit, base in UNITS.items()]
+    factors = {"m": kind.metre, "m/s": kind.metre, "N": kind.newton}
+    units = [
+        f'<Unit name="{unit}"><BaseUnit {base} factor="{factors[unit]}"/></Unit>'
+        for unit, base in UNITS.items()
+    ]
     outputs = [k for k, (_, causality, _) in enumerate(VARIABLES, 1) if causality == "output"]
     given = "".join(f'<Unknown index="{k}"/>' for k in outputs)
     return (
