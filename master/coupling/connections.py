@@ -26,8 +26,8 @@ from touchdown.master.components.contract import (
     SENSED,
     SLOPE,
 )
-from touchdown.master.scene.scene import Wire
 from touchdown.master.scene.schemes import Scheme
+from touchdown.master.scene.wires import Wire
 from touchdown.modelkit.variables import Causality
 
 GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be

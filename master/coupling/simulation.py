@@ -16,6 +16,7 @@ from touchdown.master.common.interrupts import Interrupts, interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
+from touchdown.master.coupling.bonds.told import exchange, unjoined
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.loop.retirement import Retirement
 from touchdown.master.coupling.loop.steps import MacroSteps
@@ -51,6 +52,8 @@ class Outcome:
     shorter_steps: Mapping[float, float] = field(default_factory=dict[float, float])  # s each, for how long
     ended: Ended = Ended.COMPLETED
     reason: str = ""  # why, where it did not complete
+    exchange: str = ""  # how everything that is exchanged crosses
+    unjoined: str = ""  # what is to be said where the scheme has nothing to act on
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
     def after(self, problem: str) -> Outcome:
@@ -130,6 +133,8 @@ def simulate(
         wall_time=wall_time,
         start_up=start_up + compiling,
         divided_in_impacts=one_by_one.impacts.divided,
+        exchange=exchange(coupling),
+        unjoined=unjoined(coupling),
         coupling=coupling.figures,
     )
 

@@ -11,6 +11,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import scaled
 from touchdown.master.components.component import Component
 from touchdown.master.components.contract import REACH
+from touchdown.master.coupling.bonds.bond import Bond
 from touchdown.master.coupling.connections import Attachment, Connection, hit_together, split, used_modes
 from touchdown.master.coupling.layout import Intake, lay_out
 
@@ -27,7 +28,8 @@ class System:
     settings: dict[tuple[str, str], float]
     every: dict[str, int]  # macro steps of the run that each component takes in one
     left_out: Sequence[str] = ()  # what swapped components do not take over, a line each
-    order: list[str] = field(init=False)  # bearings first
+    bonds: Sequence[Bond] = ()
+    order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
     intakes: Mapping[str, Intake] = field(init=False)  # by component: what it takes of the signals
@@ -36,7 +38,9 @@ class System:
 
     def __post_init__(self) -> None:
         bearings = dict.fromkeys(a.bearing for a in self.attachments)
-        self.order = [*bearings, *(name for name in self.components if name not in bearings)]
+        order = [*bearings, *(name for name in self.components if name not in bearings)]
+        before = [(a.bearing, a.body) for a in self.attachments]
+        self.order = _in_order(order, [*before, *((b.giver, b.taker) for b in self.bonds)])
         self.hit_together = hit_together(self.attachments, self.components)
         self._lay_out()
 
@@ -142,6 +146,16 @@ class System:
         watched = [(a.bearing, REACH) for a in self.hit_together]
         layout = lay_out(self.components, self._live(), attachments, watched)
         self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
+
+
+def _in_order(names: Sequence[str], before: Sequence[tuple[str, str]]) -> list[str]:
+    """`names` as they stand, but for those of `before`, whose first comes first; circles are cut open."""
+    left, ordered = list(names), list[str]()
+    while left:
+        late = {second for first, second in before if first in left and first != second}
+        ordered.append(next((name for name in left if name not in late), left[0]))
+        left.remove(ordered[-1])
+    return ordered
 
 
 def fastest_contact(system: System) -> tuple[str, float]:

@@ -345,6 +345,7 @@ def _run_figures(
         "simulated_time_s": simulated,
         "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
         "scheme": scene.run.scheme.name,
+        "exchange": outcome.exchange,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
         **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),

@@ -122,7 +122,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     if options.scheme is not None:
         chosen = chosen.set({"run.scheme": options.scheme})
     if options.macro_step == "auto":
-        from touchdown.master.coupling.advisor import advise
+        from touchdown.master.studies.schemes.advisor import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")

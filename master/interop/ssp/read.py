@@ -19,7 +19,8 @@ from touchdown.master.interop.ssp import structure
 from touchdown.master.interop.ssp.bindings import Value
 from touchdown.master.interop.ssp.names import HEART
 from touchdown.master.interop.ssp.structure import Link, Structure
-from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.wires import Wire
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene")
