@@ -194,8 +194,8 @@ def test_a_checkout_without_links_runs(installed: Mapping[str, Path], mine: Path
 @pytest.fixture
 def hook(tmp_path: Path) -> Any:
     """What makes the links, at work on an empty checkout."""
-    path = ROOT / ".ci" / "checkout_links.py"
-    spec = importlib.util.spec_from_file_location("checkout_links", path)
+    path = ROOT / ".ci" / "wheel_hook.py"
+    spec = importlib.util.spec_from_file_location("wheel_hook", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -203,7 +203,7 @@ def hook(tmp_path: Path) -> Any:
     assert module.PACKAGES == PACKAGES
     for name in ("src/touchdown", *PACKAGES):
         (tmp_path / name).mkdir(parents=True)
-    return module.CheckoutLinks(str(tmp_path), {}, None, None, "", "wheel")
+    return module.WheelHook(str(tmp_path), {}, None, None, "", "wheel")
 
 
 def links(folder: Path) -> dict[str, Path]:
