@@ -68,9 +68,8 @@ def machine_code(drops: list[str], folder: Path) -> set[Path]:
             if process.wait():
                 sys.exit(f"the drops failed: {' '.join(map(str, process.args))}")
             seen = json.loads((folder / f"{way} {number}" / "observed.json").read_text("utf-8"))
-            print(
-                f"{way}: {len(seen['compiled'])} kernels compiled, {len(seen['loaded'])} loaded", flush=True
-            )
+            compiled, loaded = seen["compiled"], seen["loaded"]
+            print(f"{way}: {len(compiled)} kernels compiled, {len(loaded)} loaded", flush=True)
             if not compiled:
                 del waiting[way]
                 found |= {Path(path) for path in loaded}

@@ -47,7 +47,7 @@ def dropped(drop: str, folder: Path, in_process: bool) -> bool:
 
 
 def _note_reading(loaded: set[str], event: str, given: tuple[Any, ...]) -> None:
-    if event == "open" and str(given[0]).endswith(SUFFIX) and given[1] == "rb":
+    if event == "open" and str(given[0]).endswith(SUFFIX) and str(given[1]).startswith("r"):
         loaded.add(str(given[0]))
 
 

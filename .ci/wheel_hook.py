@@ -3,7 +3,8 @@
 An editable install, which is a wheel too, makes links from src/touchdown to the packages at the top of
 the checkout. Python does not need them: `touchdown/__init__.py` looks at the top itself. They are for tools
 that read the tree without running it (type checkers, editors), to which touchdown.rotor is
-src/touchdown/rotor. Windows gets junctions, which need no rights; where neither can be made, only those tools miss them.
+src/touchdown/rotor. Windows gets junctions, which need no rights; where neither can be made, only those
+tools miss them.
 
 A wheel for a platform gets machine code: `.ci/build_wheel.py` says which, and for what, by two variables of
 the environment.
