@@ -1,10 +1,10 @@
-"""Build a wheel for this platform that carries the machine code of the models.
+"""Build a wheel for this platform that carries the machine code of the models, and the FMUs that run it.
 
     python .ci/build_wheel.py [-o dist] [DROP ...]
 
 The code is compiled for a plain processor (`modelkit/kernel/shipped.py`). Which is needed is found by
-trying: short drops are run, through FMUs and in process, until nothing is compiled any more, and the code
-that was loaded then goes into the wheel. Without DROPs (`observed.py`) they cover all models. Needs the
+trying: short drops are run, through FMUs and in process, until nothing is compiled any more, and what they
+take from the cache then goes into the wheel. Without DROPs (`observed.py`) they cover all models. Needs the
 project and hatchling installed; code that the cache holds from other times is taken from there.
 """
 
@@ -40,10 +40,10 @@ def main() -> int:
     )
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
-        code = Path(folder) / "machine_code"
-        count = gather(machine_code(options.drops or all_models(), Path(folder)), code)
-        print(f"{count} kernels, {size(code) / 1e6:.1f} MB")
-        wheel(code, options.output)
+        content = Path(folder) / "shipped"
+        count = gather(taken(options.drops or all_models(), Path(folder)), content)
+        print(f"{count} files, {size(content) / 1e6:.1f} MB")
+        wheel(content, options.output)
     return 0
 
 
@@ -59,8 +59,8 @@ def all_models() -> list[str]:
     return [*drops, *(f"{ANY_BEARING}+{bearing}" for bearing in sorted(missing))]
 
 
-def machine_code(drops: list[str], folder: Path) -> set[Path]:
-    """Files in the cache with the code that the drops load, compiled where it was not there."""
+def taken(drops: list[str], folder: Path) -> set[Path]:
+    """Files of the cache that the drops take, made where they were not there."""
     waiting, found = dict(WAYS), set[Path]()
     for number in range(PASSES):
         running = {way: _started(drops, how, folder / f"{way} {number}") for way, how in waiting.items()}
@@ -69,7 +69,7 @@ def machine_code(drops: list[str], folder: Path) -> set[Path]:
                 sys.exit(f"the drops failed: {' '.join(map(str, process.args))}")
             seen = json.loads((folder / f"{way} {number}" / "observed.json").read_text("utf-8"))
             compiled, loaded = seen["compiled"], seen["loaded"]
-            print(f"{way}: {len(compiled)} kernels compiled, {len(loaded)} loaded", flush=True)
+            print(f"{way}: {len(compiled)} kernels compiled, {len(loaded)} files taken", flush=True)
             if not compiled:
                 del waiting[way]
                 found |= {Path(path) for path in loaded}
@@ -87,12 +87,11 @@ def _started(drops: list[str], how: list[str], folder: Path) -> subprocess.Popen
 
 def gather(files: set[Path], into: Path) -> int:
     """Copy files of the cache to where an installation has them; returns how many."""
-    kept = user_cache() / "machine-code"
     for path in files:
-        target = into / path.relative_to(kept)
+        target = into / path.relative_to(user_cache())
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, target)
-    (into / MADE_FOR).write_text(made_for(version("numba")) + "\n", "utf-8")
+    (into / "machine-code" / MADE_FOR).write_text(made_for(version("numba")) + "\n", "utf-8")
     return len(files)
 
 
@@ -101,9 +100,9 @@ def size(folder: Path) -> int:
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
 
 
-def wheel(code: Path, into: Path) -> None:
-    """Build it with the machine code in `code`."""
-    environment = {**os.environ, "TOUCHDOWN_MACHINE_CODE": str(code), "TOUCHDOWN_WHEEL_TAG": tag()}
+def wheel(content: Path, into: Path) -> None:
+    """Build it with what lies in `content`."""
+    environment = {**os.environ, "TOUCHDOWN_SHIPPED": str(content), "TOUCHDOWN_WHEEL_TAG": tag()}
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(into.resolve())]
     subprocess.run(command, cwd=ROOT, env=environment, check=True)
 

@@ -1,9 +1,9 @@
-"""Run short drops in one process, and note what numba compiled, and what machine code was loaded instead.
+"""Run short drops in one process, and note what numba compiled, and what was taken ready-made instead.
 
     python .ci/observed.py FOLDER [--in-process] DROP ...
 
 A DROP is a scene, or SCENE+BEARING for a scene with another bearing. Results go to FOLDER/DROP, what was
-observed to FOLDER/observed.json: names of kernels, and paths of files.
+observed to FOLDER/observed.json: names of kernels, and paths of files (code, FMUs and their digests).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-SUFFIX = ".nbc"  # of kept machine code
+KINDS = (".nbc", ".fmu", ".sha256")
 DURATION = "12 ms"  # after the shutdown; a disk lands after 8 ms
 
 
@@ -47,7 +47,7 @@ def dropped(drop: str, folder: Path, in_process: bool) -> bool:
 
 
 def _note_reading(loaded: set[str], event: str, given: tuple[Any, ...]) -> None:
-    if event == "open" and str(given[0]).endswith(SUFFIX) and str(given[1]).startswith("r"):
+    if event == "open" and str(given[0]).endswith(KINDS) and str(given[1]).startswith("r"):
         loaded.add(str(given[0]))
 
 

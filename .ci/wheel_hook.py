@@ -6,8 +6,8 @@ that read the tree without running it (type checkers, editors), to which touchdo
 src/touchdown/rotor. Windows gets junctions, which need no rights; where neither can be made, only those
 tools miss them.
 
-A wheel for a platform gets machine code: `.ci/build_wheel.py` says which, and for what, by two variables of
-the environment.
+A wheel for a platform gets machine code and FMUs: `.ci/build_wheel.py` says which, and for what, by two
+variables of the environment.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-MACHINE_CODE, TAG = "TOUCHDOWN_MACHINE_CODE", "TOUCHDOWN_WHEEL_TAG"
+SHIPPED, TAG = "TOUCHDOWN_SHIPPED", "TOUCHDOWN_WHEEL_TAG"
 PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master")
 
 
@@ -27,11 +27,11 @@ class WheelHook(BuildHookInterface):
     """Runs before every build of a wheel."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Make the links that are missing, or take in the machine code there is."""
+        """Make the links that are missing, or take in what is to come along."""
         if version == "editable":
             _link(Path(self.root))
-        elif MACHINE_CODE in os.environ:
-            build_data["force_include"][os.environ[MACHINE_CODE]] = "touchdown/machine_code"
+        elif SHIPPED in os.environ:
+            build_data["force_include"][os.environ[SHIPPED]] = "touchdown/shipped"
             build_data["pure_python"] = False
             build_data["tag"] = os.environ[TAG]
 

@@ -124,13 +124,13 @@ def test_a_wheel_with_machine_code_is_for_a_platform(
     (tmp_path / "code" / "hash").mkdir(parents=True)
     (tmp_path / "code" / "hash" / "kernel.nbc").write_bytes(b"x")
     told = {
-        "TOUCHDOWN_MACHINE_CODE": str(tmp_path / "code"),
+        "TOUCHDOWN_SHIPPED": str(tmp_path / "code"),
         "TOUCHDOWN_WHEEL_TAG": "cp311-cp311-linux_x86_64",
     }
     wheel = packed(checkout, "wheel", tmp_path / "wheel", **told)
     assert wheel.stem.endswith("-cp311-cp311-any")
     found, plain = entries(wheel), entries(wheels["wheel"])
-    assert found.pop("touchdown/machine_code/hash/kernel.nbc") == b"x"
+    assert found.pop("touchdown/shipped/hash/kernel.nbc") == b"x"
     changed = {name.rpartition("/")[2] for name in found if found[name] != plain[name]}
     assert found.keys() == plain.keys()
     assert changed == {"WHEEL", "RECORD"}

@@ -97,7 +97,7 @@ def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
 @cache
 def _shipped(packages: tuple[str, ...]) -> Path | None:
     """Where machine code of these sources came along with the installation; None where none did."""
-    brought = shipped.folder()
+    brought = shipped.folder("machine-code")
     found = None if brought is None else brought / source_hash(packages)
     return found if found is not None and found.is_dir() else None
 

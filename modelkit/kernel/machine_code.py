@@ -116,7 +116,7 @@ def _text_of(file: str) -> str:
 
 def about_shipped() -> str:
     """What there is to say, to people, of machine code that came along with the installation."""
-    found = folder()
+    found = folder("machine-code")
     if found is None:
         return "compiled on first use; no machine code came along with this installation"
     made = (found / MADE_FOR).read_text("utf-8").strip()

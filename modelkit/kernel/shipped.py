@@ -1,10 +1,10 @@
-"""Machine code that an installation brings along: a wheel for a platform carries it.
+"""What an installation brings along, as the cache would hold it: a wheel for a platform carries it.
 
-It was compiled for a plain processor, and is taken where that one's instructions are to be had, for the
-very sources, numba and Python that it was made of. It lies beside the sources of the installed `touchdown`,
-where what travels in an FMU finds the code of its own sources, too. Whoever can change it there can change
-those sources, so it is trusted as they are. Its results are those of code compiled here, to the last bit:
-nothing is reassociated or contracted, and wider instructions round as plain ones do.
+Its machine code was compiled for a plain processor, and is taken where that one's instructions are to be
+had, for the very sources, numba and Python that it was made of. It lies beside the sources of the installed
+`touchdown`, where what travels in an FMU finds the code of its own sources, too. Whoever can change it there
+can change those sources, so it is trusted as they are. Its results are those of code compiled here, to the
+last bit: nothing is reassociated or contracted, and wider instructions round as plain ones do.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-PACKAGE, FOLDER = "touchdown", "machine_code"
-MADE_FOR = "made_for.txt"  # in the folder: what `made_for` said
+PACKAGE, FOLDER = "touchdown", "shipped"
+MADE_FOR = "made_for.txt"  # beside the code: what `made_for` said
 
 _V3 = "avx avx2 bmi bmi2 cx16 f16c fma lzcnt movbe popcnt sahf sse3 sse4.1 sse4.2 ssse3 xsave"
 _PLAIN = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}  # by machine, as LLVM calls it
@@ -42,13 +42,13 @@ def plainer(processor: tuple[str, str, str]) -> tuple[str, str, str] | None:
     return (triple, plain, "") if _NEEDED.get(plain, frozenset()) <= {*features.split(",")} else None
 
 
-def folder() -> Path | None:
-    """Where the installed package has its machine code; None where it brought none."""
+def folder(kind: str) -> Path | None:
+    """Where the installed package has what the cache holds as `kind`; None where it brought none."""
     try:
         spec = find_spec(PACKAGE)
     except (ImportError, ValueError):
         return None
     if spec is None or not spec.origin:
         return None
-    found = Path(spec.origin).parent / FOLDER
+    found = Path(spec.origin).parent / FOLDER / kind
     return found if found.is_dir() else None

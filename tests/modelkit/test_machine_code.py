@@ -138,10 +138,12 @@ def test_only_an_installed_package_brings_code(tmp_path: Path, monkeypatch: pyte
     """A folder of its name, in which somebody works, is none."""
     monkeypatch.setattr(shipped, "PACKAGE", "brings_code")
     monkeypatch.syspath_prepend(tmp_path)
-    (tmp_path / "brings_code" / shipped.FOLDER).mkdir(parents=True)
-    assert shipped.folder() is None
+    brought = tmp_path / "brings_code" / shipped.FOLDER / "fmus"
+    brought.mkdir(parents=True)
+    assert shipped.folder("fmus") is None
     (tmp_path / "brings_code" / "__init__.py").touch()
     importlib.invalidate_caches()
-    assert shipped.folder() == tmp_path / "brings_code" / shipped.FOLDER
+    assert shipped.folder("fmus") == brought
+    assert shipped.folder("machine-code") is None
     monkeypatch.setattr(shipped, "PACKAGE", "json")
-    assert shipped.folder() is None
+    assert shipped.folder("fmus") is None
