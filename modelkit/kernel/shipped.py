@@ -2,9 +2,9 @@
 
 Its machine code was compiled for a plain processor, and is taken where that one's instructions are to be
 had, for the very sources, numba and Python that it was made of. It lies beside the sources of the installed
-`touchdown`, where what travels in an FMU finds the code of its own sources, too. Whoever can change it there
-can change those sources, so it is trusted as they are. Its results are those of code compiled here, to the
-last bit: nothing is reassociated or contracted, and wider instructions round as plain ones do.
+`touchdown`, where what travels in an FMU finds the code of its own sources, too. Who can change it can
+change the sources, so it is trusted as they are. Its results are those of code compiled here, to the last
+bit: nothing is reassociated or contracted, and wider instructions round as plain ones do.
 """
 
 from __future__ import annotations
