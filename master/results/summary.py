@@ -7,13 +7,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import get_window
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
+from touchdown.master.results.spectra import hann
 from touchdown.master.results.stresses import stress_figures
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
@@ -273,7 +273,7 @@ def dominant_frequency(
     if not np.any(centred):
         return None
     count = 8 * len(centred)
-    spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
+    spectrum = np.abs(np.fft.rfft(centred * hann(len(centred)), count))
     frequency = np.fft.rfftfreq(count, step)
     band = np.flatnonzero((frequency >= low) & (frequency <= high))
     if len(band) < 3:

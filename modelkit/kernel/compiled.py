@@ -16,6 +16,7 @@ from typing import Any, TypeVar, cast
 import numba
 from numba.core.dispatcher import Dispatcher
 
+from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import own_folder
 from touchdown.modelkit.kernel.machine_code import KernelCache
 
@@ -80,7 +81,7 @@ def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False)
     compiled = numba.njit(error_model="numpy", forceinline=forceinline)(function)
     folder = _machine_code_folder(packages)
     if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
-        cast(Any, compiled)._cache = KernelCache(function, folder)
+        cast(Any, compiled)._cache = KernelCache(function, folder, _shipped(packages))
     return cast(F, compiled)
 
 
@@ -91,6 +92,14 @@ def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
         return own_folder("machine-code", source_hash(packages))
     except OSError:
         return None
+
+
+@cache
+def _shipped(packages: tuple[str, ...]) -> Path | None:
+    """Where machine code of these sources came along with the installation; None where none did."""
+    brought = shipped.folder("machine-code")
+    found = None if brought is None else brought / source_hash(packages)
+    return found if found is not None and found.is_dir() else None
 
 
 def inlined(function: F) -> F:
