@@ -10,7 +10,14 @@ from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import curve
-from touchdown.bearings.contact.journal import note, place_in_bore, touch, touch_of, watch_contact
+from touchdown.bearings.contact.journal import (
+    note,
+    place_in_bore,
+    time_to_touch,
+    touch,
+    touch_of,
+    watch_contact,
+)
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
@@ -232,6 +239,7 @@ def report(q, m, race_radius):
     c = m.o.contact
     c.force, c.indentation = m.s.ring.normal, m.s.ring.indentation
     c.sliding = o.journal_speed - o.surface_speed
+    c.reach = time_to_touch(seat.journal_motion(q), ring_motion(q), p.clearance)
 
 
 @kernel

@@ -104,7 +104,9 @@ class ArchivedFmu(Component):
         self.folder = unpack(path, cache)
         self.description = describe(path, self.folder)
         super().__init__(name, origin or str(path), variables_of(self.description))
-        self.can_save = bool(self.description.coSimulation.canGetAndSetFMUstate)
+        able = self.description.coSimulation
+        self.can_save = bool(able.canGetAndSetFMUstate)
+        self.any_step = bool(able.canHandleVariableCommunicationStepSize)
         self.units = units_of(self.description)
         self.path, self._cache, self._own_origin = path, cache, origin
 

@@ -9,6 +9,7 @@ from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
 from touchdown.master.components.component import Component, check_value
+from touchdown.master.coupling.bonds.bond import found
 from touchdown.master.coupling.connections import (
     Attachment,
     Connection,
@@ -57,10 +58,11 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
     attachments = recognised(connections)
+    bonds = found(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
-    return System(components, attachments, connections, settings, every, left_out)
+    return System(components, attachments, connections, settings, every, left_out, bonds)
 
 
 def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
@@ -81,7 +83,9 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     attached = [attachment(pair, components) for pair in scene.attach]
     connections = [c for a in attached for c in port_connections(a, components, scheme)]
     connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
-    connections += [connection(wire, components) for wire in scene.connect]
+    declared = [wire for bond in scene.bond for wire in bond.wires]
+    wires = dict.fromkeys([*scene.connect, *declared])  # a bond's may stand among the others, too
+    connections += [connection(wire, components) for wire in wires]
     check_connections(connections, components)
     for c in connections:
         if c.input in scene.components[c.target].set:

@@ -7,13 +7,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import get_window
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
+from touchdown.master.results.spectra import hann
 from touchdown.master.results.stresses import stress_figures
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
@@ -54,6 +54,7 @@ FIGURES = (
     Figure("loaded_balls_end", "balls.loaded"),
 )
 LAST_PART = 0.2  # of a run, for means
+_DIVIDED = "macro_steps_divided_in_impacts"
 
 
 ENERGIES = (
@@ -272,7 +273,7 @@ def dominant_frequency(
     if not np.any(centred):
         return None
     count = 8 * len(centred)
-    spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
+    spectrum = np.abs(np.fft.rfft(centred * hann(len(centred)), count))
     frequency = np.fft.rfftfreq(count, step)
     band = np.flatnonzero((frequency >= low) & (frequency <= high))
     if len(band) < 3:
@@ -344,8 +345,10 @@ def _run_figures(
         "simulated_time_s": simulated,
         "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
         "scheme": scene.run.scheme.name,
+        "exchange": outcome.exchange,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
+        **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),
         **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
 

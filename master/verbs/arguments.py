@@ -14,6 +14,7 @@ from touchdown.master.verbs import completion
 from touchdown.master.verbs.completion import complete
 
 if TYPE_CHECKING:
+    from touchdown.master.interop.packing import Making
     from touchdown.master.scene.scene import Scene
 
 MOST = 10_000  # of what is counted: runs, repetitions
@@ -87,6 +88,16 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def add_making(verb: argparse.ArgumentParser) -> None:
+    """Add --link-python and --native, for FMUs that others run; `making` reads them."""
+    verb.add_argument(
+        "--link-python",
+        action="store_true",
+        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
+    )
+    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
+
+
 def add_quiet(verb: argparse.ArgumentParser) -> None:
     """Add --quiet."""
     verb.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -111,7 +122,7 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     if options.scheme is not None:
         chosen = chosen.set({"run.scheme": options.scheme})
     if options.macro_step == "auto":
-        from touchdown.master.coupling.advisor import advise
+        from touchdown.master.studies.schemes.advisor import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
@@ -119,6 +130,13 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     elif options.macro_step is not None:
         chosen = chosen.set({"run.macro_step": options.macro_step})
     return chosen
+
+
+def making(options: argparse.Namespace) -> Making:
+    """How the options of `add_making` ask for FMUs. Raises TouchdownError."""
+    from touchdown.master.interop.packing import Making
+
+    return Making(options.link_python, options.native)
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:

@@ -15,6 +15,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import own_folder
 from touchdown.modelkit.kernel.linked import KernelDispatcher
 from touchdown.modelkit.kernel.machine_code import KernelCache
@@ -84,7 +85,7 @@ def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False)
     compiled: Any = KernelDispatcher(function, targetoptions=options)
     folder = _machine_code_folder(packages)
     if folder is not None:
-        compiled._cache = KernelCache(function, folder)
+        compiled._cache = KernelCache(function, folder, _shipped(packages))
     return cast(F, compiled)
 
 
@@ -95,3 +96,11 @@ def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
         return own_folder("machine-code", source_hash(packages))
     except OSError:
         return None
+
+
+@cache
+def _shipped(packages: tuple[str, ...]) -> Path | None:
+    """Where machine code of these sources came along with the installation; None where none did."""
+    brought = shipped.folder("machine-code")
+    found = None if brought is None else brought / source_hash(packages)
+    return found if found is not None and found.is_dir() else None

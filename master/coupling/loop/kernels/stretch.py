@@ -11,6 +11,7 @@ import numpy as np
 from touchdown.master.coupling.loop.kernels import kernel
 from touchdown.master.coupling.loop.kernels.books import book, worst_of
 from touchdown.master.coupling.loop.kernels.exchange import cut, scale
+from touchdown.master.coupling.loop.kernels.impacts import met
 from touchdown.master.coupling.loop.kernels.tables import (
     FETCH,
     GET,
@@ -128,12 +129,15 @@ def exchange(plan, turns, parts, signals, number, time):
 
 
 @kernel
-def take(plan, turns, parts, books, signals):
+def take(plan, turns, parts, seats, books, signals):
     """One macro step, whole or divided, each part of it booked; whether it failed."""
-    plan.span = plan.length / plan.parts
-    for k in range(plan.parts):
-        time = plan.done * plan.length + k * plan.span
-        if exchange(plan, turns, parts, signals, plan.done * plan.parts + k, time):
+    begin, divided = plan.done * plan.length, plan.parts
+    if met(seats, signals, begin, plan.length):
+        plan.hit += 1
+        divided = max(divided, plan.impact_parts)
+    plan.span = plan.length / divided
+    for k in range(divided):
+        if exchange(plan, turns, parts, signals, plan.done * divided + k, begin + k * plan.span):
             return True
         plan.booked += 1
         book(books, signals, plan.booked)
@@ -167,6 +171,7 @@ def run(
     plan: np.ndarray,
     turns: np.ndarray,
     parts: np.ndarray,
+    seats: np.ndarray,
     books: np.ndarray,
     signals: np.ndarray,
     reads: np.ndarray,
@@ -180,7 +185,7 @@ def run(
     """
     p = plan[0]
     while p.done < p.until:
-        if take(p, turns, parts, books, signals):
+        if take(p, turns, parts, seats, books, signals):
             return True
         if p.done == p.until or not worst_of(books, p.fall)[1] <= p.limit:
             return False
