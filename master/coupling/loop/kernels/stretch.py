@@ -21,7 +21,6 @@ from touchdown.master.coupling.loop.kernels.tables import (
     SET,
     STEP,
 )
-from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.kernel.address import (
     call_advance,
     call_exchange,
@@ -88,20 +87,20 @@ def pull(turn):
     return 0
 
 
-@inlined
+@kernel
 def _answer(status):
     """0 where a component that answered so can go on."""
     return 0 if status <= WARNING else status
 
 
-@inlined
+@kernel
 def note(plan, turn, call, status):
     """Note which component failed, and at what; True."""
     plan.failed, plan.call, plan.status = turn, call, status
     return True
 
 
-@inlined
+@kernel
 def exchange(plan, turns, parts, signals, number, time):
     """One step of `plan.span` (s) from `time` (s) by all components; whether one failed.
 
@@ -129,7 +128,7 @@ def exchange(plan, turns, parts, signals, number, time):
     return False
 
 
-@inlined
+@kernel
 def take(plan, turns, parts, seats, books, signals):
     """One macro step, whole or divided, each part of it booked; whether it failed."""
     begin, divided = plan.done * plan.length, plan.parts
