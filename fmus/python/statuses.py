@@ -25,7 +25,7 @@ def with_errors(library: bytes) -> bytes:
 
     A library that is none of these, or throws in another way, is returned as it is.
     """
-    if library[:6] != b"\x7fELF\x02\x01":  # 64 bits, little-endian
+    if library[:6] != b"\x7fELF\x02\x01" or library[18:20] != b"\x3e\0":  # 64 bits, for x86-64
         return library
     (table,) = struct.unpack_from("<Q", library, 40)
     size, count = struct.unpack_from("<2H", library, 58)

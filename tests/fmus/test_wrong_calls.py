@@ -48,6 +48,9 @@ def running():
 def badly():
     return initialising(REAL, -1)
 
+def chosen():
+    return initialising(WHOLE, 99)
+
 def fed(value):
     slave = running()
     slave.set({INPUT: value})
@@ -96,9 +99,9 @@ WRONG = {
     "set up while initialising": (initialising, lambda s: s.fmu.setupExperiment(startTime=0.0)),
     "enter initialisation twice": (initialising, lambda s: s.fmu.enterInitializationMode()),
     "step while initialising": (initialising, lambda s: s.fmu.doStep(0.0, STEP)),
-    "read an output of a bad parameter": (badly, lambda s: s.fmu.getReal(of(s, OUTPUT))),
+    "read what a bad parameter makes": (badly, lambda s: s.fmu.getReal(of(s, OUTPUT))),
     "complete with a bad parameter": (badly, lambda s: s.fmu.exitInitializationMode()),
-    "complete with a bad integer": (lambda: initialising(WHOLE, 99), lambda s: s.fmu.exitInitializationMode()),
+    "complete with a bad integer": (chosen, lambda s: s.fmu.exitInitializationMode()),
     "complete with an input that is no number": (
         lambda: initialising(INPUT, math.nan), lambda s: s.fmu.exitInitializationMode()),
     "set up when running": (running, lambda s: s.fmu.setupExperiment(startTime=0.0)),
@@ -122,7 +125,7 @@ WRONG = {
     "step one that failed": (failed, lambda s: s.fmu.doStep(STEP, STEP)),
     "step one that ended": (ended, lambda s: s.fmu.doStep(STEP, STEP)),
     "cancel a step": (running, lambda s: s.fmu.cancelStep()),
-    "set derivatives of an input": (running, lambda s: s.fmu.setRealInputDerivatives(of(s, INPUT), [1], [0])),
+    "set an input's rate": (running, lambda s: s.fmu.setRealInputDerivatives(of(s, INPUT), [1], [0])),
     "take another FMU's bytes": (running, lambda s: s.fmu.deSerializeFMUstate(strange())),
     "take bytes that were cut": (running, lambda s: s.fmu.deSerializeFMUstate(bytes_of(s)[:-1])),
     "take bytes that were changed": (running, lambda s: s.fmu.deSerializeFMUstate(changed(s))),
@@ -164,7 +167,7 @@ REASONS = {  # what the log says of some
     "set a real as boolean": "clearance cannot be set as boolean",
     "read an unknown reference": "value reference 123456789",
     "complete with a bad parameter": "clearance = -1 m must be above 0 m",
-    "read an output of a bad parameter": "clearance = -1 m must be above 0 m",
+    "read what a bad parameter makes": "clearance = -1 m must be above 0 m",
     "set a fixed parameter": "clearance cannot be set as real now; parameters are fixed",
     "step back": "the last step ended at 2e-05 s",
     "step one that failed": "stopped before: cannot step",

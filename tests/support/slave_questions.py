@@ -189,7 +189,7 @@ def inputs_not_finite(folder: str, _: str) -> dict[str, Any]:
 
 
 def failure_lasts(folder: str, _: str) -> list[Any]:
-    """Whether a failed instance steps after its input was mended, and what it says last."""
+    """Whether a failed instance steps after its input was mended, and what it says."""
     slave = Slave(folder).start(TOUCHING)
     name = slave.named("input")[0]
     slave.set({name: math.nan})
@@ -197,7 +197,7 @@ def failure_lasts(folder: str, _: str) -> list[Any]:
     slave.set({name: 0.0})
     second = steps_on(slave)
     slave.free()
-    return [first, second, slave.messages[-1]]
+    return [first, second, slave.said]
 
 
 def absurd_inputs(folder: str, _: str) -> list[Any]:
