@@ -18,6 +18,7 @@ from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.python.link import Interpreter, linked
 from touchdown.fmus.python.sources import write_host, write_package, write_script
+from touchdown.fmus.python.statuses import with_errors
 from touchdown.fmus.recipes import Recipe
 from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
@@ -34,10 +35,11 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
     entries = _entries(recipe, interpreter)
     entries["documentation/index.html"] = page(recipe, interpreter).encode()
     entries["model.png"] = icon(recipe.model)
+    libraries = [name for name in entries if name.endswith(".so")]
+    entries |= {name: with_errors(entries[name]) for name in libraries}
     if interpreter is not None:
         entries = {name: e for name, e in entries.items() if not name.endswith((".dll", ".dylib"))}
-        for name in [name for name in entries if name.endswith(".so")]:
-            entries[name] = linked(entries[name], interpreter.library)
+        entries |= {name: linked(entries[name], interpreter.library) for name in libraries}
     return write(entries, folder, recipe.name)
 
 
