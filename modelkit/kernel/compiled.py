@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import config
 
 from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import own_folder
@@ -79,7 +80,7 @@ def woven(function: F) -> F:
 
 
 def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False) -> F:
-    if numba.config.DISABLE_JIT:
+    if cast(Any, config).DISABLE_JIT:
         return function
     options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
     compiled: Any = KernelDispatcher(function, targetoptions=options)
