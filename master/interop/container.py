@@ -39,7 +39,7 @@ def write_container(scene: Scene, path: Path) -> Path:
             f"a container cannot step as scheme {scene.run.scheme.name} does; take interface or jacobi-lead"
         )
     toolbox = _toolbox()
-    system = open_system(scene)
+    system = open_system(scene, listening=False)
     try:
         _refuse_what_it_cannot(system)
         zero = zero_of(scene, system)

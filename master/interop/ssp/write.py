@@ -50,7 +50,7 @@ def write_package(scene: Scene, path: Path, outputs_only: bool = False) -> Writt
 
     With `outputs_only` constants, which are calculated parameters, are not connected.
     """
-    system = open_system(scene)
+    system = open_system(scene, listening=False)
     try:
         zero = system.value(scene.zero) if scene.zero else 0.0
         system.initialise()
