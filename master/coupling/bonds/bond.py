@@ -138,8 +138,8 @@ class _Recogniser:
         for a in seats:
             if {a.bearing, a.body} == ends:
                 raise TouchdownError(
-                    f"bond {bond.title}: its components share a bearing's port, {a.title}, which crosses as "
-                    "the scheme has it; remove the bond"
+                    f"bond {bond.title}: its components share a bearing's port, {a.title}, which crosses "
+                    "as the scheme has it; remove the bond"
                 )
 
     def _constant(self, c: Connection) -> bool:

@@ -85,10 +85,7 @@ def telling(folder: Path) -> Path:
     for before, after in (
         ("class DryBushing", "class TellingBushing"),
         ('OUTPUTS = ["shaft_fx"', 'OUTPUTS = ["peak", "shaft_fx"'),
-        (
-            "            load = ",
-            "            self.peak = max(self.peak, math.hypot(push, rub))\n            load = ",
-        ),
+        (LOAD, f"            self.peak = max(self.peak, math.hypot(push, rub))\n{LOAD}"),
     ):
         assert before in script
         script = script.replace(before, after)
