@@ -42,8 +42,8 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("variables", "units", "status", "refusals"),
     ),
     "fmus": (
-        *("native", "build", "presentation", "recipes", "scripts", "slave", "description", "python"),
-        *("refusals", "version"),
+        *("native", "build", "presentation", "recipes", "scripts", "slave", "starts", "description"),
+        *("python", "refusals", "version"),
     ),
 }
 REPORTED = {

@@ -13,7 +13,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import platform
 import subprocess
 import sys
 import tempfile
@@ -28,12 +27,12 @@ from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.kernel.cache_folder import own_folder, put
 from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
+from touchdown.modelkit.kernel.shipped import plain_processor
 from touchdown.modelkit.model import Model
 
 NUMBA = ((0, 68), (0, 68))  # the first and the last version that it was tried with
 ENTRIES = ("settle", "start", "advance")
 PREFIX = "kernel_"  # of the entries' names
-PROCESSOR = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}  # that loops are shaped for, by machine
 
 
 def bitcode(model: Model) -> bytes:
@@ -45,7 +44,7 @@ def bitcode(model: Model) -> bytes:
     order = _order(model)
     text = json.dumps(order, sort_keys=True)
     own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
-    made = (text, own, version("numba"), version("llvmlite"), _processor())
+    made = (text, own, version("numba"), version("llvmlite"), plain_processor())
     key = hashlib.sha256(" ".join(made).encode()).hexdigest()[:24]
     kept = own_folder("machine-code", source_hash()) / f"native-{key}.bc"
     code = unsealed(kept)
@@ -73,11 +72,6 @@ def _order(model: Model) -> dict[str, Any]:
 def _state_size(model: Model) -> int:
     fields: Any = model.memory.fields
     return fields["q"][0].shape[0]
-
-
-def _processor() -> str:
-    """That loops are shaped for, as LLVM calls it."""
-    return PROCESSOR.get(platform.machine(), "generic")
 
 
 def _require_numba() -> None:
@@ -110,7 +104,7 @@ def run_apart(*arguments: str) -> subprocess.CompletedProcess[str]:
     """
     environment = {
         **{name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")},
-        "NUMBA_CPU_NAME": _processor(),
+        "NUMBA_CPU_NAME": plain_processor(),
         "NUMBA_CPU_FEATURES": "",
         "PYTHONHASHSEED": "0",  # equal sources, equal code
         "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),

@@ -233,20 +233,23 @@ def _tables(exposed: Sequence[Slot]) -> Iterator[str]:
 
 
 def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
-    """A row for each variable; members of a group share one."""
+    """A row for each variable; members of a group that start alike share one."""
     members: dict[tuple[str, ...], list[Slot]] = {}
     for slot in chosen:
         spec = slot.variable.spec
-        key = (re.sub(r"\[\d+\]", "[k]", slot.variable.name), spec.unit, _bounds(slot), spec.meaning)
+        name = re.sub(r"\[\d+\]", "[k]", slot.variable.name)
+        key = (name, _start(slot), spec.unit, _bounds(slot), spec.meaning)
         members.setdefault(key, []).append(slot)
-    for (_, unit, bounds, meaning), group in members.items():
+    for (_, start, unit, bounds, meaning), group in members.items():
         first, last = group[0].variable, group[-1].variable
         name = first.name if len(group) == 1 else f"{first.name}<br>… {last.name}"
-        start = (
-            f"{first.default:g}" if causality(group[0])[0] in (Causality.PARAMETER, Causality.INPUT) else ""
-        )
         cells = (name, start, _plain(unit), bounds, _plain(meaning))
         yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
+
+
+def _start(slot: Slot) -> str:
+    settable = causality(slot)[0] in (Causality.PARAMETER, Causality.INPUT)
+    return f"{slot.variable.default:g}" if settable else ""
 
 
 def _bounds(slot: Slot) -> str:

@@ -16,6 +16,8 @@ from touchdown.master.components.description import refuse_definitions, refuse_l
 from touchdown.master.components.unpack import unpack
 from touchdown.modelkit.variables import Causality, Variability
 
+SHOWN = 5  # files named where one is missing
+
 
 def describe(path: Path, folder: Path) -> Any:
     """fmpy's model description of an unpacked FMU that can be co-simulated here."""
@@ -34,14 +36,20 @@ def describe(path: Path, folder: Path) -> Any:
     refuse_lies(path, description)
     library = folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}"
     if not library.is_file():
-        there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
         raise TouchdownError(
-            f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
+            f"{path} has no binary for this platform ({fmi_platform}): it lacks {_held(library, folder)}"
         )
     refuse_damaged(path, library)
     if by_pythonfmu(description):
         _check_script(path, folder)
     return description
+
+
+def _held(library: Path, folder: Path) -> str:
+    """Where the `library` of an FMU that is unpacked in `folder` should be, and which it has instead."""
+    held = sorted(str(p.relative_to(folder)) for p in (folder / "binaries").rglob("*") if p.is_file())
+    first = ", ".join(held[:SHOWN]) + (f" and {len(held) - SHOWN} more" if len(held) > SHOWN else "")
+    return f"{library.relative_to(folder)}, and has {first or 'none'}"
 
 
 def by_pythonfmu(description: Any) -> bool:

@@ -49,6 +49,7 @@ class Outcome:
     unaudited: tuple[str, ...] = ()  # connections without an account, each with why
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
     warning: str = ""  # what it said there
+    divided_in_impacts: int = 0  # macro steps, of rotors hit by two bearings at once
     shorter_steps: Mapping[float, float] = field(default_factory=dict[float, float])  # s each, for how long
     ended: Ended = Ended.COMPLETED
     reason: str = ""  # why, where it did not complete
@@ -93,9 +94,9 @@ def _as_they_are(components: Mapping[str, Component], _: object) -> dict[str, Co
 
 
 @contextmanager
-def opened(scene: Scene, in_process: bool = False) -> Generator[System]:
-    """The scene's system, freed at the end."""
-    system = open_system(scene, in_process)
+def opened(scene: Scene, in_process: bool = False, listening: bool = True) -> Generator[System]:
+    """The scene's system as `open_system` gives it, freed at the end."""
+    system = open_system(scene, in_process, listening)
     try:
         yield system
     finally:
@@ -132,12 +133,14 @@ def simulate(
             told.append(Retirement(coupling, [ledger, *told]))
             told.append(_Progress(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
-            steps = Stretches(MacroSteps(coupling, ledger, shortening), judge, recorder, told)
+            one_by_one = MacroSteps(coupling, ledger, shortening)
+            steps = Stretches(one_by_one, judge, recorder, told)
             wall_time, compiling = _loop(steps, told, now, interrupted)
     return replace(
         _seen(now, ledger, judge, shortening),
         wall_time=wall_time,
         start_up=start_up + compiling,
+        divided_in_impacts=one_by_one.impacts.divided,
         exchange=exchange(coupling),
         unjoined=unjoined(coupling),
         coupling=coupling.figures,

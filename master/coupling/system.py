@@ -10,8 +10,9 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import scaled
 from touchdown.master.components.component import Component
+from touchdown.master.components.contract import REACH
 from touchdown.master.coupling.bonds.bond import Bond
-from touchdown.master.coupling.connections import Attachment, Connection, split, used_modes
+from touchdown.master.coupling.connections import Attachment, Connection, hit_together, split, used_modes
 from touchdown.master.coupling.layout import Intake, lay_out
 
 RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
@@ -33,12 +34,14 @@ class System:
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
     intakes: Mapping[str, Intake] = field(init=False)  # by component: what it takes of the signals
     retired: set[str] = field(init=False, default_factory=set[str])
+    hit_together: Sequence[Attachment] = field(init=False)  # seats of bodies that two bearings can hit
 
     def __post_init__(self) -> None:
         bearings = dict.fromkeys(a.bearing for a in self.attachments)
         order = [*bearings, *(name for name in self.components if name not in bearings)]
         before = [(a.bearing, a.body) for a in self.attachments]
         self.order = _in_order(order, [*before, *((b.giver, b.taker) for b in self.bonds)])
+        self.hit_together = hit_together(self.attachments, self.components)
         self._lay_out()
 
     def close(self) -> str:
@@ -140,7 +143,8 @@ class System:
     def _lay_out(self) -> None:
         """Give everything that is exchanged its place, as it is exchanged from now on."""
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
-        layout = lay_out(self.components, self._live(), attachments)
+        watched = [(a.bearing, REACH) for a in self.hit_together]
+        layout = lay_out(self.components, self._live(), attachments, watched)
         self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
 
 

@@ -7,7 +7,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import get_window
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.components.contract import MOUNTED
@@ -16,6 +15,7 @@ from touchdown.master.coupling.ledger.heard import told_by_master
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
+from touchdown.master.results.spectra import hann
 from touchdown.master.results.stresses import stress_figures
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
@@ -56,6 +56,7 @@ FIGURES = (
     Figure("loaded_balls_end", "balls.loaded"),
 )
 LAST_PART = 0.2  # of a run, for means
+_DIVIDED = "macro_steps_divided_in_impacts"
 
 
 ENERGIES = (
@@ -283,7 +284,7 @@ def dominant_frequency(
     if not np.any(centred):
         return None
     count = 8 * len(centred)
-    spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
+    spectrum = np.abs(np.fft.rfft(centred * hann(len(centred)), count))
     frequency = np.fft.rfftfreq(count, step)
     band = np.flatnonzero((frequency >= low) & (frequency <= high))
     if len(band) < 3:
@@ -358,6 +359,7 @@ def _run_figures(
         "exchange": outcome.exchange,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
+        **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),
         **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
 

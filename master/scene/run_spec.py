@@ -33,6 +33,7 @@ class RunSpec:
     call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take
     bonds: str = AUTO  # one of BONDS: how force and motion cross between FMUs that know no contract
     whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
+    impact_step: float = 1e-6  # s, at most, while two bearings hit a rotor; 0: macro steps are not divided
 
 
 def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
@@ -63,6 +64,13 @@ def _above_zero(unit: str) -> Callable[[object, str], float]:
     return read
 
 
+def _time(value: object, name: str) -> float:
+    seconds = to_si(value, "s", name)
+    if seconds < 0.0:
+        raise TouchdownError(f"{name} = {value} must not be below 0 s")
+    return seconds
+
+
 def _steps_above_zero(value: object, name: str) -> int:
     above_zero(value, "1", name)
     return whole(value, name)
@@ -89,4 +97,5 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "stop_residual": _above_zero("1"),
     "call_timeout": _above_zero("s"),
     "whirl_halvings": _count,
+    "impact_step": _time,
 }

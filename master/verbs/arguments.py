@@ -14,6 +14,7 @@ from touchdown.master.verbs import completion
 from touchdown.master.verbs.completion import complete
 
 if TYPE_CHECKING:
+    from touchdown.master.interop.packing import Making
     from touchdown.master.scene.scene import Scene
 
 MOST = 10_000  # of what is counted: runs, repetitions
@@ -92,6 +93,16 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def add_making(verb: argparse.ArgumentParser) -> None:
+    """Add --link-python and --native, for FMUs that others run; `making` reads them."""
+    verb.add_argument(
+        "--link-python",
+        action="store_true",
+        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
+    )
+    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
+
+
 def add_quiet(verb: argparse.ArgumentParser) -> None:
     """Add --quiet."""
     verb.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -129,6 +140,13 @@ def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
         name, file = assignment(text, "--names")
         scene = scene.with_names(name, read_names(Path(file)))
     return scene
+
+
+def making(options: argparse.Namespace) -> Making:
+    """How the options of `add_making` ask for FMUs. Raises TouchdownError."""
+    from touchdown.master.interop.packing import Making
+
+    return Making(options.link_python, options.native)
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:

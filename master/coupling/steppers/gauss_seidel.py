@@ -35,7 +35,7 @@ class Turn(NamedTuple):
 class GaussSeidel(Stepper):
     """One component after another, in the system's order."""
 
-    in_one = any_step = True
+    in_one = any_step = any_moment = True
 
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)

@@ -37,6 +37,7 @@ class Stepper(ABC):
 
     in_one: ClassVar[bool] = False  # whether each component takes a macro step once, and in one
     any_step: ClassVar[bool] = False  # whether its steps may be of another length than those before
+    any_moment: ClassVar[bool] = False  # whether they may be so without being told ahead (`expect`)
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.system = system

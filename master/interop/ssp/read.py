@@ -28,7 +28,7 @@ PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene"
 
 RUN_KEYS = (
     "scheme", "tolerance", "record_every", "record", "record_also", "record_arrays", "warn_residual",
-    "stop_residual", "whirl_halvings",
+    "stop_residual", "whirl_halvings", "impact_step",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 
@@ -59,7 +59,7 @@ def read(path: Path) -> Scene:
     settings = _settings(system, sides, str(path))
     scene = Scene(
         name=path.stem,
-        title=system.title,
+        title=system.scene.get("title", system.title),
         about=system.scene.get("about", ""),
         components={name: _component(system, name, settings[name]) for name in system.parts},
         connect=tuple(
@@ -74,11 +74,13 @@ def read(path: Path) -> Scene:
 def _component(system: Structure, name: str, settings: Mapping[str, float]) -> ComponentSpec:
     names = system.names.get(name, {})
     given = {_here(system, name, variable): value for variable, value in settings.items()}
+    given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
     return ComponentSpec(
         str(system.parts[name].path.absolute()),
-        {variable: value for variable, value in given.items() if variable not in SCHEME_SETS},
+        given,
         every=system.every(name),
         names=names,
+        own=tuple(changed for changed in system.changed.get(name, ()) if changed in given),
     )
 
 

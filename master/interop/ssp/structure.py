@@ -64,6 +64,7 @@ class Structure:
     macro_step: float | None  # s
     scene: Mapping[str, str]  # what a package of this project says beyond the structure
     names: Mapping[str, Mapping[str, str]]  # by component: variables of the contract, and its own
+    changed: Mapping[str, Sequence[str]]  # by component: what the user set beside the scene
 
     def every(self, name: str) -> int:
         """How many of the system's macro steps the component `name` takes in one. Raises TouchdownError."""
@@ -87,7 +88,9 @@ def read(folder: Path, where: str) -> Structure:
     if system is None:
         raise TouchdownError(f"{where} has no System")
     stop, macro_step = _experiment(root, where)
-    note = _annotation(root, SCENE_ANNOTATION, "touchdown:Scene")
+    note = _annotation(system, SCENE_ANNOTATION, "touchdown:Scene")
+    if note is None:  # older packages have it at the root
+        note = _annotation(root, SCENE_ANNOTATION, "touchdown:Scene")
     parts = _parts(system, folder, where)
     return Structure(
         title=system.get("description") or root.get("name") or folder.name,
@@ -99,6 +102,7 @@ def read(folder: Path, where: str) -> Structure:
         macro_step=macro_step,
         scene={} if note is None else dict(note.attrib),
         names=_names(note, where),
+        changed=_changed(note, where),
     )
 
 
@@ -189,3 +193,11 @@ def _names(note: Element | None, where: str) -> dict[str, dict[str, str]]:
         component, here, own = (xml.required(name, key, where) for key in ("component", "name", "own"))
         names.setdefault(component, {})[here] = own
     return names
+
+
+def _changed(note: Element | None, where: str) -> dict[str, list[str]]:
+    changed: dict[str, list[str]] = {}
+    for element in xml.children(note, "touchdown:Changed") if note is not None else ():
+        component, name = (xml.required(element, key, where) for key in ("component", "name"))
+        changed.setdefault(component, []).append(name)
+    return changed

@@ -185,7 +185,7 @@ def compare_schemes(
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0, "run.impact_step": 0})
     begin("fine steps")
     refuse_endless(max(asked.duration or LONGEST, asked.timed or 0.0), min(asked.steps))
     landing = land(scene, asked.duration)

@@ -48,7 +48,7 @@ def structure(path: Path) -> etree._Element:
 
 
 def test_a_package_is_valid(package: Path) -> None:
-    assert read_ssd(str(package)).name == "disk-caged-simplified"  # validates the structure
+    assert read_ssd(str(package)).name == "disk_caged_simplified"  # validates the structure
     schema = etree.XMLSchema(file=str(SCHEMAS / "SystemStructureParameterValues.xsd"))
     sets = structure(package).findall(".//ssv:ParameterSet", NAMESPACES)
     assert len(sets) == 4

@@ -140,6 +140,12 @@ def test_macro_steps_that_are_halved(scheme: str, both: Both, monkeypatch: pytes
     assert both.compared(disk(run__scheme=scheme)).shorter_steps
 
 
+def test_macro_steps_that_are_divided_in_impacts(both: Both) -> None:
+    scene = load_scene("rotor1-9000").set({"run.duration": 8e-3, "run.impact_step": 5e-6})
+    scene = scene.set({f"amb_{end}.shutdown_time": 1e-3 for end in "AB"})
+    assert both.compared(scene).divided_in_impacts > 0
+
+
 # -- how a run ends ------------------------------------------------------------------------------------
 
 
