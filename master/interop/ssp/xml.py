@@ -44,7 +44,7 @@ def read_xml(path: Path, where: str, root: str) -> Element:
     except (ParseError, ExpatError, ValueError, LookupError) as error:
         raise TouchdownError(f"{where}: it is not valid XML ({error})") from None
     if element.tag != tag(root):
-        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP 1.0")
+        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP")
     return element
 
 
