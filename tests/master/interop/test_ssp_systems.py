@@ -56,7 +56,7 @@ def bound(real: str = "Real", mapping: str = "", **values: str) -> str:
 def system(name: str, elements: str, connections: str, connectors: str = "", bindings: str = "") -> str:
     return (
         f'<ssd:System name="{name}"><ssd:Connectors>{connectors}</ssd:Connectors>{bindings}'
-    nested = nested.replace('"x" kind="output"><ssc:Real unit="mm"/>', '"x" kind="output"><ssc:Real/>')
+        f"<ssd:Elements>{elements}</ssd:Elements><ssd:Connections>{connections}</ssd:Connections></ssd:System>"
     )
 
 
