@@ -95,6 +95,8 @@ def _mapped(given: Iterable[Value], mapping: Element, folder: Path, where: str) 
         yield from given
     by_name = {value.name: value for value in given}
     for entry in entries:
+        if entry.get("source") == "":  # a template that nobody filled in
+            continue
         source, target = xml.required(entry, "source", where), xml.required(entry, "target", where)
         if source in by_name:
             yield replace(

@@ -167,8 +167,8 @@ def _hops(
     """The connections of a system, turned the way that values go: the standard leaves their order open."""
     hops: list[Hop] = []
     for element in xml.children(system, "ssd:Connections/ssd:Connection"):
-        start = element.get("startElement"), xml.required(element, "startConnector", where)
-        end = element.get("endElement"), xml.required(element, "endConnector", where)
+        start = element.get("startElement") or None, xml.required(element, "startConnector", where)
+        end = element.get("endElement") or None, xml.required(element, "endConnector", where)
         for name, _ in (start, end):
             if name is not None and name not in parts and name not in inner:
                 known = [*parts, *inner]

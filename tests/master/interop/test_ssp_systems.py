@@ -35,7 +35,7 @@ def connection(start: str, end: str, inside: str = "") -> str:
     ends = ""
     for key, text in (("start", start), ("end", end)):
         element, _, name = text.rpartition(":")
-        ends += f' {key}Element="{element}"' if element else ""
+        ends += f' {key}Element="{element}"'  # some tools leave it out, others empty
         ends += f' {key}Connector="{name}"'
     return f"<ssd:Connection{ends}>{inside}</ssd:Connection>"
 
@@ -174,6 +174,14 @@ def test_a_system_in_a_system_moves_as_one_that_is_flat(pack: Pack) -> None:
 def test_an_empty_mapping_leaves_names_as_they_are(inside: str, pack: Pack) -> None:
     mapping = f"<ssd:ParameterMapping>{inside}</ssd:ParameterMapping>"
     whole = system("w", component("rotor", "rigid_rotor", bound(mapping=mapping, mass='value="2"')), "")
+    assert pack(whole).components["rotor"].set == {"mass": 2.0}
+
+
+def test_entries_of_a_template_map_nothing(pack: Pack) -> None:
+    entries = '<ssm:MappingEntry source="" target="speed"/><ssm:MappingEntry source="m" target="mass"/>'
+    mapping = f'<ssm:ParameterMapping version="1.0">{entries}</ssm:ParameterMapping>'
+    values = bound(mapping=f"<ssd:ParameterMapping>{mapping}</ssd:ParameterMapping>", m='value="2"')
+    whole = system("w", component("rotor", "rigid_rotor", values), "")
     assert pack(whole).components["rotor"].set == {"mass": 2.0}
 
 
