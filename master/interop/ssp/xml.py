@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Scale, Unit
-from touchdown.master.components.description import DocumentTypeError, refuse_definitions
+from touchdown.master.components.screening.description import DocumentTypeError, refuse_definitions
 from touchdown.master.interop.ssp.names import NAMESPACES
 
 CHOICES = ("BooleanMapping", "IntegerMapping", "EnumerationMapping")  # transformations that are not read
