@@ -8,7 +8,7 @@ from contextlib import suppress
 from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
-from touchdown.master.components.component import Component, check_value
+from touchdown.master.components.component import SETTABLE, Component, check_value
 from touchdown.master.coupling.bonds.bond import found
 from touchdown.master.coupling.connections import (
     Attachment,
@@ -155,6 +155,10 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
 def checked(component: Component, name: str, given: object) -> float:
     """A setting's value in SI. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
+    if variable.kind not in SETTABLE:
+        raise TouchdownError(
+            f"{component.name}.{variable.name} is of the type {variable.kind}; only numbers can be set"
+        )
     if not variable.settable:
         raise TouchdownError(
             f"{component.name}.{name} has the causality {variable.causality} and cannot be set"

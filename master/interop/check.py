@@ -58,15 +58,16 @@ def check_fmu(
 
 def _check_validity(component: ArchivedFmu, role: str | None, report: Report) -> None:
     """What fmpy has against it: problems, or lines where this master does without it."""
+    version = f"FMI {component.description.fmiVersion}"
     said = validate_fmu(str(component.path))
     optional = [c for c in said if c.startswith(UNLISTED) and not component.description.initialUnknowns]
     complaints = [complaint for complaint in said if complaint not in optional]
     if not complaints:
-        report.lines.append("valid FMI 2.0 for co-simulation")
+        report.lines.append(f"valid {version} for co-simulation")
     elif role is None:
         report.problems += complaints
     else:  # what this master does not need
-        report.lines += [f"not valid FMI 2.0: {complaint}" for complaint in complaints]
+        report.lines += [f"not valid {version}: {complaint}" for complaint in complaints]
     if optional:
         report.lines.append(
             "it lists no InitialUnknowns, so tools cannot tell what its first outputs follow from"

@@ -118,7 +118,9 @@ def why_not(path: Path) -> str:
     with tempfile.TemporaryDirectory(prefix="touchdown_") as elsewhere:
         try:
             folder = unpack(path, Path(elsewhere))
-            describe(path, folder)
+            version = describe(path, folder).fmiVersion
+            if version != "2.0":
+                return f"{path} is FMI {version}; only FMI 2.0 is tried, `touchdown check` steps both"
             done = subprocess.run(
                 [sys.executable, "-I", trial.__file__, str(folder)],
                 cwd=elsewhere,

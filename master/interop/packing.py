@@ -59,6 +59,11 @@ def packed_fmus(scene: Scene, system: System, making: Making, folder: Path) -> d
     paths: dict[str, Path] = {}
     for name, component in system.components.items():
         assert isinstance(component, ArchivedFmu)
+        if component.description.fmiVersion != "2.0":
+            raise TouchdownError(
+                f"component {name} is FMI {component.description.fmiVersion}; SSP 1.0 packages and "
+                "containers hold FMI 2.0 only"
+            )
         spec = scene.components[name]
         source = locate(spec.fmu, scene.folder)
         if isinstance(source, Recipe):

@@ -12,6 +12,8 @@ NAMESPACES = {
     "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
     "touchdown": "urn:touchdown-cosim:scene",
 }
+REALS = ("Real", "Float64", "Float32")  # elements of a connector's or a parameter's type, 1.0's and 2.0's
+INTEGERS = ("Integer", *(f"{sign}Int{bits}" for bits in (8, 16, 32, 64) for sign in ("", "U")))
 HEART = "SystemStructure.ssd"
 RESOURCES = "resources"
 STEP_ANNOTATION = "com.opensimulationplatform"  # holds the macro step for libcosim
