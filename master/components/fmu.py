@@ -27,7 +27,7 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import ByFunctions, Call, Component, Kind
+from touchdown.master.components.component import ByFunctions, Call, Component, InMemory, Kind
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
 
@@ -331,7 +331,7 @@ class FmuComponent(LoadedFmu):
         if status > WARNING:
             self._check(status, Call.GET)
 
-    def by_address(self) -> ByFunctions:
+    def by_address(self) -> InMemory | ByFunctions | None:
         """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here."""
         taken, given = self._held
         return ByFunctions(
