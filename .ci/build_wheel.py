@@ -19,11 +19,14 @@ import sys
 import tempfile
 from importlib.metadata import distribution, version
 from pathlib import Path
+from typing import Any
+
+from numba.core.registry import cpu_target
 
 import touchdown
 from touchdown.fmus import recipes
 from touchdown.modelkit.kernel.cache_folder import user_cache
-from touchdown.modelkit.kernel.shipped import MADE_FOR, made_for, plain_processor
+from touchdown.modelkit.kernel.shipped import MADE_FOR, made_for, plain_processor, plainer
 
 ROOT = Path(__file__).resolve().parents[1]
 WAYS = {"fmus": [], "in process": ["--in-process"]}
@@ -39,6 +42,9 @@ def main() -> int:
         "drops", nargs="*", metavar="DROP", help="default: as many as it takes for all models"
     )
     options = parser.parse_args()
+    codegen: Any = cpu_target.target_context.codegen  # type: ignore[attr-defined]
+    if plainer(codegen().magic_tuple()) is None:
+        sys.exit(f"the code is for {plain_processor()}, which has more instructions than this processor")
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         content = Path(folder) / "shipped"
         count = gather(taken(options.drops or all_models(), Path(folder)), content)

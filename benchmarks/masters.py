@@ -2,8 +2,8 @@
 
 The bodies of tests/master/coupling/bonds, compiled here: two masses of 1 kg on springs of 10, 100 and
 1000 N/m, shot at each other with 100 m/s, undamped or with dampers of 0.01 N s/m; a quarter car (400 and
-40 kg) over a step of the road of 0.1 m; a ball on an undamped one-sided spring. Every scheme of this master,
-and libcosim with its step control by energy (installed from PyPI), against the exact motion.
+40 kg) over a step of the road of 0.1 m; a ball on an undamped one-sided spring. Every scheme of this
+master against the exact motion.
 
     python benchmarks/masters.py [--part oscillator,stable,bounce,car]
 """
@@ -30,6 +30,7 @@ from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.scene import Scene
 
+Step = Callable[[float, float], None]
 POSITION_ONLY, VELOCITY_ONLY = bodies.TWO[:2], bodies.TWO[::2]
 DAMPING = 0.01  # N s/m
 FULL = 1e4  # J, of the oscillator at the begin
@@ -168,10 +169,9 @@ def car(fmu: Path) -> None:
             ran = run(bodies.scene(fmu, bodies.CAR, bodies.CAR_WIRES, run=table), ("chassis.x", "wheel.x"))
             exact = bodies.exact_car(np.arange(len(ran.rows) + 1) * step)[1:, ::2]
             off = 1e3 * np.max(np.abs(ran.rows - exact), axis=0)
-            print(
-                f"{way.title:20} {1e3 * step:5g} ms {ran.calls * len(ran.rows):8.0f} {off[0]:9.2g} {off[1]:9.2g}",
-                flush=True,
-            )
+            calls = ran.calls * len(ran.rows)
+            title = f"{way.title:20} {1e3 * step:5g} ms"
+            print(f"{title} {calls:8.0f} {off[0]:9.2g} {off[1]:9.2g}", flush=True)
 
 
 PARTS = {"oscillator": oscillator, "stable": stable, "bounce": bounce, "car": car}

@@ -205,6 +205,7 @@ class Component(ABC):
         kinds = [self.variable(name).kind for name in names]
         return [int(v) if k is Kind.INTEGER else float(v) for v, k in zip(values, kinds, strict=True)]
 
+    foreign = False  # whether it is an FMU of others'
     any_step = True  # whether it takes steps of any length
     can_save = True  # whether its state can be saved
 

@@ -104,6 +104,7 @@ class ArchivedFmu(Component):
         self.folder = unpack(path, cache)
         self.description = describe(path, self.folder)
         super().__init__(name, origin or str(path), variables_of(self.description))
+        self.foreign = not origin
         able = self.description.coSimulation
         self.can_save = bool(able.canGetAndSetFMUstate)
         self.any_step = bool(able.canHandleVariableCommunicationStepSize)

@@ -27,9 +27,13 @@ from touchdown.master.scene.schemes import Scheme
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
-def assemble(scene: Scene, load: Callable[[str, str], Component]) -> System:
+Hearing = Callable[[Mapping[str, Component], Sequence[Attachment]], dict[str, Component]]
+
+
+def assemble(scene: Scene, load: Callable[[str, str], Component], hear: Hearing) -> System:
     """Load a scene's components with load(name, fmu), and wire them up as its scheme has it.
 
+    hear(components, attachments) gives components that tell more than they would by themselves.
     Raises TouchdownError where a component is missing, a setting cannot be, or the ports do not fit.
     """
     components: dict[str, Component] = {}
@@ -37,14 +41,14 @@ def assemble(scene: Scene, load: Callable[[str, str], Component]) -> System:
         for name, spec in scene.components.items():
             components[name] = load(name, spec.fmu)
             components[name].rename(spec.names)
-        return _wired(scene, components)
+        return _wired(scene, components, hear)
     except BaseException:
         for component in components.values():
             component.close()
         raise
 
 
-def _wired(scene: Scene, components: dict[str, Component]) -> System:
+def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> System:
     scheme = scene.run.scheme
     _check_zero(scene, components)
     settings: dict[tuple[str, str], float] = {}
@@ -62,6 +66,7 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
     if scheme.lead:
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
+    components = hear(components, attachments)
     return System(components, attachments, connections, settings, every, left_out, bonds)
 
 

@@ -18,6 +18,7 @@ from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.bonds.told import exchange, unjoined
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
+from touchdown.master.coupling.ledger.heard import heard
 from touchdown.master.coupling.loop.retirement import Retirement
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.stretches import Stretches
@@ -74,21 +75,28 @@ class Outcome:
             raise TouchdownError(self.reason)
 
 
-def open_system(scene: Scene, in_process: bool = False) -> System:
-    """Load the scene's components, as FMUs or in process, and wire them up."""
+def open_system(scene: Scene, in_process: bool = False, listening: bool = True) -> System:
+    """Load the scene's components, as FMUs or in process, and wire them up.
+
+    listening: bearings of others' that report no contact tell what is heard of it.
+    """
 
     def load_one(name: str, fmu: str) -> Component:
         spec = scene.components[name]
         stepping = Stepping(in_process, spec.isolate, scene.run.call_timeout, spec.native)
         return load_component(name, fmu, scene.folder, stepping)
 
-    return assemble(scene, load_one)
+    return assemble(scene, load_one, heard if listening else _as_they_are)
+
+
+def _as_they_are(components: Mapping[str, Component], _: object) -> dict[str, Component]:
+    return dict(components)
 
 
 @contextmanager
-def opened(scene: Scene, in_process: bool = False) -> Generator[System]:
-    """The scene's system, freed at the end."""
-    system = open_system(scene, in_process)
+def opened(scene: Scene, in_process: bool = False, listening: bool = True) -> Generator[System]:
+    """The scene's system as `open_system` gives it, freed at the end."""
+    system = open_system(scene, in_process, listening)
     try:
         yield system
     finally:

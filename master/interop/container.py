@@ -40,7 +40,10 @@ def write_container(scene: Scene, path: Path, making: Making = AS_IN_SCENE) -> P
             f"a container cannot step as scheme {scene.run.scheme.name} does; take interface or jacobi-lead"
         )
     toolbox = _toolbox()
-    with opened(scene) as system, tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
+    with (
+        opened(scene, listening=False) as system,
+        tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
+    ):
         _refuse_what_it_cannot(system)
         zero = zero_of(scene, system)
         system.initialise()

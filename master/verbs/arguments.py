@@ -32,6 +32,11 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
+    add_swaps(verb)
+
+
+def add_swaps(verb: argparse.ArgumentParser) -> None:
+    """Add --swap and --names; `swapped` reads them."""
     swap = verb.add_argument(
         "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
     )
@@ -109,16 +114,8 @@ def add_quiet(verb: argparse.ArgumentParser) -> None:
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
     from touchdown.master.interop.scenes import find_scene
-    from touchdown.master.scene.file import read_names
 
-    chosen = find_scene(options.scene)
-    for text in options.swap:
-        name, fmu = assignment(text, "--swap")
-        chosen = chosen.swap(**{name: fmu})
-    for text in options.names:
-        name, file = assignment(text, "--names")
-        chosen = chosen.with_names(name, read_names(Path(file)))
-    chosen = chosen.set(settings(options))
+    chosen = swapped(find_scene(options.scene), options).set(settings(options))
     if options.scheme is not None:
         chosen = chosen.set({"run.scheme": options.scheme})
     if options.macro_step == "auto":
@@ -130,6 +127,19 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     elif options.macro_step is not None:
         chosen = chosen.set({"run.macro_step": options.macro_step})
     return chosen
+
+
+def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
+    """`scene` with what --swap puts into it, by the names that --names gives. Raises TouchdownError."""
+    from touchdown.master.scene.file import read_names
+
+    for text in options.swap:
+        name, fmu = assignment(text, "--swap")
+        scene = scene.swap(**{name: fmu})
+    for text in options.names:
+        name, file = assignment(text, "--names")
+        scene = scene.with_names(name, read_names(Path(file)))
+    return scene
 
 
 def making(options: argparse.Namespace) -> Making:

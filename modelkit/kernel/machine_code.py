@@ -117,11 +117,11 @@ def _text_of(file: str) -> str:
 def about_shipped() -> str:
     """What there is to say, to people, of machine code that came along with the installation."""
     found = folder("machine-code")
-    if found is None:
+    if found is None or not (found / MADE_FOR).is_file():
         return "compiled on first use; no machine code came along with this installation"
     made = (found / MADE_FOR).read_text("utf-8").strip()
-    plain = plainer(cpu_target.target_context.codegen().magic_tuple())
-    if plain is not None and made == made_for(numba.__version__):
+    codegen: Any = cpu_target.target_context.codegen  # type: ignore[attr-defined]
+    if made == made_for(numba.__version__) and plainer(codegen().magic_tuple()) is not None:
         return f"machine code came along, made with {made}"
     return f"compiled on first use; the machine code that came along was made with {made}"
 

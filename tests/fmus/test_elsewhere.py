@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -60,12 +61,18 @@ def linked(here: Interpreter, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return linked_to(here, tmp_path_factory.mktemp("linked"))
 
 
-def hosted(host: Path, folder: Path, commands: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Let the host do `commands` to the FMU in `folder`, knowing nothing of this environment."""
-    resources = (folder / "resources").as_uri()
+def hosted(
+    host: Path, folders: Path | Sequence[Path], commands: str, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Let the host do `commands` to the FMUs in `folders`, knowing nothing of this environment."""
     return hosting.hosted(
-        host, folder, commands, resources, {"TOUCHDOWN_CACHE": str(user_cache()), **environment}
+        host, folders, commands, "{}/resources", {"TOUCHDOWN_CACHE": str(user_cache()), **environment}
     )
+
+
+def preloaded() -> dict[str, str]:
+    """The environment that `touchdown doctor` gives hosts without Python."""
+    return dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
 
 
 def test_a_host_in_c_gets_the_same_numbers_to_the_last_bit(
@@ -102,6 +109,57 @@ def test_a_host_in_c_ends_well(commands: str, host: Path, linked: Path):
     assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 4
 
 
+Fleet = tuple[list[Path], dict[str, str]]
+FEW = ("bushing", "housing", "rigid_rotor", "simplified_caged")
+
+
+@pytest.fixture(scope="module")
+def fleets(
+    here: Interpreter, linked: Path, unpacked: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory
+) -> Mapping[str, Fleet]:
+    """FMUs for hosts without Python, linked and as they are, each kind with the environment it needs."""
+    folder = tmp_path_factory.mktemp("fleet")
+    others = [linked_to(here, folder / name, name) for name in FEW[1:]]
+    return {"linked": ([linked, *others], {}), "preloaded": ([unpacked[name] for name in FEW], preloaded())}
+
+
+@pytest.mark.parametrize("way", ["linked", "preloaded"])
+@pytest.mark.parametrize("count", [2, 4])
+def test_a_host_in_c_with_several_fmus_ends_well(
+    way: str, count: int, host: Path, fleets: Mapping[str, Fleet]
+):
+    """One interpreter is theirs together; the first that was loaded ends it, after the others let go."""
+    folders, environment = fleets[way]
+    commands = (f"start step 0 1e-5 {LIFE}", "start step 0 1e-5 leave")
+    with ThreadPoolExecutor(2) as pool:
+        ended = list(pool.map(lambda c: hosted(host, folders[:count], c, **environment), commands))
+    assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 2
+
+
+COUNTED = """
+import gc, json
+from slave_driver import Slave
+for k in range(5):
+    slave = Slave(sys.argv[1]).start()
+    slave.free()
+scripts = [m.__dict__ for n, m in sys.modules.items() if n.startswith("bushing_")]
+holders = sum(r is scripts[0] for o in gc.get_objects() for r in gc.get_referents(o))
+print(json.dumps([len(scripts), holders, sys.getrefcount(scripts[0]) - 1]))
+"""
+
+
+def test_nothing_is_released_that_is_still_used(alone: Alone, unpacked: Mapping[str, Path]):
+    """pythonfmu drops one reference to the script's globals for every instance, which it does not own.
+
+    Where more hold them than are counted, the end of the interpreter frees them too early.
+    """
+    done = alone(COUNTED, unpacked["bushing"])
+    assert done.returncode == 0, done.stderr
+    scripts, holders, counted = json.loads(done.stdout)
+    assert scripts == 1
+    assert counted >= holders >= 2  # the module, and the list here
+
+
 PLAIN = """
 from pythonfmu import Fmi2Causality, Fmi2Slave, Real
 
@@ -123,7 +181,7 @@ def test_an_instance_that_is_freed_leaves_no_more_than_pythonfmu_does(
     (tmp_path / "plain.py").write_text(PLAIN)
     built = FmuBuilder.build_FMU(tmp_path / "plain.py", dest=tmp_path)
     plain = Path(extract(str(built), str(tmp_path / "unpacked")))
-    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    command = preloaded()
     lives = 500
     left = []
     for folder, environment in ((plain, command), (linked, {})):
@@ -169,7 +227,7 @@ def test_another_python_leaves_its_paths_alone(here: Interpreter, tmp_path: Path
     folder = linked_to(replace(here, version="3.0"), tmp_path)
     bare = hosted(host, folder, "start")
     assert bare.returncode == 2  # nothing was shared, so nothing compiled can be imported
-    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    command = preloaded()
     assert hosted(host, folder, "start step 0 1e-5", **command).returncode == 0
 
 
@@ -275,7 +333,7 @@ def test_doctor_finds_this_machine_fit(capsys: pytest.CaptureFixture[str], here:
 
 def test_the_command_line_of_the_doctor_works(host: Path, here: Interpreter, unpacked: Mapping[str, Path]):
     """With an FMU that is not linked; and without it the host cannot load one."""
-    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    command = preloaded()
     assert hosted(host, unpacked["bushing"], "start step 0 1e-5", **command).returncode == 0
     assert hosted(host, unpacked["bushing"], "start").returncode == 1
 

@@ -7,7 +7,7 @@ The giver of the force takes motion; its taker gives it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from touchdown.master.common.errors import TouchdownError
@@ -76,7 +76,10 @@ def found(
     """
     recogniser = _Recogniser(components, connections)
     bonds = [recogniser.declared(spec) for spec in declared]
-    taken = {c for bond in bonds for c in (bond.force, *bond.motion)}
+    taken: set[Connection] = set()
+    for bond in bonds:
+        recogniser.refuse_unusable(bond, taken, seats)
+        taken |= {bond.force, *bond.motion}
     free = [c for c in connections if c not in taken]
     return [*bonds, *recogniser.recognised(free, seats)]
 
@@ -120,6 +123,28 @@ class _Recogniser:
             )
         return bond
 
+    def refuse_unusable(
+        self, bond: Bond, taken: Collection[Connection], seats: Sequence[Attachment]
+    ) -> None:
+        """Raise TouchdownError where a bond that is declared cannot cross as one."""
+        ends = {bond.giver, bond.taker}
+        if len(ends) == 1:
+            raise TouchdownError(f"bond {bond.title} leads back to {bond.giver}; it needs two components")
+        for c in (bond.force, *bond.motion):
+            if c in taken:
+                raise TouchdownError(f"bond {bond.title}: {c.target_name} is of another bond already")
+            if self._constant(c):
+                raise TouchdownError(f"bond {bond.title}: {c.source_name} does not change; remove the bond")
+        for a in seats:
+            if {a.bearing, a.body} == ends:
+                raise TouchdownError(
+                    f"bond {bond.title}: its components share a bearing's port, {a.title}, which crosses "
+                    "as the scheme has it; remove the bond"
+                )
+
+    def _constant(self, c: Connection) -> bool:
+        return self.components[c.source].variable(c.output).constant
+
     def _of(self, wire: Wire) -> Connection:
         return next(
             c for c in self.connections if (c.source_name, c.target_name) == (wire.source, wire.target)
@@ -132,7 +157,11 @@ class _Recogniser:
         one position and one velocity back.
         """
         attached = {frozenset((a.bearing, a.body)) for a in seats}
-        live = [c for c in connections if frozenset((c.source, c.target)) not in attached]
+        live = [
+            c
+            for c in connections
+            if frozenset((c.source, c.target)) not in attached and not self._constant(c)
+        ]
         for giver, taker in dict.fromkeys((c.source, c.target) for c in live if c.source != c.target):
             there = [c for c in live if (c.source, c.target) == (giver, taker)]
             back = [c for c in live if (c.source, c.target) == (taker, giver)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from touchdown.master.coupling.assembly import ORDER
 from touchdown.master.coupling.connections import Connection
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
@@ -19,7 +20,8 @@ def exchange(stepper: Stepper) -> str:
 def _parts(stepper: Stepper) -> Iterator[str]:
     system, scheme = stepper.system, stepper.run.scheme
     for a in system.attachments:
-        yield f"{a.title} by {scheme.name}"
+        told = ORDER in system.components[a.bearing].variables or scheme.sequence == "iterated"
+        yield f"{a.title} by {scheme.name if told else 'what the bearing itself carries'}"
     crossings = {crossing.bond: crossing for crossing in stepper.crossings}
     for bond in system.bonds:
         found = crossings.get(bond)

@@ -10,7 +10,7 @@ from touchdown.master.coupling.bonds.crossing import Crossing
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.loop.kernels.books import BOOK
 
-SETTLED = 20  # steps in which a bond has done work, before it is judged
+SETTLED = 4  # steps in which a bond has done work, before it is judged
 
 
 class Account:

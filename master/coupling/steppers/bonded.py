@@ -33,7 +33,7 @@ class Memory(NamedTuple):
 class Bonded(GaussSeidel):
     """Steps a system with bonds."""
 
-    any_step = False  # its past would lie at other distances
+    any_step = any_moment = False  # FMUs of others may take steps of one length only
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.way = way_of(run)

@@ -41,7 +41,10 @@ def write_package(
 
     With `outputs_only` constants, which are calculated parameters, are not connected.
     """
-    with opened(scene) as system, tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
+    with (
+        opened(scene, listening=False) as system,
+        tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
+    ):
         zero = system.value(scene.zero) if scene.zero else 0.0
         system.initialise()
         places = _places(packed_fmus(scene, system, making, Path(folder)))

@@ -86,6 +86,8 @@ def test_a_lonely_motion_is_told_by_its_unit_or_by_name(body: Path, unitless: Pa
         ([{"force": FORCE, "place": POSITION}], "unknown key place"),
         ([FORCE, ["s1.x", "s2.x2"]], r"s1\.x to s2\.x2 does not lead from s2 back to s1"),
         ([FORCE, [*POSITION, 2.0, 0.0]], "scaled so that the power that s1 gives is not what s2 takes"),
+        ([["s1.f", "s1.f_in"], ["s1.x", "s1.x2"]], "leads back to s1; it needs two components"),
+        ([[FORCE, POSITION], [FORCE, VELOCITY]], r"s2\.f_in is of another bond already"),
         ([["s1.f", "s2.f_ni"], POSITION], "has no variable f_ni; did you mean f_in"),
     ],
 )
