@@ -5,7 +5,7 @@ wrappers that speak Python. So this module runs as a program of its own, in whic
 processor is a plain one, and each function's code is put aside before numba makes machine code of it, which
 leaves intrinsics of the machine behind. Entries take plain pointers. They have numba's own calling
 convention, which is no public one (`numba.core.callconv.CPUCallConv`: status = f(&result, &exception,
-arguments...)): hence `NUMBA`, the versions it was tried with.
+arguments...)): hence `tried.NUMBA`, the versions it was tried with.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.kernel.cache_folder import own_folder, put
 from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
 from touchdown.modelkit.kernel.shipped import plain_processor
+from touchdown.modelkit.kernel.tried import NUMBA
 from touchdown.modelkit.model import Model
 
-NUMBA = ((0, 68), (0, 68))  # the first and the last version that it was tried with
 ENTRIES = ("settle", "start", "advance")
 PREFIX = "kernel_"  # of the entries' names
 

@@ -15,11 +15,12 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba.core import config
+from numba.core.dispatcher import Dispatcher
 
 from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import own_folder
-from touchdown.modelkit.kernel.linked import KernelDispatcher
 from touchdown.modelkit.kernel.machine_code import KernelCache
+from touchdown.modelkit.kernel.tried import is_tried
 
 
 @cache
@@ -80,14 +81,21 @@ def woven(function: F) -> F:
 
 
 def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False) -> F:
-    if cast(Any, config).DISABLE_JIT:
-        return function
-    options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
-    compiled: Any = KernelDispatcher(function, targetoptions=options)
+    compiled = _dispatcher(function, forceinline)
     folder = _machine_code_folder(packages)
-    if folder is not None:
-        compiled._cache = KernelCache(function, folder, _shipped(packages))
+    if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
+        cast(Any, compiled)._cache = KernelCache(function, folder, _shipped(packages))
     return cast(F, compiled)
+
+
+def _dispatcher(function: Callable[..., object], forceinline: bool) -> object:
+    """`linked`, or, with a numba that this was not tried with, what numba makes of it: the same results."""
+    if cast(Any, config).DISABLE_JIT or not is_tried():
+        return numba.njit(error_model="numpy", forceinline=forceinline)(function)
+    from touchdown.modelkit.kernel.linked import KernelDispatcher
+
+    options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
+    return KernelDispatcher(function, targetoptions=options)
 
 
 @cache

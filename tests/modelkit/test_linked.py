@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
@@ -79,3 +81,34 @@ def test_a_kernel_may_call_itself() -> None:
         return n * factorial(n - 1)
 
     assert factorial(6) == 720
+
+
+STEPPED = """
+import sys
+from touchdown.modelkit.kernel import tried
+if sys.argv[1] == "plain":
+    tried.NUMBA = ((0, 1), (0, 1))
+from touchdown.modelkit.kernel.machine_code import KernelCache
+KernelCache.active = False
+from touchdown.bearings.housing import MODEL
+from touchdown.modelkit.instance import Instance
+instance = Instance(MODEL)
+instance.memory["u"]["seat"]["fx"] = 100.0
+instance.start(0.0)
+for k in range(20):
+    instance.step(k * 1e-4, 1e-4)
+print(type(MODEL.advance).__name__, instance.words.tobytes().hex())
+"""
+
+
+def test_where_numba_is_another_one_it_compiles_as_it_does_with_the_same_results() -> None:
+    """Each way in a process of its own."""
+    answers = [
+        subprocess.run(
+            [sys.executable, "-c", STEPPED, way], check=True, capture_output=True, text=True
+        ).stdout.split()
+        for way in ("plain", "linked")
+    ]
+    assert [answer[0] for answer in answers] == ["CPUDispatcher", "KernelDispatcher"]
+    assert answers[0][1] == answers[1][1]
+    assert set(answers[0][1]) != {"0"}
