@@ -61,7 +61,7 @@ class Scene:
       amb: amb
       bearing: simplified_cageless
       housing: housing
-      run: 0.01 s by macro steps of 2e-05 s, scheme interface>
+      run: 0.01 s by macro steps of 0.0001 s, scheme interface>
     """
 
     name: str

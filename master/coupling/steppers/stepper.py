@@ -32,7 +32,7 @@ class Stepper(ABC):
     >>> touchdown.register_scheme(scheme, Counting)
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
     >>> touchdown.run(scene.set({"run.scheme": "counting"}), in_process=True).summary["steps_counted"]
-    300
+    60
     """
 
     in_one: ClassVar[bool] = False  # whether each component takes a macro step once, and in one

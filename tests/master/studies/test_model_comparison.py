@@ -17,6 +17,7 @@ from touchdown.master.studies.models.report import advice, report_lines
 from touchdown.master.studies.models.variants import Variant, variants
 
 DISK = "disk-caged-simplified"
+STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over
 
 
 def titles(name: str, **settings: object) -> list[str]:
@@ -24,9 +25,9 @@ def titles(name: str, **settings: object) -> list[str]:
 
 
 def test_a_rigid_disk_has_no_modes_to_leave_out() -> None:
-    assert titles(DISK) == [
-        "macro step of 50 us",
-        "macro step of 200 us",
+    assert titles(DISK, **STEP) == [
+        "macro step of 10 us",
+        "macro step of 40 us",
         "detailed bearings",
         "plain bushings",
         "friction: Coulomb",
@@ -73,7 +74,7 @@ def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
-    scene = shortened(load_scene(DISK))
+    scene = shortened(load_scene(DISK).set(STEP))
     chosen = [v for v in variants(scene) if v.title != "detailed bearings"]  # slow to compile
     early = scene.set({"run.macro_step": 1.0})
     begun: list[str] = []
@@ -101,7 +102,7 @@ def test_the_impact_is_what_is_compared(disk: Comparison) -> None:
 
 def test_prices_are_what_the_parts_are_worth(disk: Comparison) -> None:
     assert percent(disk, "nothing recorded") == 0.0
-    assert percent(disk, "macro step of 50 us") < 0.1
+    assert percent(disk, "macro step of 10 us") < 0.1
     assert 0.001 < percent(disk, "friction: Coulomb") < 1.0
     assert percent(disk, "housings that stand still") == pytest.approx(6.0, abs=0.5)
     bushing = row(disk, "plain bushings").price
@@ -164,13 +165,13 @@ def test_the_command(
     first_two = lambda scene: variants(scene)[:2]  # noqa: E731
     monkeypatch.setattr("touchdown.master.studies.models.variants.variants", first_two)
     arguments = ("--models", "--repeat", "1", "--duration", "2 ms", "--quiet", "-o", str(tmp_path))
-    assert main(["compare", DISK, *arguments]) == 0
+    assert main(["compare", DISK, "--set", "run.macro_step=20 us", *arguments]) == 0
     shown = capsys.readouterr().out
     assert "largest orbit" in shown
-    assert "macro step of 200 us" in shown
+    assert "macro step of 40 us" in shown
     with (tmp_path / "models.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [r["variant"] for r in rows] == ["as it is", "macro step of 50 us", "macro step of 200 us"]
+    assert [r["variant"] for r in rows] == ["as it is", "macro step of 10 us", "macro step of 40 us"]
     assert float(rows[0]["wall_time_per_simulated_s"]) > 0.0
     assert abs(float(rows[2]["force_change_relative"])) < 0.01
     assert (tmp_path / "models.png").stat().st_size > 10_000
