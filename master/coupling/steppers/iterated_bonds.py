@@ -86,8 +86,10 @@ class IteratedBonds(Iterated):
 def _gains(off_from: Callable[[np.ndarray], np.ndarray], end: np.ndarray, off: np.ndarray) -> np.ndarray:
     """K at `end`, where the sweep is `off` (m)."""
     size = max(float(np.max(np.abs(off))), LEAST)
-    columns = [(off_from(end + size * unit) - off) / size for unit in np.eye(len(end))]
-    return -np.linalg.pinv(np.array(columns).T)
+    turned = np.array([(off_from(end + size * unit) - off) / size for unit in np.eye(len(end))]).T
+    if not np.isfinite(turned).all():  # the step will not converge, and be divided
+        return np.eye(len(end))
+    return -np.linalg.pinv(turned)
 
 
 def _improved(gains: np.ndarray, moved: np.ndarray, turned: np.ndarray) -> np.ndarray:
