@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError, iterparse
+from xml.parsers.expat import ExpatError
 
 from fmpy import platform as fmi_platform
 from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
@@ -77,7 +78,7 @@ def fmi_version(path: Path, cache: Path) -> str:
     Raises TouchdownError where it cannot be unpacked.
     """
     described = unpack(path, cache) / "modelDescription.xml"
-    with suppress(OSError, ParseError, ValueError, LookupError):
+    with suppress(OSError, ParseError, ExpatError, ValueError, LookupError):
         refuse_definitions(described)
         _, root = next(iterparse(described, ("start",)))
         return root.get("fmiVersion", "")
