@@ -54,6 +54,11 @@ class System:
         component, variable = split(name, self.components)
         return component.read([variable.name])[0]
 
+    @property
+    def divisible(self) -> bool:
+        """Whether all components take the same macro steps, of any length."""
+        return all(self.every[name] == 1 and c.any_step for name, c in self.components.items())
+
     def __contains__(self, name: str) -> bool:
         """Whether there is COMPONENT.VARIABLE."""
         head, _, tail = name.partition(".")

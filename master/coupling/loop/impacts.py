@@ -11,11 +11,14 @@ import math
 
 import numpy as np
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.loop.kernels.impacts import SEAT, met
 from touchdown.master.coupling.steppers.stepper import Stepper
+from touchdown.master.scene.run_spec import RunSpec
 
 LONG_AGO = -1.0  # s
+MOST = 100_000  # parts of a macro step; seconds of work
 
 
 class Impacts:
@@ -23,8 +26,8 @@ class Impacts:
 
     def __init__(self, stepper: Stepper) -> None:
         run, self._system = stepper.run, stepper.system
-        able = stepper.any_moment and run.impact_step > 0.0 and set(self._system.every.values()) == {1}
-        self.parts = max(1, math.ceil(run.macro_step / run.impact_step - 1e-6)) if able else 1
+        able = stepper.any_moment and run.impact_step > 0.0 and self._system.divisible
+        self.parts = _parts(run) if able else 1
         attachments = self._system.hit_together if self.parts > 1 else ()
         self.seats = np.array(list(map(self._seat, attachments)), SEAT)
         self._attachments, self._signals = attachments, self._system.signals
@@ -50,3 +53,13 @@ class Impacts:
             return 1
         self.divided += 1
         return self.parts
+
+
+def _parts(run: RunSpec) -> int:
+    """Into how many a macro step is divided. Raises TouchdownError where they are too many."""
+    if run.macro_step > MOST * run.impact_step:
+        raise TouchdownError(
+            f"run.impact_step = {run.impact_step:g} s divides a macro step of {run.macro_step:g} s into more "
+            f"than {MOST} parts; take a longer one, or 0 to have none divided"
+        )
+    return max(1, math.ceil(run.macro_step / run.impact_step - 1e-6))

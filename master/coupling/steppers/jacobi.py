@@ -15,7 +15,7 @@ from touchdown.master.scene.run_spec import RunSpec
 class Jacobi(GaussSeidel):
     """Inputs for all, then steps, then outputs of all."""
 
-    any_moment = False  # leading bearings have given their load for a step as long as the last
+    any_moment = False  # loads were given for steps as long as the last
 
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)

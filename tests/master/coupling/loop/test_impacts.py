@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.loop.impacts import LONG_AGO, Impacts
 from touchdown.master.coupling.loop.kernels.impacts import LASTS, SEAT, met
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
@@ -67,6 +68,23 @@ def test_into_how_many_parts(scene: str, changes: dict[str, object], parts: int)
     with opened(changed, in_process=True) as system:
         system.initialise()
         assert Impacts(stepper(system, changed.run)).parts == parts
+
+
+@pytest.mark.parametrize("step", [1e-320, 1e-30, 1e-12])
+def test_a_step_that_divides_too_much(step: float) -> None:
+    scene = load_scene("rotor1-9000").set({"run.impact_step": step})
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        with pytest.raises(TouchdownError, match="more than 100000 parts"):
+            Impacts(stepper(system, scene.run))
+
+
+def test_fmus_of_one_step_length_are_not_divided() -> None:
+    scene = load_scene("rotor1-9000")
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        system.components["housing_A"].any_step = False
+        assert Impacts(stepper(system, scene.run)).parts == 1
 
 
 def test_one_bearing_alone_is_not_watched() -> None:
