@@ -59,7 +59,7 @@ def _parts(run: RunSpec) -> int:
     """Into how many a macro step is divided. Raises TouchdownError where they are too many."""
     if run.macro_step > MOST * run.impact_step:
         raise TouchdownError(
-            f"run.impact_step = {run.impact_step:g} s divides a macro step of {run.macro_step:g} s into more "
-            f"than {MOST} parts; take a longer one, or 0 to have none divided"
+            f"run.impact_step = {run.impact_step:g} s divides a macro step of {run.macro_step:g} s into "
+            f"more than {MOST} parts; take a longer one, or 0 to have none divided"
         )
     return max(1, math.ceil(run.macro_step / run.impact_step - 1e-6))
