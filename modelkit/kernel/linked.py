@@ -22,12 +22,16 @@ from touchdown.modelkit.kernel.front_end import FrontEnd
 
 
 class WholeCode(JITCodeLibrary):
-    """Code of a kernel that Python calls; what that calls is called from nowhere else."""
+    """Code of a kernel that Python calls; what that calls is called from nowhere else.
+
+    LLVM may change how that is called. So it goes by another name: code that numba compiled looks for
+    functions by their names, among internal ones, too.
+    """
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                function.linkage = "internal"
+                function.linkage, function.name = "internal", f"{function.name}.internal"
         super()._optimize_final_module()
 
 
