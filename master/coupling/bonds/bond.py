@@ -136,10 +136,10 @@ class _Recogniser:
             if self._constant(c):
                 raise TouchdownError(f"bond {bond.title}: {c.source_name} does not change; remove the bond")
         for a in seats:
-            if {a.bearing, a.body} == ends:
+            if a.bearing in ends:
                 raise TouchdownError(
-                    f"bond {bond.title}: its components share a bearing's port, {a.title}, which crosses "
-                    "as the scheme has it; remove the bond"
+                    f"bond {bond.title}: {a.bearing} is a bearing, {a.title}, and a bearing has no bonds; "
+                    "attach its port to a body's, or move the bond's wires to connect"
                 )
 
     def _constant(self, c: Connection) -> bool:
@@ -153,15 +153,12 @@ class _Recogniser:
     def recognised(self, connections: Sequence[Connection], seats: Sequence[Attachment]) -> Iterator[Bond]:
         """All that are no matter of opinion.
 
-        Between two components that share no seat: one force of its kind one way, and of its motion at most
-        one position and one velocity back.
+        Between two components: one force of its kind one way, and of its motion at most one position and
+        one velocity back. A bearing carries its bodies through a whole macro step, from where that begins:
+        it cannot be stepped in parts, and has no bonds.
         """
-        attached = {frozenset((a.bearing, a.body)) for a in seats}
-        live = [
-            c
-            for c in connections
-            if frozenset((c.source, c.target)) not in attached and not self._constant(c)
-        ]
+        bearings = {a.bearing for a in seats}
+        live = [c for c in connections if not bearings & {c.source, c.target} and not self._constant(c)]
         for giver, taker in dict.fromkeys((c.source, c.target) for c in live if c.source != c.target):
             there = [c for c in live if (c.source, c.target) == (giver, taker)]
             back = [c for c in live if (c.source, c.target) == (taker, giver)]

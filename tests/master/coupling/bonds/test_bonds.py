@@ -15,7 +15,7 @@ from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.wires import Wire
+from touchdown.master.scene.wires import BondSpec, Wire
 
 MOTION = ("s1.x", "s1.v", "s2.x", "s2.v")
 POSITION_ONLY, VELOCITY_ONLY = bodies.TWO[:2], bodies.TWO[::2]
@@ -217,6 +217,38 @@ def test_bonds_and_seats_hold_one_body_together(body: Path) -> None:
     assert "wall.f on rotor.amb.fy by smooth; " in outcome.exchange
     halved, _ = landed(1e-4, scheme="halving", tolerance=1e-9)
     assert halved == pytest.approx(exact, rel=1e-4)
+
+
+def mounted(body: Path, step: float) -> Scene:
+    """A disk that falls on its bearing, whose housing is the body, joined by single wires."""
+    disk = load_scene("disk-caged-simplified")
+    parts = {name: spec for name, spec in disk.components.items() if name not in ("amb", "housing")}
+    parts["wall"] = ComponentSpec(str(body), {"m": 1e6})
+    wires = (
+        Wire("bearing.housing.fy", "wall.f_in"), Wire("wall.x", "bearing.housing.y"),
+        Wire("wall.v", "bearing.housing.vy"),
+    )  # fmt: skip
+    attached = tuple(pair for pair in disk.attach if "amb" not in pair[0] and "housing" not in pair[0])
+    scene = replace(disk, components=parts, attach=attached, connect=wires, zero=None)
+    settings = {"rotor.gravity": 98.1, "bearing.clearance": 1e-4, "run.duration": 0.008}
+    return scene.set({**settings, "run.macro_step": step})
+
+
+def test_a_bearing_has_no_bonds(body: Path) -> None:
+    """It is stepped in one; in parts its journal would be put back at each, and lose what they did."""
+    scene = mounted(body, 2e-5)
+    with opened(scene, in_process=True) as system:
+        assert system.bonds == []
+        outcome = simulate(scene, system)
+        peak = system.value("bearing.contact.peak_force")
+    standing = replace(scene, connect=())
+    with opened(standing, in_process=True) as system:
+        simulate(standing, system)
+        assert peak == pytest.approx(system.value("bearing.contact.peak_force"), rel=1e-3)
+    assert "bearing.housing.fy to wall.f_in, " in outcome.exchange
+    declared = replace(scene, bond=(BondSpec(scene.connect[0], *scene.connect[1:]),))
+    with pytest.raises(TouchdownError, match="bearing is a bearing, .*, and a bearing has no bonds"):
+        moved(declared, ("wall.x",))
 
 
 # -- what cannot be -----------------------------------------------------------------------------------
