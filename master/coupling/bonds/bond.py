@@ -97,6 +97,12 @@ class _Recogniser:
         position = self._of(spec.position) if spec.position else None
         velocity = self._of(spec.velocity) if spec.velocity else None
         what = f"bond {force.source_name}"
+        for c, kind in ((force, "force"), (position, "position"), (velocity, "velocity")):
+            if c is not None and self._kind(c) not in ("", kind):
+                raise TouchdownError(
+                    f"{what}: {c.source_name} is given as {kind}, and its units say {self._kind(c)}; "
+                    "name it so, or correct the units"
+                )
         for c in (position, velocity, *motion):
             if c is not None and (c.source, c.target) != (force.target, force.source):
                 raise TouchdownError(
@@ -104,6 +110,8 @@ class _Recogniser:
                     f"{force.source}, which the force comes from"
                 )
         for place, c in enumerate(motion):
+            if c in motion[:place]:
+                raise TouchdownError(f"{what}: {c.source_name} stands in it twice; leave one out")
             kind = self._kind(c) or (("position", "velocity")[place] if len(motion) == 2 else "")
             if kind == "position" and position is None:
                 position = c
@@ -177,16 +185,17 @@ class _Recogniser:
         return all(unit is not None and dict(unit.exponents) == dict(dimension) for unit in ends)
 
     def _kind(self, c: Connection) -> str:
-        """Which kind of motion a connection carries; empty where its units do not tell."""
-        for _, position, velocity in KINDS:
-            for kind, dimension in (("position", position), ("velocity", velocity)):
+        """Whether a connection carries force, position or velocity; empty where its units do not tell."""
+        for dimensions in KINDS:
+            for kind, dimension in zip(("force", "position", "velocity"), dimensions, strict=True):
                 if self._is(c, dimension):
                     return kind
         return ""
 
     def _unit(self, component: str, variable: str) -> Unit | None:
         name = self.components[component].variable(variable).unit
-        return None if not name else self.components[component].units.get(name, BY_NAME.get(name))
+        unit = None if not name else self.components[component].units.get(name, BY_NAME.get(name))
+        return unit if unit and unit.factor else None  # a factor of 0 measures nothing
 
     def _same_power(self, bond: Bond) -> bool:
         """Whether both ends speak of the same power, whatever units and scales they have."""
