@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 FORGOTTEN = 0.1  # share of what was learned that each observation takes the place of
 RIDGE = 1e-6  # of the sum of squares; where position and velocity do not tell apart, it decides
+NEAR = 0.1  # of the motion asked for; what was told apart by less does not reach so far
 
 
 @dataclass(frozen=True)
@@ -39,9 +40,12 @@ class Feedthrough:
         )
 
     def of(self, motion: Sequence[float]) -> float:
-        """The force that a change of motion makes at once."""
+        """The force that a change of motion makes at once; towards 0 where less than NEAR of it was seen.
+
+        Motions that are hardly apart show rounding, and what else moves the force.
+        """
         a, b = (*motion, 0.0)[:2]
-        ridge = RIDGE * (self.aa + self.bb)
+        ridge = RIDGE * (self.aa + self.bb) + NEAR**2 * (a * a + b * b)
         aa, bb = self.aa + ridge, self.bb + ridge
         whole = aa * bb - self.ab * self.ab
         if whole <= 0.0:

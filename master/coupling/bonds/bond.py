@@ -97,6 +97,12 @@ class _Recogniser:
         position = self._of(spec.position) if spec.position else None
         velocity = self._of(spec.velocity) if spec.velocity else None
         what = f"bond {force.source_name}"
+        for c, kind in ((force, "force"), (position, "position"), (velocity, "velocity")):
+            if c is not None and self._kind(c) not in ("", kind):
+                raise TouchdownError(
+                    f"{what}: {c.source_name} is given as {kind}, and its units say {self._kind(c)}; "
+                    "name it so, or correct the units"
+                )
         for c in (position, velocity, *motion):
             if c is not None and (c.source, c.target) != (force.target, force.source):
                 raise TouchdownError(
@@ -104,6 +110,8 @@ class _Recogniser:
                     f"{force.source}, which the force comes from"
                 )
         for place, c in enumerate(motion):
+            if c in motion[:place]:
+                raise TouchdownError(f"{what}: {c.source_name} stands in it twice; leave one out")
             kind = self._kind(c) or (("position", "velocity")[place] if len(motion) == 2 else "")
             if kind == "position" and position is None:
                 position = c
@@ -136,10 +144,10 @@ class _Recogniser:
             if self._constant(c):
                 raise TouchdownError(f"bond {bond.title}: {c.source_name} does not change; remove the bond")
         for a in seats:
-            if {a.bearing, a.body} == ends:
+            if a.bearing in ends:
                 raise TouchdownError(
-                    f"bond {bond.title}: its components share a bearing's port, {a.title}, which crosses "
-                    "as the scheme has it; remove the bond"
+                    f"bond {bond.title}: {a.bearing} is a bearing, {a.title}, and a bearing has no bonds; "
+                    "attach its port to a body's, or move the bond's wires to connect"
                 )
 
     def _constant(self, c: Connection) -> bool:
@@ -153,15 +161,12 @@ class _Recogniser:
     def recognised(self, connections: Sequence[Connection], seats: Sequence[Attachment]) -> Iterator[Bond]:
         """All that are no matter of opinion.
 
-        Between two components that share no seat: one force of its kind one way, and of its motion at most
-        one position and one velocity back.
+        Between two components: one force of its kind one way, and of its motion at most one position and
+        one velocity back. A bearing carries its bodies through a whole macro step, from where that begins:
+        it cannot be stepped in parts, and has no bonds.
         """
-        attached = {frozenset((a.bearing, a.body)) for a in seats}
-        live = [
-            c
-            for c in connections
-            if frozenset((c.source, c.target)) not in attached and not self._constant(c)
-        ]
+        bearings = {a.bearing for a in seats}
+        live = [c for c in connections if not bearings & {c.source, c.target} and not self._constant(c)]
         for giver, taker in dict.fromkeys((c.source, c.target) for c in live if c.source != c.target):
             there = [c for c in live if (c.source, c.target) == (giver, taker)]
             back = [c for c in live if (c.source, c.target) == (taker, giver)]
@@ -180,16 +185,17 @@ class _Recogniser:
         return all(unit is not None and dict(unit.exponents) == dict(dimension) for unit in ends)
 
     def _kind(self, c: Connection) -> str:
-        """Which kind of motion a connection carries; empty where its units do not tell."""
-        for _, position, velocity in KINDS:
-            for kind, dimension in (("position", position), ("velocity", velocity)):
+        """Whether a connection carries force, position or velocity; empty where its units do not tell."""
+        for dimensions in KINDS:
+            for kind, dimension in zip(("force", "position", "velocity"), dimensions, strict=True):
                 if self._is(c, dimension):
                     return kind
         return ""
 
     def _unit(self, component: str, variable: str) -> Unit | None:
         name = self.components[component].variable(variable).unit
-        return None if not name else self.components[component].units.get(name, BY_NAME.get(name))
+        unit = None if not name else self.components[component].units.get(name, BY_NAME.get(name))
+        return unit if unit and unit.factor else None  # a factor of 0 measures nothing
 
     def _same_power(self, bond: Bond) -> bool:
         """Whether both ends speak of the same power, whatever units and scales they have."""

@@ -31,7 +31,8 @@ class Ledger:
         rows = iter(self.books)
         self._seats = [SeatAccount(a, next(rows)) for a in system.attachments]
         self._bonds = [BondAccount(c, next(rows)) for c in stepper.crossings]
-        held = {bond.title for bond in system.bonds} - {account.title for account in self._bonds}
+        crossing = {account.title for account in self._bonds}
+        held = [title for bond in system.bonds if (title := bond.title) not in crossing]
         self.accounts: list[Account] = [*self._seats, *self._bonds, *(Account(b, next(rows)) for b in held)]
         for account in self.accounts[len(self._seats) + len(self._bonds) :]:
             account.unaudited = f"scheme {stepper.run.scheme.name} holds its values"

@@ -78,7 +78,7 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
 
 def _shorter_for_bond(run: RunSpec, share: float) -> str:
     way = way_of(run)
-    other = "try run.bonds = smooth or contact, or" if way.held else "try"
+    other = "try --set run.bonds=smooth, or" if way.held else "try"
     return (
         f"the macro step of {run.macro_step:g} s is too long for a bond that crosses by {way.name}, "
         f"{other} --macro-step {shorter_step(run, share, way.error_order):g}"

@@ -14,7 +14,7 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.bonds.crossing import Crossing
 from touchdown.master.coupling.steppers.bonded import Bonded
-from touchdown.master.coupling.steppers.checkpoint import Checkpoint
+from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_any_step
 from touchdown.master.coupling.steppers.iterated import MOST, TINY, Iterated
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import RunSpec
@@ -34,7 +34,14 @@ class IteratedBonds(Iterated):
             )
         self._bonded = Bonded(system, run)
         self._gains: np.ndarray | None = None  # K
+        if self._bonded.way.held:
+            raise TouchdownError(
+                f"scheme {run.scheme.name} repeats steps until motion that is told ahead is right, and "
+                f"{system.bonds[0].title} crosses by {self._bonded.way.name}, which tells none; choose "
+                "run.bonds = contact or smooth, or scheme hold"
+            )
         super().__init__(system, run)
+        require_any_step(system, run.scheme.name)
 
     def follow(self) -> None:
         self._bonded.follow()

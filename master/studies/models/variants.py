@@ -163,7 +163,8 @@ def _housings(scene: Scene, system: System) -> Iterator[Variant]:
     mounts = [a for a in system.attachments if a.bearing in bearings and a not in seats]
     names = {a.body for a in mounts} - {a.body for a in seats}
     offsets = [f"{n}.{v}" for n in names for v in OFFSETS if v in system.components[n].variables]
-    pairs = (*scene.sense, *((wire.source, wire.target) for wire in scene.connect))
+    wires = (*scene.connect, *(wire for bond in scene.bond for wire in bond.wires))
+    pairs = (*scene.sense, *((wire.source, wire.target) for wire in wires))
     tied = {end.partition(".")[0] for pair in pairs for end in pair}
     if not names or any(system.value(offset) for offset in offsets) or names & tied:
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.wires import BondSpec, Wire
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.models.compare import Comparison, Row, compare_models
 from touchdown.master.studies.models.report import advice, report_lines
@@ -51,6 +53,16 @@ def test_a_flexible_rotor_has() -> None:
 def test_housings_out_of_line_are_needed() -> None:
     assert "housings that stand still" in titles("rotor1-9000")
     assert "housings that stand still" not in titles("rotor1-9000-150um")
+
+
+def test_housings_that_a_bond_leads_to_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = load_scene(DISK).set(STEP)
+    to, back = Wire("wall.f", "housing.f"), Wire("housing.y", "wall.x2")
+    bonded = replace(plain, bond=(BondSpec(to, back),))
+    module = "touchdown.master.studies.models.variants.opened"
+    monkeypatch.setattr(module, lambda scene, in_process: opened(plain, in_process=in_process))
+    assert "housings that stand still" in [v.title for v in variants(plain)]
+    assert "housings that stand still" not in [v.title for v in variants(bonded)]
 
 
 def test_detailed_bearings_are_simplified() -> None:

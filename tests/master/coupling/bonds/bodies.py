@@ -16,12 +16,14 @@ from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
 
 COMPILER = shutil.which("cc") or shutil.which("gcc")
+PLATFORM = "linux64"  # as FMI names it
 SOURCE = Path(__file__).with_name("body.c")
 VARIABLES = (  # in the order of body.c
     *((name, "parameter", "") for name in ("m", "k", "d", "kc", "dc", "rest", "gravity", "x0", "v0")),
     *((name, "parameter", "") for name in ("clamped", "one_sided", "follows", "x2_0")),
     *(("x2", "input", "m"), ("v2", "input", "m/s"), ("f_in", "input", "N")),
     *(("x", "output", "m"), ("v", "output", "m/s"), ("f", "output", "N")),
+    ("lost", "output", ""),
 )
 STARTS = {"m": 1.0}
 UNITS = {"m": 'm="1"', "m/s": 'm="1" s="-1"', "N": 'kg="1" m="1" s="-2"'}  # by name, whatever the factor
@@ -84,7 +86,7 @@ def fmu(library: Path, name: str = "body", kind: Kind = Kind()) -> Path:
     path = library.with_name(f"{name}.fmu")
     with zipfile.ZipFile(path, "w") as archive:
         archive.writestr("modelDescription.xml", description(kind))
-        archive.write(library, "binaries/linux64/body.so")
+        archive.write(library, f"binaries/{PLATFORM}/body.so")
     return path
 
 

@@ -5,6 +5,7 @@
    It gives its motion (x, v) and the force f on the other body. Of the other it takes the motion (x2, v2), or a
    force (f_in): which side of a coupling it is follows from what is connected. clamped: it does not move;
    one_sided: the second spring pushes only; follows: x2 is not taken but integrated from v2, from x2_0 on.
+   lost: what its dampers took, where it is not one_sided.
    Inside it takes steps of Runge and Kutta's fourth order, of 10 us at most. */
 
 #include <math.h>
@@ -15,7 +16,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #define INNER 1e-5 /* s */
 
-enum { M, K, D, KC, DC, REST, GRAVITY, X0, V0, CLAMPED, ONE_SIDED, FOLLOWS, X2_0, X2, V2, F_IN, X, V, F, FOLLOWED, COUNT };
+enum { M, K, D, KC, DC, REST, GRAVITY, X0, V0, CLAMPED, ONE_SIDED, FOLLOWS, X2_0, X2, V2, F_IN, X, V, F, LOST, FOLLOWED, COUNT };
 enum { OK, WARNING, DISCARD, ERROR };
 
 typedef struct {
@@ -39,6 +40,11 @@ static double pull(const double *r, double x, double v, double x2)
     return r[CLAMPED] != 0.0 ? 0.0 : f / r[M] - r[GRAVITY];
 }
 
+static double damping(const double *r, double v)
+{
+    return r[D] * v * v + r[DC] * (v - r[V2]) * (v - r[V2]);
+}
+
 static void refresh(double *r)
 {
     r[F] = push(r, r[X], r[V], other(r));
@@ -51,6 +57,7 @@ static void advance(double *r, double h)
     double v2 = v + 0.5 * h * a1, a2 = pull(r, x + 0.5 * h * v, v2, y + 0.5 * h * w);
     double v3 = v + 0.5 * h * a2, a3 = pull(r, x + 0.5 * h * v2, v3, y + 0.5 * h * w);
     double v4 = v + h * a3, a4 = pull(r, x + h * v3, v4, y + h * w);
+    r[LOST] += h / 6.0 * (damping(r, v) + 2.0 * damping(r, v2) + 2.0 * damping(r, v3) + damping(r, v4));
     r[X] = x + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
     r[V] = v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
     r[FOLLOWED] += h * w;

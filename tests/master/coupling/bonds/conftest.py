@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import bodies
+import fmpy
 import pytest
 
 
@@ -12,6 +13,8 @@ import pytest
 def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if bodies.COMPILER is None:
         pytest.skip("needs a C compiler")
+    if fmpy.platform != bodies.PLATFORM:
+        pytest.skip(f"packs libraries for {bodies.PLATFORM} only")
     return bodies.compiled(tmp_path_factory.mktemp("bodies"))
 
 

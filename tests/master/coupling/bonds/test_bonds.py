@@ -15,7 +15,7 @@ from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.wires import Wire
+from touchdown.master.scene.wires import BondSpec, Wire
 
 MOTION = ("s1.x", "s1.v", "s2.x", "s2.v")
 POSITION_ONLY, VELOCITY_ONLY = bodies.TWO[:2], bodies.TWO[::2]
@@ -93,11 +93,32 @@ def test_what_the_ledger_calls_made_the_motion_has(body: Path, bonds: str, share
     assert (outcome.warned_at is None) == (bonds != "hold")
 
 
+@pytest.mark.parametrize("bonds", ["smooth", "contact"])
+def test_with_dampers_the_ledger_is_right_to_a_thousandth_of_the_work(body: Path, bonds: str) -> None:
+    run = run_of(10e-3, 2.0, bonds=bonds)
+    scene = bodies.scene(body, bodies.oscillator(1.0), run=run)
+    rows, outcome = moved(scene, (*MOTION, "s1.lost", "s2.lost"))
+    really = 1e4 * made(rows[:, :4]) + float(np.sum(rows[-1, 4:]))
+    assert abs(outcome.made - really) < 1e-3 * outcome.turnover
+    assert outcome.warned_at is None
+
+
+def test_motion_that_is_hardly_apart_teaches_the_ledger_nothing(stubborn: Path) -> None:
+    """A body begins to fall with next to no speed, and its first step cannot be divided."""
+    hanging = {
+        "s1": {"k": 1e3, "kc": 1e4, "dc": 1.0, "v0": 0.1},
+        "s2": {"gravity": 9.81, "v0": 1e-12},
+    }
+    _, outcome = moved(bodies.scene(stubborn, hanging, run=run_of(1e-3, 0.1)))
+    assert not outcome.reason
+    assert outcome.share < 1e-3
+
+
 def test_held_values_that_make_energy_stop_the_run(body: Path) -> None:
     run = run_of(10e-3, 10.0, scheme="hold")
     _, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
     assert "the energy ledger of s1.f on s2.f_in is off by" in outcome.reason
-    assert "bond that crosses by hold, try run.bonds = smooth or contact" in outcome.reason
+    assert "bond that crosses by hold, try --set run.bonds=smooth, or --macro-step" in outcome.reason
 
 
 def test_what_takes_steps_of_one_length_is_given_such(
@@ -219,6 +240,38 @@ def test_bonds_and_seats_hold_one_body_together(body: Path) -> None:
     assert halved == pytest.approx(exact, rel=1e-4)
 
 
+def mounted(body: Path, step: float) -> Scene:
+    """A disk that falls on its bearing, whose housing is the body, joined by single wires."""
+    disk = load_scene("disk-caged-simplified")
+    parts = {name: spec for name, spec in disk.components.items() if name not in ("amb", "housing")}
+    parts["wall"] = ComponentSpec(str(body), {"m": 1e6})
+    wires = (
+        Wire("bearing.housing.fy", "wall.f_in"), Wire("wall.x", "bearing.housing.y"),
+        Wire("wall.v", "bearing.housing.vy"),
+    )  # fmt: skip
+    attached = tuple(pair for pair in disk.attach if "amb" not in pair[0] and "housing" not in pair[0])
+    scene = replace(disk, components=parts, attach=attached, connect=wires, zero=None)
+    settings = {"rotor.gravity": 98.1, "bearing.clearance": 1e-4, "run.duration": 0.008}
+    return scene.set({**settings, "run.macro_step": step})
+
+
+def test_a_bearing_has_no_bonds(body: Path) -> None:
+    """It is stepped in one; in parts its journal would be put back at each, and lose what they did."""
+    scene = mounted(body, 2e-5)
+    with opened(scene, in_process=True) as system:
+        assert system.bonds == []
+        outcome = simulate(scene, system)
+        peak = system.value("bearing.contact.peak_force")
+    standing = replace(scene, connect=())
+    with opened(standing, in_process=True) as system:
+        simulate(standing, system)
+        assert peak == pytest.approx(system.value("bearing.contact.peak_force"), rel=1e-3)
+    assert "bearing.housing.fy to wall.f_in, " in outcome.exchange
+    declared = replace(scene, bond=(BondSpec(scene.connect[0], *scene.connect[1:]),))
+    with pytest.raises(TouchdownError, match=r"bearing is a bearing, .*, and a bearing has no bonds"):
+        moved(declared, ("wall.x",))
+
+
 # -- what cannot be -----------------------------------------------------------------------------------
 
 
@@ -241,6 +294,18 @@ def test_halving_is_refused_to_steps_of_one_length(library: Path) -> None:
         moved(bodies.scene(path, bodies.oscillator(), run=run_of(1e-3, 0.1, scheme="halving")))
 
 
+def test_iterated_is_refused_to_steps_of_one_length(library: Path) -> None:
+    path = bodies.fmu(library, "rigid", bodies.Kind(any_step=False))
+    with pytest.raises(TouchdownError, match=r"scheme iterated divides steps, and s1 \("):
+        moved(bodies.scene(path, bodies.oscillator(), run=run_of(1e-3, 0.1, scheme="iterated")))
+
+
+def test_iterated_is_refused_to_held_bonds(body: Path) -> None:
+    run = run_of(1e-3, 0.1, scheme="iterated", bonds="hold")
+    with pytest.raises(TouchdownError, match=r"s1\.f on s2\.f_in crosses by hold, which tells none"):
+        moved(bodies.scene(body, bodies.oscillator(), run=run))
+
+
 def test_iterated_repeats_for_seats_or_for_bonds(body: Path) -> None:
     with pytest.raises(TouchdownError, match=r"not for both: with bearing\.journal on rotor\.A and wall"):
         moved(supported(body, 1e-4, scheme="iterated"), ("wall.x",))
@@ -256,3 +321,12 @@ def test_all_at_once_and_held_is_said(body: Path) -> None:
     _, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
     assert outcome.unaudited == ("s1.f on s2.f_in, scheme jacobi-hold holds its values",)
     assert outcome.exchange == "s1.f on s2.f_in by hold; all components at once"
+
+
+def test_bonds_that_are_not_audited_are_told_in_their_order(body: Path) -> None:
+    pairs = [(f"s{i}", f"s{i + 1}") for i in range(6)]
+    wires = [w for a, b in pairs for w in ([f"{a}.f", f"{b}.f_in"], [f"{b}.x", f"{a}.x2"])]
+    run = run_of(1e-3, 1e-3, scheme="jacobi-hold")
+    _, outcome = moved(bodies.scene(body, {f"s{i}": {} for i in range(7)}, wires, run=run), ("s0.x",))
+    titles = [line.partition(",")[0] for line in outcome.unaudited]
+    assert titles == [f"{a}.f on {b}.f_in" for a, b in pairs]

@@ -88,6 +88,12 @@ def test_a_lonely_motion_is_told_by_its_unit_or_by_name(body: Path, unitless: Pa
         ([FORCE, [*POSITION, 2.0, 0.0]], "scaled so that the power that s1 gives is not what s2 takes"),
         ([["s1.f", "s1.f_in"], ["s1.x", "s1.x2"]], "leads back to s1; it needs two components"),
         ([[FORCE, POSITION], [FORCE, VELOCITY]], r"s2\.f_in is of another bond already"),
+        ([FORCE, POSITION, POSITION], r"bond s1\.f: s2\.x stands in it twice; leave one out"),
+        (
+            [{"force": FORCE, "position": VELOCITY, "velocity": POSITION}],
+            r"s2\.v is given as position, and its units say velocity",
+        ),
+        ([["s1.x", "s2.x2"], POSITION], r"s1\.x is given as force, and its units say position"),
         ([["s1.f", "s2.f_ni"], POSITION], "has no variable f_ni; did you mean f_in"),
     ],
 )
@@ -101,6 +107,12 @@ def test_a_gear_keeps_power(body: Path) -> None:
     wires = [[*FORCE, 2.0, 0.0], [*POSITION, 2.0, 0.0], [*VELOCITY, 2.0, 0.0]]
     assert found(two(body, wires)) == BOTH
     assert found(two(body, [[*FORCE, 3.0, 0.0], *wires[1:]])) == []
+
+
+def test_a_unit_of_factor_zero_tells_nothing(library: Path) -> None:
+    path = bodies.fmu(library, "zero", bodies.Kind(newton=0.0))
+    assert found(two(path)) == []
+    assert found(two(path, (), bond=list(bodies.TWO))) == BOTH
 
 
 def test_work_is_in_joules_whatever_the_units(library: Path) -> None:
