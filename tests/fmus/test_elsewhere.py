@@ -282,6 +282,19 @@ def test_documentation_names_every_variable(fmu: str, unpacked: Mapping[str, Pat
         assert slot.variable.spec.meaning.split("'")[0].replace("<", "&lt;") in text
 
 
+def test_a_row_of_the_documentation_is_true_of_all_between():
+    """Members that start alike share a row where they are neighbours."""
+    modes = [f"journal.mode[{k}].inv_m" for k in range(1, 21)]
+    text = page(recipe("bushing").starting_from({modes[k]: 3.0 for k in (0, 1, 4)}))
+    rows = re.findall(r"<tr><td>([^<]+)(?:<br>… ([^<]+))?</td><td>([^<]+)</td>", text)
+    assert [row for row in rows if row[0] in modes] == [
+        (modes[0], modes[1], "3"),
+        (modes[2], modes[3], "0"),
+        (modes[4], "", "3"),
+        (modes[5], modes[19], "0"),
+    ]
+
+
 @every_fmu
 def test_documentation_is_whole(fmu: str, unpacked: Mapping[str, Path]):
     """Each tag that is opened is closed, in order; and each part is there."""
