@@ -86,7 +86,8 @@ def structure(content: Content) -> Element:
             write_hint(element, system.every[name] * scene.run.macro_step)
     _connections(whole, content)
     write_master(whole, scene.run.macro_step)
-    write_scene(whole, scene, content.there)
+    declared = system.bonds[: len(scene.bond)]  # they come before those that units tell
+    write_scene(whole, scene, declared, content.there)
     _unit_definitions(root, units)
     times = {"startTime": "0.0", "stopTime": repr(content.zero + scene.run.duration)}
     write_steps(SubElement(root, "ssd:DefaultExperiment", times), scene.run.macro_step)
