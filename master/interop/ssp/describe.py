@@ -17,7 +17,7 @@ from touchdown.master.interop.packing import changes, start_values
 from touchdown.master.interop.ssp.annotations import write_hint, write_master, write_scene, write_steps
 from touchdown.master.interop.ssp.names import NAMESPACES
 from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.titles import with_changes
+from touchdown.master.scene.titles import amended
 from touchdown.modelkit.variables import Causality
 
 CONNECTED = (Causality.INPUT, Causality.OUTPUT, Causality.PARAMETER, Causality.CALCULATED_PARAMETER)
@@ -76,7 +76,7 @@ def structure(content: Content) -> Element:
     )
     described = {
         "name": names[scene.name],
-        "description": with_changes(scene.title, changes(scene, system)),
+        "description": amended(scene.title, changes(scene, system)),
     }
     whole = SubElement(root, "ssd:System", described)
     elements = SubElement(whole, "ssd:Elements")

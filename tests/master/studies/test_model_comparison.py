@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,11 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.wires import BondSpec, Wire
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.models.compare import Comparison, Row, compare_models
 from touchdown.master.studies.models.report import advice, report_lines
-from touchdown.master.studies.models.variants import Variant, variants
+from touchdown.master.studies.models.variants import Variant, tied, variants
 
 DISK = "disk-caged-simplified"
 STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over
@@ -51,6 +53,13 @@ def test_a_flexible_rotor_has() -> None:
 def test_housings_out_of_line_are_needed() -> None:
     assert "housings that stand still" in titles("rotor1-9000")
     assert "housings that stand still" not in titles("rotor1-9000-150um")
+
+
+def test_components_in_a_bond_are_needed() -> None:
+    disk = load_scene(DISK)
+    assert "housing" not in tied(disk)
+    bond = BondSpec(Wire("spring.f", "housing.push"), velocity=Wire("housing.v", "spring.v2"))
+    assert {"housing", "spring"} <= tied(replace(disk, bond=(bond,)))
 
 
 def test_detailed_bearings_are_simplified() -> None:
