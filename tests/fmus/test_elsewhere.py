@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import re
@@ -26,6 +27,7 @@ from touchdown.fmus.build import build
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.python import link
 from touchdown.fmus.python.link import Interpreter, LinkError, interpreter
+from touchdown.fmus.python.sources import package_name, write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
@@ -266,6 +268,18 @@ def test_what_cannot_be_linked(
     assert said.startswith("touchdown: ")
     assert len(said.splitlines()) == 1
     assert list(tmp_path.rglob("*.fmu")) == []
+
+
+def test_sources_in_an_fmu_import_none_of_the_project_that_may_be_installed(tmp_path: Path):
+    """Nor do functions, which import when they are called."""
+    modules = [
+        ast.parse(path.read_text(encoding="utf-8")) for path in write_package(tmp_path).rglob("*.py")
+    ]
+    nodes = [node for module in modules for node in ast.walk(module)]
+    imported = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+    imported |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    assert any(name.startswith(f"{package_name()}.") for name in imported)
+    assert [name for name in imported if name.split(".")[0] == "touchdown"] == []
 
 
 # -- documentation and icon --------------------------------------------------------------------------
