@@ -180,7 +180,8 @@ def _bond(package: Package, told: Mapping[str, str], wires: Iterable[Wire]) -> B
     for name in told.values():
         if name not in by_input:
             raise TouchdownError(f"{package.where}: a Bond names {name}, to which nothing is connected")
-    return BondSpec(**{kind: by_input[name] for kind, name in told.items()})
+    found = {kind: by_input[name] for kind, name in told.items()}
+    return BondSpec(found["force"], found.get("position"), found.get("velocity"))
 
 
 def _along(start: _Named, legs: Sequence[Leg], end: _Named, package: Package, where: str) -> Scale | None:
