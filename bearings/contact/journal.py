@@ -115,6 +115,7 @@ class ContactReport:
         0.0,
         "s",
         "time until journal and ring touch if both go straight on; 0: they do; at most 1 s",
+        local=True,
     )
 
 

@@ -14,7 +14,7 @@ from touchdown.modelkit.kernel import PHYSICS_PACKAGES, source_hash
 
 ROOT = Path(__file__).resolve().parents[2]
 SLAVE_MODULES = ("__init__.py", "slave.py", "starts.py", "description.py", "refusals.py", "version.py")
-_IMPORT = re.compile(r"^(from|import) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
+_IMPORT = re.compile(r"^([ \t]*(?:from|import)) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 
 
 def content_hash() -> str:

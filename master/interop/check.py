@@ -63,7 +63,8 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: Report) ->
     optional = [c for c in said if c.startswith(UNLISTED) and not component.description.initialUnknowns]
     complaints = [complaint for complaint in said if complaint not in optional]
     if not complaints:
-        report.lines.append(f"valid {version} for co-simulation")
+        but = " but for its InitialUnknowns" if optional else ""
+        report.lines.append(f"valid {version} for co-simulation{but}")
     elif role is None:
         report.problems += complaints
     else:  # what this master does not need

@@ -25,7 +25,7 @@ from touchdown.master.coupling.simulation import opened, zero_of
 from touchdown.master.coupling.system import System
 from touchdown.master.interop.packing import AS_IN_SCENE, Making, changes, packed_fmus, start_values
 from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.titles import with_changes
+from touchdown.master.scene.titles import amended
 from touchdown.modelkit.variables import Causality
 
 SEQUENTIAL = {"gauss-seidel": True, "jacobi": False}  # how a container steps, by a scheme's sequence
@@ -48,7 +48,7 @@ def write_container(scene: Scene, path: Path, making: Making = AS_IN_SCENE) -> P
         zero = zero_of(scene, system)
         system.initialise()
         fmus = packed_fmus(scene, system, making, Path(folder) / "inside")
-        about = with_changes(scene.title, changes(scene, system))
+        about = amended(scene.title, changes(scene, system))
         try:
             container = toolbox.FMUContainer(re.sub(r"\W", "_", path.stem, flags=re.ASCII), folder)
             container.start_time, container.stop_time = 0.0, zero + scene.run.duration

@@ -34,10 +34,10 @@ def retitled(title: str, component: str, before: str, after: str, alone: bool) -
     return title[: found.start()] + (new[0].upper() + new[1:] if capital else new) + title[found.end() :]
 
 
-def with_changes(title: str, changes: Sequence[str]) -> str:
+def amended(title: str, changes: Sequence[str]) -> str:
     """A scene's title with what was set beside the scene, which the title may deny.
 
-    >>> with_changes("A disk at 9000 rpm", ["rotor.speed = 12000 rpm"])
+    >>> amended("A disk at 9000 rpm", ["rotor.speed = 12000 rpm"])
     'A disk at 9000 rpm, but with rotor.speed = 12000 rpm'
     """
     if not changes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import re
@@ -26,6 +27,7 @@ from touchdown.fmus.build import build
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.python import link
 from touchdown.fmus.python.link import Interpreter, LinkError, interpreter
+from touchdown.fmus.python.sources import package_name, write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
@@ -268,6 +270,18 @@ def test_what_cannot_be_linked(
     assert list(tmp_path.rglob("*.fmu")) == []
 
 
+def test_sources_in_an_fmu_import_none_of_the_project_that_may_be_installed(tmp_path: Path):
+    """Nor do functions, which import when they are called."""
+    modules = [
+        ast.parse(path.read_text(encoding="utf-8")) for path in write_package(tmp_path).rglob("*.py")
+    ]
+    nodes = [node for module in modules for node in ast.walk(module)]
+    imported = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+    imported |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    assert any(name.startswith(f"{package_name()}.") for name in imported)
+    assert [name for name in imported if name.split(".")[0] == "touchdown"] == []
+
+
 # -- documentation and icon --------------------------------------------------------------------------
 
 
@@ -280,6 +294,19 @@ def test_documentation_names_every_variable(fmu: str, unpacked: Mapping[str, Pat
     assert {name for name in plain if f"<td>{name}</td>" not in text} == set()
     for slot in slots(recipe(fmu).model):
         assert slot.variable.spec.meaning.split("'")[0].replace("<", "&lt;") in text
+
+
+def test_a_row_of_the_documentation_is_true_of_all_between():
+    """Members that start alike share a row where they are neighbours."""
+    modes = [f"journal.mode[{k}].inv_m" for k in range(1, 21)]
+    text = page(recipe("bushing").starting_from({modes[k]: 3.0 for k in (0, 1, 4)}))
+    rows = re.findall(r"<tr><td>([^<]+)(?:<br>… ([^<]+))?</td><td>([^<]+)</td>", text)
+    assert [row for row in rows if row[0] in modes] == [
+        (modes[0], modes[1], "3"),
+        (modes[2], modes[3], "0"),
+        (modes[4], "", "3"),
+        (modes[5], modes[19], "0"),
+    ]
 
 
 @every_fmu

@@ -7,9 +7,10 @@ inside; both are there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
+from touchdown.master.coupling.bonds.bond import Bond
 from touchdown.master.interop.ssp.names import MASTER_ANNOTATION, SCENE_ANNOTATION, STEP_ANNOTATION
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import Scene
@@ -40,8 +41,13 @@ def write_master(system: Element, step: float) -> None:
     SubElement(information, "oms:FixedStepMaster", fixed)
 
 
-def write_scene(system: Element, scene: Scene, there: Callable[[str], str]) -> None:
-    """What a scene says beyond its structure; there(name): what COMPONENT[.VARIABLE] is called there."""
+def write_scene(
+    system: Element, scene: Scene, declared: Sequence[Bond], there: Callable[[str], str]
+) -> None:
+    """What a scene says beyond its structure, and the bonds that it declares.
+
+    there(name): what COMPONENT[.VARIABLE] is called there.
+    """
     details = {
         "title": scene.title,
         "about": scene.about.strip(),
@@ -56,11 +62,16 @@ def write_scene(system: Element, scene: Scene, there: Callable[[str], str]) -> N
             SubElement(note, "touchdown:Name", {"component": there(name), "name": here, "own": own})
         for changed in spec.own:
             SubElement(note, "touchdown:Changed", {"component": there(name), "name": changed})
+    for bond in declared:
+        wires = {"force": bond.force, "position": bond.position, "velocity": bond.velocity}
+        inputs = {kind: there(c.target_name) for kind, c in wires.items() if c}  # each has one source
+        SubElement(note, "touchdown:Bond", inputs)
 
 
 def _run(run: RunSpec, there: Callable[[str], str]) -> Mapping[str, str]:
     return {
         "scheme": run.scheme.name,
+        "bonds": run.bonds,
         "tolerance": repr(run.tolerance),
         "record_every": str(run.record_every),
         "record": ",".join(map(there, run.record)),

@@ -17,7 +17,7 @@ from touchdown.master.interop.packing import changes, start_values
 from touchdown.master.interop.ssp.annotations import write_hint, write_master, write_scene, write_steps
 from touchdown.master.interop.ssp.names import NAMESPACES
 from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.titles import with_changes
+from touchdown.master.scene.titles import amended
 from touchdown.modelkit.variables import Causality
 
 CONNECTED = (Causality.INPUT, Causality.OUTPUT, Causality.PARAMETER, Causality.CALCULATED_PARAMETER)
@@ -76,7 +76,7 @@ def structure(content: Content) -> Element:
     )
     described = {
         "name": names[scene.name],
-        "description": with_changes(scene.title, changes(scene, system)),
+        "description": amended(scene.title, changes(scene, system)),
     }
     whole = SubElement(root, "ssd:System", described)
     elements = SubElement(whole, "ssd:Elements")
@@ -86,7 +86,8 @@ def structure(content: Content) -> Element:
             write_hint(element, system.every[name] * scene.run.macro_step)
     _connections(whole, content)
     write_master(whole, scene.run.macro_step)
-    write_scene(whole, scene, content.there)
+    declared = system.bonds[: len(scene.bond)]  # they come before those that units tell
+    write_scene(whole, scene, declared, content.there)
     _unit_definitions(root, units)
     times = {"startTime": "0.0", "stopTime": repr(content.zero + scene.run.duration)}
     write_steps(SubElement(root, "ssd:DefaultExperiment", times), scene.run.macro_step)

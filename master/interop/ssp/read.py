@@ -21,15 +21,15 @@ from touchdown.master.interop.ssp.flat import Flat, Leg, Link, flattened
 from touchdown.master.interop.ssp.names import HEART
 from touchdown.master.interop.ssp.structure import Structure
 from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.wires import Wire
+from touchdown.master.scene.wires import BondSpec, Wire
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene")
 
 
 RUN_KEYS = (
-    "scheme", "tolerance", "record_every", "record", "record_also", "record_arrays", "warn_residual",
-    "stop_residual", "whirl_halvings", "impact_step",
+    "scheme", "bonds", "tolerance", "record_every", "record", "record_also", "record_arrays",
+    "warn_residual", "stop_residual", "whirl_halvings", "impact_step",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 
@@ -70,12 +70,14 @@ def read(path: Path) -> Scene:
     sides = {name: Side(*interface(part.path, cache)) for name, part in flat.parts.items()}
     package = Package(said, flat, sides, str(path))
     settings = _settings(package)
+    wires = tuple(_wire(package, link) for link in flat.links)
     scene = Scene(
         name=path.stem,
         title=said.scene.get("title", said.root.title),
         about=said.scene.get("about", ""),
         components={name: _component(package, name, settings[name]) for name in flat.parts},
-        connect=tuple(_wire(package, link) for link in flat.links),
+        connect=wires,
+        bond=tuple(_bond(package, told, wires) for told in said.bonds),
         zero=said.scene.get("zero"),
         energy_scale=tuple(said.scene.get("energy_scale", "").split()),
     )
@@ -170,6 +172,16 @@ def _wire(package: Package, link: Link) -> Wire:
     if not all(leg.convert for leg in link.legs):
         scale = scale or (1.0, 0.0)  # values stay as they are, whatever the units
     return Wire(names[0], names[1], scale)
+
+
+def _bond(package: Package, told: Mapping[str, str], wires: Iterable[Wire]) -> BondSpec:
+    """A bond that is declared, of the connections to the inputs that it names."""
+    by_input = {wire.target: wire for wire in wires}
+    for name in told.values():
+        if name not in by_input:
+            raise TouchdownError(f"{package.where}: a Bond names {name}, to which nothing is connected")
+    found = {kind: by_input[name] for kind, name in told.items()}
+    return BondSpec(found["force"], found.get("position"), found.get("velocity"))
 
 
 def _along(start: _Named, legs: Sequence[Leg], end: _Named, package: Package, where: str) -> Scale | None:

@@ -77,6 +77,7 @@ class Structure:
     scene: Mapping[str, str]  # what a package of this project says beyond the structure
     names: Mapping[str, Mapping[str, str]]  # by component: variables of the contract, and its own
     changed: Mapping[str, Sequence[str]]  # by component: what the user set beside the scene
+    bonds: Sequence[Mapping[str, str]]  # that are declared: the inputs that take force, position, velocity
 
 
 def read(folder: Path, where: str) -> Structure:
@@ -100,6 +101,7 @@ def read(folder: Path, where: str) -> Structure:
         scene={} if note is None else dict(note.attrib),
         names=_names(note, where),
         changed=_changed(note, where),
+        bonds=_bonds(note, where),
     )
 
 
@@ -265,3 +267,13 @@ def _changed(note: Element | None, where: str) -> dict[str, list[str]]:
         component, name = (xml.required(element, key, where) for key in ("component", "name"))
         changed.setdefault(component, []).append(name)
     return changed
+
+
+def _bonds(note: Element | None, where: str) -> list[dict[str, str]]:
+    bonds: list[dict[str, str]] = []
+    for element in xml.children(note, "touchdown:Bond") if note is not None else ():
+        motion = {kind: told for kind in ("position", "velocity") if (told := element.get(kind))}
+        bonds.append({"force": xml.required(element, "force", where), **motion})
+        if not motion:
+            raise TouchdownError(f"{where}: the Bond of {bonds[-1]['force']} has no position or velocity")
+    return bonds

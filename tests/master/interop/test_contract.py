@@ -77,6 +77,9 @@ def test_initial_unknowns_that_are_not_listed_are_a_finding(tmp_path: Path) -> N
         report = check_fmu(str(path))
         assert len(report.problems) == problems
         assert any("lists no InitialUnknowns" in line for line in report.lines) != bool(problems)
+        assert "valid FMI 2.0 for co-simulation" not in report.lines
+        but = "valid FMI 2.0 for co-simulation but for its InitialUnknowns"
+        assert (but in report.lines) != bool(problems)
 
 
 @pytest.mark.parametrize("name", [n for n in BEARINGS if n != "amb"])

@@ -16,7 +16,7 @@ from touchdown.master.scene.wires import BondSpec, Wire
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.models.compare import Comparison, Row, compare_models
 from touchdown.master.studies.models.report import advice, report_lines
-from touchdown.master.studies.models.variants import Variant, variants
+from touchdown.master.studies.models.variants import Variant, tied, variants
 
 DISK = "disk-caged-simplified"
 STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over
@@ -55,14 +55,11 @@ def test_housings_out_of_line_are_needed() -> None:
     assert "housings that stand still" not in titles("rotor1-9000-150um")
 
 
-def test_housings_that_a_bond_leads_to_are_needed(monkeypatch: pytest.MonkeyPatch) -> None:
-    plain = load_scene(DISK).set(STEP)
-    to, back = Wire("wall.f", "housing.f"), Wire("housing.y", "wall.x2")
-    bonded = replace(plain, bond=(BondSpec(to, back),))
-    module = "touchdown.master.studies.models.variants.opened"
-    monkeypatch.setattr(module, lambda scene, in_process: opened(plain, in_process=in_process))
-    assert "housings that stand still" in [v.title for v in variants(plain)]
-    assert "housings that stand still" not in [v.title for v in variants(bonded)]
+def test_components_in_a_bond_are_needed() -> None:
+    disk = load_scene(DISK)
+    assert "housing" not in tied(disk)
+    bond = BondSpec(Wire("spring.f", "housing.push"), velocity=Wire("housing.v", "spring.v2"))
+    assert {"housing", "spring"} <= tied(replace(disk, bond=(bond,)))
 
 
 def test_detailed_bearings_are_simplified() -> None:
