@@ -26,6 +26,7 @@ from touchdown.fmus.native.targets import NativeError
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.kernel.cache_folder import own_folder, put
+from touchdown.modelkit.kernel.linked import KernelDispatcher
 from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
 from touchdown.modelkit.kernel.shipped import plain_processor
 from touchdown.modelkit.kernel.tried import NUMBA
@@ -122,6 +123,7 @@ def compile_entries(order: Mapping[str, Any]) -> bytes:
     For a process that runs no kernels: numba's code generation is changed in all of it.
     """
     _put_code_aside()
+    _forget_addresses()
     KernelCache.active = False
     whole = None
     for name, place in order["kernels"].items():
@@ -160,6 +162,25 @@ def _put_code_aside() -> None:
         finalize(library)
 
     cast(Any, CPUCodeLibrary)._finalize_final_module = keeping
+
+
+def _forget_addresses() -> None:
+    """Have no address of this process in the code: a kernel that is an argument is known by its type alone.
+
+    numba names that type after the place of the function in memory, and hands over the place, unused.
+    """
+    from llvmlite.ir import Constant
+    from numba.core import types
+    from numba.core.cpu import CPUContext
+
+    def named(kernel: KernelDispatcher) -> str:
+        return f"{kernel.py_func.__module__}.{kernel.py_func.__qualname__}"
+
+    def nowhere(context: Any, builder: Any, address: int, info: str) -> Any:
+        return Constant(context.get_value_type(types.voidptr), None)
+
+    cast(Any, KernelDispatcher).__repr__ = named
+    cast(Any, CPUContext).add_dynamic_addr = nowhere
 
 
 def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:

@@ -41,10 +41,14 @@ def marked(content: bytes, offset: int, value: int) -> bytes:
     return bytes(changed)
 
 
-def garbled(content: bytes) -> bytes:
-    """A zip's bytes with a letter of the model description changed."""
-    at = content.index(b"<fmiModelDescription") + 5
-    return content[:at] + b"?" + content[at + 1 :]
+def garbled(fmu: Path) -> bytes:
+    """A zip's bytes with one in the middle of the packed model description changed."""
+    with zipfile.ZipFile(fmu) as source:
+        entry = source.getinfo("modelDescription.xml")
+    content = bytearray(fmu.read_bytes())
+    begin = entry.header_offset + 30 + len(entry.filename)  # behind its header, which ends with its name
+    content[begin + entry.compress_size // 2] ^= 0xFF
+    return bytes(content)
 
 
 def damaged(kind: str, good: Path, folder: Path) -> Path:
@@ -54,7 +58,7 @@ def damaged(kind: str, good: Path, folder: Path) -> Path:
         "empty": b"",
         "truncated": content[: len(content) // 2],
         "random": bytes((7 * i * i + 13 * i) % 251 for i in range(5000)),
-        "garbled": garbled(content),
+        "garbled": garbled(good),
         "encrypted": marked(content, 8, 1),
         "strange compression": marked(content, 10, 97),
     }
