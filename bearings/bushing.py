@@ -18,6 +18,7 @@ from touchdown.bearings.contact.journal import (
     Touched,
     note,
     swing_rate,
+    time_to_touch,
     touch,
     watch_contact,
 )
@@ -111,6 +112,7 @@ def report(q, m):
     c, s = m.o.contact, m.s.touched
     c.force, c.indentation = s.normal, s.indentation
     c.sliding = q[seat.JW] * m.p.journal_radius
+    c.reach = time_to_touch(seat.journal_motion(q), seat.housing_motion(q), m.p.clearance)
     m.o.energy.potential = elastic_energy(s.indentation, m.p.contact)
     m.o.energy.dissipated = q[LOSS]
 

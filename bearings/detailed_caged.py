@@ -33,7 +33,7 @@ from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
 from touchdown.bearings.rolling.sides.contact import stored
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
@@ -132,7 +132,7 @@ def report(q, m):
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
 
 
-@inlined
+@kernel
 def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
     b, clearance = p.balls, p.cage.clearance
@@ -146,7 +146,7 @@ def _problem(p, told):
     return found
 
 
-@inlined
+@kernel
 def _settle_cage(m):
     """Set in m.d the cage, its pockets and the laws in them; returns the lighter mass there (kg)."""
     p, d, b = m.p, m.d, m.p.balls

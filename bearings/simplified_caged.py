@@ -51,7 +51,7 @@ from touchdown.bearings.rolling.pitch_circle import (
     note,
     rolling_drag,
 )
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
@@ -268,7 +268,7 @@ def report(q, m):
     ring.report_energy(q, m, inside, s.energy, d.ring_inertia)
 
 
-@inlined
+@kernel
 def _settle_turning(m):
     """Set in m.d what turns: radii, inertia, ratios of speeds, where the balls start."""
     p, d, b = m.p, m.d, m.p.balls
@@ -286,7 +286,7 @@ def _settle_turning(m):
         d.cosine[i], d.sine[i] = math.cos(angle), math.sin(angle)
 
 
-@inlined
+@kernel
 def _set_weights(m):
     """Error weights, and how many components are in use: cage and balls where they may slip."""
     w = m.weight

@@ -89,7 +89,7 @@ from touchdown.bearings.rolling.rubbing import RubbedRace
 from touchdown.bearings.rolling.sides.chain import Chain
 from touchdown.bearings.rolling.sides.contact import SideContacts, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Interface, Load
@@ -245,7 +245,7 @@ def report(q, m):
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
 
 
-@inlined
+@kernel
 def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
     found = declarations.problem(p, p.balls.crowded, told)
@@ -253,7 +253,7 @@ def _problem(p, told):
     return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
 
 
-@inlined
+@kernel
 def _settle_laws(m):
     """Set in m.d the laws at the balls, and the steps that resolve them."""
     p, d, b = m.p, m.d, m.p.balls
@@ -273,7 +273,7 @@ def _settle_laws(m):
     d.resolution = refined(p.micro_step) * RESOLUTION
 
 
-@inlined
+@kernel
 def _settle_balls(m, spread):
     """Set in m.d what the balls are, where they run and where they start."""
     d, b = m.d, m.p.balls
@@ -289,7 +289,7 @@ def _settle_balls(m, spread):
         d.angles[i] = start_angle(b.first_angle, b.count, spread, i)
 
 
-@inlined
+@kernel
 def _set_weights(m):
     """Set the error weights, and m.n to what is in use."""
     w, n = m.weight, m.p.balls.count

@@ -18,10 +18,13 @@ from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.python.link import Interpreter, linked
 from touchdown.fmus.python.sources import write_host, write_package, write_script
+from touchdown.fmus.python.statuses import with_errors
 from touchdown.fmus.recipes import Recipe
+from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
+LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
 
 
 def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) -> Path:
@@ -33,10 +36,10 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
     entries = _entries(recipe, interpreter)
     entries["documentation/index.html"] = page(recipe, interpreter).encode()
     entries["model.png"] = icon(recipe.model)
-    if interpreter is not None:
-        entries = {name: e for name, e in entries.items() if not name.endswith((".dll", ".dylib"))}
-        for name in [name for name in entries if name.endswith(".so")]:
-            entries[name] = linked(entries[name], interpreter.library)
+    for name in [name for name in entries if name.startswith("binaries/")]:
+        library = with_errors(entries.pop(name))
+        if name.endswith(LIBRARY):
+            entries[name] = linked(library, interpreter.library) if interpreter else library
     return write(entries, folder, recipe.name)
 
 
@@ -49,24 +52,35 @@ def cached(recipe: Recipe) -> Path:
 
 
 def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
-    """NAME.fmu in the cache's folder for `content`; made there by `make` where it is not as it was."""
+    """NAME.fmu for `content`: what came along with the installation, or what the cache keeps.
+
+    It is made there by `make` where it is not as it was.
+    """
+    brought = shipped.folder("fmus")
+    if brought is not None and _is_whole(brought / content, name):
+        return brought / content / f"{name}.fmu"
     return kept(lambda folder: _sound(name, folder, make), "fmus", content)
 
 
 def _sound(name: str, folder: Path, make: Callable[[Path], object]) -> Path:
     """The FMU in `folder` if it is as it was built, else a new one; its digest lies beside it."""
     path, noted = folder / f"{name}.fmu", folder / f"{name}.sha256"
-    try:
-        if noted.read_text(encoding="ascii") == _line(path) and is_own(path.stat()):
-            return path
-    except (OSError, ValueError):
-        pass
+    if _is_whole(folder, name) and is_own(path.stat()):
+        return path
     for damaged in (path, noted):
         if damaged.is_dir() and not damaged.is_symlink():
             shutil.rmtree(damaged)
     make(folder)
     put(noted, _line(path).encode("ascii"))
     return path
+
+
+def _is_whole(folder: Path, name: str) -> bool:
+    """Whether NAME.fmu in a folder is what the digest beside it says."""
+    try:
+        return (folder / f"{name}.sha256").read_text(encoding="ascii") == _line(folder / f"{name}.fmu")
+    except (OSError, ValueError):
+        return False
 
 
 def _line(path: Path) -> str:
@@ -97,14 +111,14 @@ def _untouched_interpreter(module: str) -> Iterator[None]:
         sys.modules.pop(module, None)
 
 
-def write(entries: Mapping[str, bytes], folder: Path, name: str, compressed: bool = False) -> Path:
+def write(entries: Mapping[str, bytes], folder: Path, name: str) -> Path:
     """Write NAME.fmu into `folder` with sorted entries and fixed times; an older one is replaced."""
     folder.mkdir(parents=True, exist_ok=True)
     fresh = folder / f".{name}.{os.getpid()}.fmu"
-    with zipfile.ZipFile(fresh, "w", zipfile.ZIP_DEFLATED if compressed else zipfile.ZIP_STORED) as archive:
+    with zipfile.ZipFile(fresh, "w") as archive:
         for title in sorted(entries):
             entry = zipfile.ZipInfo(title, EPOCH)
             entry.external_attr = 0o644 << 16
-            entry.compress_type = archive.compression
+            entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, entries[title])
     return fresh.replace(folder / f"{name}.fmu")

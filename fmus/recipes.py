@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import hashlib
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from touchdown.bearings.catalogue import CATALOGUE
 from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
+from touchdown.fmus.starts import defaults, starting_from
 from touchdown.modelkit.model import Model
 from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor
@@ -37,6 +39,14 @@ class {identifier}(ModelSlave):
 '''
 
 
+_STARTING = """
+
+from touchdown.fmus.starts import starting_from
+
+{identifier}.model = starting_from({identifier}.model, {values!r})
+"""
+
+
 @dataclass(frozen=True)
 class Recipe:
     """How an FMU is made; `content` is a hash over everything in it."""
@@ -51,6 +61,19 @@ class Recipe:
     def module(self) -> str:
         """Module name of its script: one interpreter may hold several versions of it."""
         return f"{self.name}_{self.content}"
+
+    def starting_from(self, values: Mapping[str, float]) -> Recipe:
+        """The recipe of an FMU that starts from `values` (SI, by name) where nothing is set in it.
+
+        Raises KeyError for a name that is neither a parameter nor an input.
+        """
+        own = defaults(self.model)
+        others = {n: float(v) for n, v in sorted(values.items()) if repr(float(v)) != repr(float(own[n]))}
+        if not others:
+            return self
+        model = starting_from(self.model, others)
+        script = self.script + _STARTING.format(identifier=self.identifier, values=others)
+        return replace(self, script=script, content=f"{self.content}{model.content[-17:]}", model=model)
 
 
 def names() -> list[str]:

@@ -1,10 +1,10 @@
 """The one slave class: an FMU around any `modelkit.model.Model`.
 
-What pythonfmu leaves open is closed here. Its C++ side must never see an exception it did not ask for,
-so a failed step is logged and answered with False; where only an exception can report failure
-(initialisation, reading), the references that its clean-up drops twice are held once more. The whole
-state of an instance is one block of memory, so saving it is copying bytes; what follows from the
-parameters in it is derived again where they are others. Vectors are answered whole.
+What pythonfmu leaves open is closed here. Only an exception makes its C++ side answer a call with an
+error, and the references that its clean-up drops twice are held once more; False is for steps that a
+smaller one could take the place of, which the host hears as discarded. The whole state of an instance is
+one block of memory, so saving it is copying bytes; what follows from the parameters in it is derived again
+where they are others. Vectors are answered whole.
 """
 
 from __future__ import annotations
@@ -14,8 +14,10 @@ import math
 import struct
 import sys
 import traceback
+import zlib
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NoReturn
+from weakref import WeakSet
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -25,13 +27,14 @@ from pythonfmu.enums import Fmi2Status
 from touchdown.fmus import refusals
 from touchdown.fmus.description import describe, guid
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import Model, ModelError
+from touchdown.modelkit.model import Model, ModelError, StepSizeError
 from touchdown.modelkit.variables import Causality, Scalar
 
 AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the first step
 READABLE = (*AT_START, Causality.OUTPUT)
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
+_CHECK = struct.Struct("<I")  # what serialised states end with: their checksum
 LATE = 1e-2  # of a step: how far it may begin from the end of the last one
 
 
@@ -39,6 +42,7 @@ class ModelSlave(Fmi2Slave):
     """FMU of the model named by the class attribute `model`."""
 
     model: ClassVar[Model]
+    _living: ClassVar[WeakSet[ModelSlave]] = WeakSet()
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -53,6 +57,7 @@ class ModelSlave(Fmi2Slave):
         self._stale = True  # outputs do not yet follow from what was set
         self._failed = ""
         self._start_time = 0.0
+        self._living.add(self)
         if self.resources:
             _list_once(str(self.resources))
             _settle_the_end(Path(self.resources), type(self).__name__)
@@ -80,6 +85,8 @@ class ModelSlave(Fmi2Slave):
     def exit_initialization_mode(self) -> None:
         if self._phase != INITIALISING:
             self._raise(refusals.NOT_ENTERED)
+        if self._failed:
+            self._stop_again()
         problem = self._refresh()
         if problem:
             self._raise(problem)
@@ -87,20 +94,25 @@ class ModelSlave(Fmi2Slave):
         self._forget()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
+        if self._failed:
+            self._stop_again()
+        if self._phase != STEPPING:
+            self._raise(refusals.ENDED if self._phase == ENDED else refusals.NOT_STARTED)
+        if abs(current_time - self._end) > LATE * step_size:
+            self._raise(refusals.APART.format(time=current_time, step=step_size, end=self._end))
+        problem = ""
         try:
-            if self._failed:
-                self.log(refusals.STOPPED.format(why=self._failed), Fmi2Status.error)
-                return False
-            if self._phase != STEPPING:
-                raise ModelError(refusals.ENDED if self._phase == ENDED else refusals.NOT_STARTED)
-            if abs(current_time - self._end) > LATE * step_size:
-                raise ModelError(refusals.APART.format(time=current_time, step=step_size, end=self._end))
             self._instance.step(current_time, step_size)
-            self._end = current_time + step_size
+        except StepSizeError as error:
+            self._fail(str(error), Fmi2Status.discard)
+            return False
         except ModelError as error:
-            return self._fail(str(error))
+            problem = str(error)
         except Exception:
-            return self._fail(traceback.format_exc())
+            problem = traceback.format_exc()
+        if problem:
+            self._raise(problem)
+        self._end = current_time + step_size
         return True
 
     def terminate(self) -> None:
@@ -115,10 +127,28 @@ class ModelSlave(Fmi2Slave):
         self._set(Scalar.INTEGER, vrs, values)
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        return self._get(Scalar.REAL, vrs, math.nan)
+        return self._get(Scalar.REAL, vrs)
 
     def get_integer(self, vrs: list[int]) -> list[int]:
-        return self._get(Scalar.INTEGER, vrs, 0)
+        return self._get(Scalar.INTEGER, vrs)
+
+    def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
+        self._absent(refusals.SET_LATE, vrs, "boolean")
+
+    def set_string(self, vrs: list[int], values: list[str]) -> None:
+        self._absent(refusals.SET_LATE, vrs, "string")
+
+    def get_boolean(self, vrs: list[int]) -> list[bool]:
+        return self._absent(refusals.UNREADABLE, vrs, "boolean")
+
+    def get_string(self, vrs: list[int]) -> list[str]:
+        return self._absent(refusals.UNREADABLE, vrs, "string")
+
+    def _absent(self, refusal: str, vrs: list[int], kind: str) -> list[Any]:
+        """There are no booleans and no strings."""
+        if vrs:
+            self._raise(refusal.format(names=self._others(Scalar.REAL, vrs, ()), kind=kind))
+        return []
 
     def _set(self, kind: Scalar, vrs: list[int], values: list[Any]) -> None:
         places = self._places("set", kind, vrs)
@@ -126,22 +156,30 @@ class ModelSlave(Fmi2Slave):
             causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
             wrong = self._others(kind, vrs, causes)
             if wrong:
-                self._fail(refusals.SET_LATE.format(names=wrong, kind=kind))
-                return
+                self._raise(refusals.SET_LATE.format(names=wrong, kind=kind))
             places = self._note("set", kind, vrs)
         self._stores[kind][places] = values
         self._stale = True
 
-    def _get(self, kind: Scalar, vrs: list[int], nothing: Any) -> list[Any]:
-        if self._phase < STEPPING and self._stale and self._refresh():
-            return [nothing] * len(vrs)
+    def _get(self, kind: Scalar, vrs: list[int]) -> list[Any]:
         places = self._places("get", kind, vrs)
         if places is None:
             wrong = self._others(kind, vrs, READABLE)
-            if wrong:  # no value is answered: hosts would go on with it
+            if wrong:
                 self._raise(refusals.UNREADABLE.format(names=wrong, kind=kind))
             places = self._note("get", kind, vrs)
+        if self._phase < STEPPING:
+            self._compute_early(self._others(kind, vrs, AT_START))
         return self._stores[kind][places].tolist()
+
+    def _compute_early(self, outputs: str) -> None:
+        """See that `outputs` (names) have values before initialisation is complete."""
+        if outputs and self._phase == NEW:
+            self._raise(refusals.READ_EARLY.format(names=outputs))
+        if outputs and self._stale:
+            problem = self._refresh()
+            if problem:
+                self._raise(problem)
 
     def _places(self, access: str, kind: Scalar, vrs: list[int]) -> np.ndarray | None:
         """Where a vector of value references that was checked before lies in the memory.
@@ -189,21 +227,26 @@ class ModelSlave(Fmi2Slave):
         own = self._identity
         head = len(own) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(own):
-            self._fail(refusals.FOREIGN_STATE)
-            return
+            self._raise(refusals.FOREIGN_STATE)
         self._phase, failed, self._start_time, self._end = _LIFE.unpack_from(state, len(own))
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
         self._failed = self._failed or refusals.FAILED_STATE if failed else ""
         self._forget()
 
-    @staticmethod
-    def _fmu_state_to_bytes(state: bytes) -> bytes:  # type: ignore[override]
-        return state
+    @classmethod
+    def _fmu_state_to_bytes(cls, state: bytes) -> bytes:  # type: ignore[override]
+        return state + _CHECK.pack(zlib.crc32(state))
 
-    @staticmethod
-    def _fmu_state_from_bytes(state: bytes) -> bytes:  # type: ignore[override]
-        return state
+    @classmethod
+    def _fmu_state_from_bytes(cls, state: bytes) -> bytes:  # type: ignore[override]
+        own, noted = state[: -_CHECK.size], state[-_CHECK.size :]
+        if noted != _CHECK.pack(zlib.crc32(own)) or not own.startswith(guid(cls.model).encode()):
+            for slave in cls._living:  # pythonfmu asks the class and releases one of its instances
+                if type(slave) is cls:
+                    slave._outlive_release()
+            raise RuntimeError(refusals.FOREIGN_STATE)
+        return own
 
     # -- failure -------------------------------------------------------------------------------------
 
@@ -218,21 +261,32 @@ class ModelSlave(Fmi2Slave):
         self._stale = False
         return ""
 
-    def _fail(self, message: str) -> bool:
+    def _fail(self, message: str, status: Fmi2Status = Fmi2Status.error) -> None:
+        """Log the message and keep it: a failed instance does not go on."""
         self._failed = message.strip().splitlines()[-1]
-        self.log(message, Fmi2Status.error)
-        return False
+        self.log(message, status)
 
-    def _raise(self, message: str) -> None:
-        """Fail where only an exception is heard.
-
-        pythonfmu answers an exception by releasing class, instance and log, and releases them again
-        with the instance. One more reference each keeps the second release from freeing freed memory.
-        """
+    def _raise(self, message: str) -> NoReturn:
+        """Fail, and answer the call with an error."""
         self._fail(message)
+        self._outlive_release()
+        raise RuntimeError(message)
+
+    def _stop_again(self) -> NoReturn:
+        """Answer with an error that it failed before."""
+        message = refusals.STOPPED.format(why=self._failed)
+        self.log(message, Fmi2Status.error)
+        self._outlive_release()
+        raise RuntimeError(message)
+
+    def _outlive_release(self) -> None:
+        """Take references for an exception to release.
+
+        pythonfmu answers one by releasing class, instance and log, and releases them again with the
+        instance, which would free freed memory.
+        """
         for kept in (type(self), self, self.log_queue):
             ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
-        raise RuntimeError(message)
 
 
 def _list_once(folder: str) -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
 
 TOLERANCE = 1e-9  # of the body's scales; its motion within a macro step is nearly polynomial
@@ -24,7 +24,7 @@ def finite(m):
     return math.isfinite(np.sum(m.q[: m.n]))
 
 
-@inlined
+@kernel
 def advance(rhs, publish, m, work, time, step, load):
     """One macro step of `step` (s) from `time` (s); returns one of `modelkit.status`.
 

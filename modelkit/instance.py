@@ -12,7 +12,7 @@ import numpy as np
 from touchdown.modelkit import refusals
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.integrators.control import MOST_STEPS
-from touchdown.modelkit.model import Model, ModelError, slots
+from touchdown.modelkit.model import Model, ModelError, StepSizeError, slots
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
 from touchdown.modelkit.variables import Causality, Scalar, as_tuple, from_record, layout
 
@@ -64,14 +64,18 @@ class Instance:
         model.start(self.words)
 
     def step(self, time: float, step: float) -> None:
-        """Advance from `time` by `step` (s). Raises ModelError, naming what stopped it."""
+        """Advance from `time` by `step` (s).
+
+        Raises ModelError, naming what stopped it; StepSizeError where a smaller step may be taken.
+        """
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
             raise ModelError(refusals.NO_STEP.format(time=time, step=step))
         if self._outdated:
             self._settle()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
-            raise ModelError(explanation(self, status, time, step))
+            refused = ModelError if status in (BAD_INPUT, BAD_LOAD) else StepSizeError
+            raise refused(explanation(self, status, time, step))
 
     def save(self) -> bytes:
         """A copy of the state; constants that follow from its parameters are left out."""

@@ -18,6 +18,10 @@ class ModelError(Exception):
     """A model cannot go on; the message names the variable, the value and the remedy."""
 
 
+class StepSizeError(ModelError):
+    """A macro step cannot be resolved; a smaller one from the state before may be."""
+
+
 def same_name(name: str) -> str | None:
     """Variables are exposed by the names they are declared with."""
     return name

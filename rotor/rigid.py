@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass
 
 from touchdown.modelkit import body
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, memory_layout
 from touchdown.modelkit.ports import Energy, SeatLoad, SeatState
 from touchdown.modelkit.variables import group, real
@@ -87,7 +87,7 @@ def rhs(t, q, dq, m):
     dq[LOSS] = braking * q[SPIN]
 
 
-@inlined
+@kernel
 def _load_at(load, since_middle):
     """(N, N, N m) of a load, `since_middle` (s) after the middle of the macro step."""
     return (

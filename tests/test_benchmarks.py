@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import pytest
 from places import ROOT
+
+from touchdown.master.scene.file import load_scene
 
 BENCHMARKS = ROOT / "benchmarks"
 NEEDS_MORE = {"exudyn_drop"}  # installed by hand
@@ -69,3 +72,42 @@ def test_the_errors_of_inner_steps_are_tabled() -> None:
     assert float(ball[3]) == pytest.approx(coarse, rel=0.06)
     again = inner_steps.judge((found.case, found.references), plan)
     assert again.stepped == found.stepped
+
+
+def test_growth_has_an_exponent() -> None:
+    from speeds.growth import Grown
+    from speeds.measured import spread
+
+    found = Grown(
+        "balls", "s", (2.0, 4.0, 8.0), tuple(spread([k * k, k * k, 9.0 * k * k]) for k in (2, 4, 8))
+    )
+    assert found.power == pytest.approx(2.0)
+    assert found.costs[0].text == "4 (4-36)"
+
+
+@pytest.mark.parametrize("count", [1, 3, 8])
+def test_a_shaft_falls_onto_any_number_of_bearings(count: int, tmp_path: Path) -> None:
+    from speeds import growth
+
+    scene = growth.seats(tmp_path, count).set({"run.duration": 4e-4})
+    assert [name for name, part in scene.components.items() if part.fmu == "housing"] == [
+        f"housing_{k}" for k in {1: [0], 3: [0, 4, 7], 8: range(8)}[count]
+    ]
+    assert growth.per_second(scene) > 0.0
+
+
+def test_scenes_are_measured_and_drawn(tmp_path: Path) -> None:
+    """One scene over 1 ms: each way has its time, the macro step its error."""
+    from speeds import growth, picture, scenes
+    from speeds.measured import spread
+
+    found = scenes.cost(load_scene("disk-caged-simplified"), 1e-3, 1, native=False)
+    assert list(found.ways) == ["kernels alone", "in process", "FMUs in Python"]
+    assert 0.0 < found.ways["kernels alone"].median < found.ways["FMUs in Python"].median
+    assert 0.0 < found.error.peak < 5e-3
+    head, row = list(scenes.block([found], native=False).lines())[2:]
+    assert head.startswith("scene")
+    assert row.startswith("disk-caged-simplified")
+    grown = growth.Grown("balls", "s", (1.0, 2.0), (spread([1.0]), spread([2.0])))
+    picture.draw([found], [grown], tmp_path / "speed.png")
+    assert (tmp_path / "speed.png").stat().st_size > 10_000

@@ -42,10 +42,10 @@ def checkout(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def packed(project: Path, target: str, folder: Path) -> Path:
+def packed(project: Path, target: str, folder: Path, **variables: str) -> Path:
     """What hatchling makes of a project."""
     command = [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(folder)]
-    subprocess.run(command, cwd=project, check=True, capture_output=True)
+    subprocess.run(command, cwd=project, check=True, capture_output=True, env={**os.environ, **variables})
     (made,) = folder.iterdir()
     return made
 
@@ -115,6 +115,22 @@ def test_a_wheel_has_every_file_of_the_packages(wheels: Mapping[str, Path], chec
 
 def test_the_source_archive_makes_the_same_wheel(wheels: Mapping[str, Path]) -> None:
     assert entries(wheels["sdist"]) == entries(wheels["wheel"])
+
+
+def test_a_wheel_with_machine_code_is_for_a_platform(
+    wheels: Mapping[str, Path], checkout: Path, tmp_path: Path
+) -> None:
+    """And the same as the plain one but for that."""
+    (tmp_path / "code" / "hash").mkdir(parents=True)
+    (tmp_path / "code" / "hash" / "kernel.nbc").write_bytes(b"x")
+    told = {"TOUCHDOWN_SHIPPED": str(tmp_path / "code"), "TOUCHDOWN_WHEEL_TAG": "cp311-cp311-any"}
+    wheel = packed(checkout, "wheel", tmp_path / "wheel", **told)
+    assert wheel.stem.endswith("-cp311-cp311-any")
+    found, plain = entries(wheel), entries(wheels["wheel"])
+    assert found.pop("touchdown/shipped/hash/kernel.nbc") == b"x"
+    changed = {name.rpartition("/")[2] for name in found if found[name] != plain[name]}
+    assert found.keys() == plain.keys()
+    assert changed == {"WHEEL", "RECORD"}
 
 
 def test_the_command_is_installed(wheels: Mapping[str, Path]) -> None:
@@ -194,8 +210,8 @@ def test_a_checkout_without_links_runs(installed: Mapping[str, Path], mine: Path
 @pytest.fixture
 def hook(tmp_path: Path) -> Any:
     """What makes the links, at work on an empty checkout."""
-    path = ROOT / ".ci" / "checkout_links.py"
-    spec = importlib.util.spec_from_file_location("checkout_links", path)
+    path = ROOT / ".ci" / "wheel_hook.py"
+    spec = importlib.util.spec_from_file_location("wheel_hook", path)
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -203,7 +219,7 @@ def hook(tmp_path: Path) -> Any:
     assert module.PACKAGES == PACKAGES
     for name in ("src/touchdown", *PACKAGES):
         (tmp_path / name).mkdir(parents=True)
-    return module.CheckoutLinks(str(tmp_path), {}, None, None, "", "wheel")
+    return module.WheelHook(str(tmp_path), {}, None, None, "", "wheel")
 
 
 def links(folder: Path) -> dict[str, Path]:

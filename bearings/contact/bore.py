@@ -5,7 +5,7 @@ from __future__ import annotations
 from touchdown.bearings.contact import friction, proportion
 from touchdown.bearings.contact.laws import damp
 from touchdown.bearings.contact.proportion import out_of_proportion
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 
 _LENGTHS = (
     proportion.problem("clearance", "journal_radius"),
@@ -14,7 +14,7 @@ _LENGTHS = (
 PROBLEMS = (*_LENGTHS, *friction.problems("friction"))
 
 
-@inlined
+@kernel
 def problem(p, usual, told):
     """What is wrong with the journal and its bore: its number in `PROBLEMS`, or 0.
 
@@ -31,7 +31,7 @@ def problem(p, usual, told):
     return found
 
 
-@inlined
+@kernel
 def settle(d, p, lighter):
     """Set the laws d.contact and d.friction by those in p; lighter: mass of the lighter body (kg)."""
     d.contact = p.contact

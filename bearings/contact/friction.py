@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import integer, real
 
 COULOMB = 0
@@ -214,7 +214,7 @@ def makkar_amplitude(law):
     return g1 if g1 <= MOST_STATIC * law.static else math.nan
 
 
-@inlined
+@kernel
 def settle(law):
     """Fill in g1 where it is left to follow from the static coefficient; law: a record, changed."""
     if law.kind == MAKKAR and law.g1 == 0.0:

@@ -18,6 +18,8 @@ from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import PARTED
 from touchdown.modelkit.variables import group, real
 
+FAR = 1.0  # s; a contact that is farther off is of no account to a macro step
+
 
 class Touch(NamedTuple):
     """Contact of journal and ring: force on the journal, moments on both, and what to report."""
@@ -44,6 +46,27 @@ def place_in_bore(journal, ring, journal_radius, clearance):
     inverse = 1.0 / distance if distance > 0.0 else 0.0
     reach = distance + journal_radius
     return Place(ex * inverse, ey * inverse, distance - clearance, journal_radius, reach, 0.0)
+
+
+@kernel
+def time_to_touch(journal, ring, clearance):
+    """Time (s) until a journal touches the bore of `ring`, wider by `clearance` (m); both go straight on.
+
+    journal, ring: Motion (m, m/s). 0 where they touch, `FAR` where that is farther off or never: the
+    positive root of |d + v t| = clearance, d and v the journal's place and velocity in the bore.
+    """
+    dx, dy = journal.x - ring.x, journal.y - ring.y
+    vx, vy = journal.vx - ring.vx, journal.vy - ring.vy
+    gap2 = clearance * clearance - dx * dx - dy * dy
+    outwards, speed2 = dx * vx + dy * vy, vx * vx + vy * vy
+    root = math.sqrt(max(outwards * outwards + speed2 * gap2, 0.0))
+    if gap2 <= 0.0:
+        time = 0.0
+    elif outwards + root > gap2 / FAR:
+        time = gap2 / (outwards + root)  # the root without a difference of like numbers
+    else:
+        time = FAR
+    return time
 
 
 @kernel
@@ -87,6 +110,12 @@ class ContactReport:
         "rad/s",
         "at which the journal swings on its contact, indented as expected",
         constant=True,
+    )
+    reach: float = real(
+        0.0,
+        "s",
+        "time until journal and ring touch if both go straight on; 0: they do; at most 1 s",
+        local=True,
     )
 
 

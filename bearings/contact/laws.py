@@ -16,7 +16,7 @@ import math
 from dataclasses import dataclass
 
 from touchdown.bearings.contact.stiffness import damping_from_ratio
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import real
 
 
@@ -54,7 +54,7 @@ def damp(law, lighter):
     law.damping_ratio = 0.0
 
 
-@inlined
+@kernel
 def lay_abreast(law, rows):
     """Make `law`, a record, that of `rows` like contacts side by side, that share the load."""
     law.stiffness *= rows

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import integer, real
 
 SAMPLES = 20_000  # around a race, for the check of its curvature
@@ -35,7 +35,7 @@ class RaceProfile:
     )
 
 
-@inlined
+@kernel
 def active(profile):
     """Whether contacts with a race of this `profile`, a record, have to be searched for."""
     return profile.amplitude != 0.0 or profile.wear != 0.0 or profile.search == 1
@@ -61,14 +61,14 @@ def radius_and_slopes(s, radius, profile, dent):
     return r, d1, d2
 
 
-@inlined
+@kernel
 def curvature(s, radius, profile, dent):
     """Curvature (1/m) at the angle s (rad), positive where it bends like a circle; rest as above."""
     r, d1, d2 = radius_and_slopes(s, radius, profile, dent)
     return (r * r + 2.0 * d1 * d1 - r * d2) / (r * r + d1 * d1) ** 1.5
 
 
-@inlined
+@kernel
 def sharpest(radius, profile, dent):
     """Largest curvature (1/m) of a race towards its ball, around it and again across its dent.
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.numerics import elliptic
 
 EXACT, PRINTED = range(2)  # how the ellipse is found
@@ -33,7 +33,7 @@ class Ellipse(NamedTuple):
     second_kind: float
 
 
-@inlined
+@kernel
 def exact_ellipse(ratio):
     """`Ellipse` by Hertz's theory, for curvatures of `ratio` (at least 1).
 
@@ -63,13 +63,13 @@ def exact_ellipse(ratio):
     return Ellipse(kappa, first, second)
 
 
-@inlined
+@kernel
 def printed_ellipse(ratio):
     """`Ellipse` by the fits that the source prints (2.46), for curvatures of `ratio`."""
     return Ellipse(1.0339 * ratio**0.636, 1.5277 + 0.6023 * math.log(ratio), 1.0003 + 0.5968 / ratio)
 
 
-@inlined
+@kernel
 def effective_modulus(modulus, poisson):
     """E_tot of (2.46) for two bodies of the same material (Pa)."""
     return modulus / (1.0 - poisson * poisson)
@@ -95,13 +95,13 @@ def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, pois
     return math.pi / 3.0 * root * ellipse.ellipticity * effective_modulus(modulus, poisson)
 
 
-@inlined
+@kernel
 def in_series(inner, outer):
     """One stiffness for ball-inner and ball-outer contacts in series (2.5), N/m^1.5."""
     return (inner ** (-1.0 / 1.5) + outer ** (-1.0 / 1.5)) ** -1.5
 
 
-@inlined
+@kernel
 def damping_from_ratio(stiffness, mass, ratio, indentation):
     """Damping coefficient from a damping ratio (2.47): 2 sqrt(k m) ratio over the peak indentation.
 

@@ -13,7 +13,7 @@ from touchdown.bearings.contact.peaks import PeakMemory
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness, geometry
 from touchdown.bearings.rolling.balls.rest import Springs, resting_place
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import Energy, Interface, MountReaction, SeatReaction
 from touchdown.modelkit.variables import group, real
 
@@ -43,7 +43,7 @@ def problems(*frictions: str) -> tuple[str, ...]:
     return (*geometry.PROBLEMS, *bore.PROBLEMS, *others)
 
 
-@inlined
+@kernel
 def problem(p, crowded, told):
     """What is wrong between the parameters p that all rolling bearings share: its number, or 0.
 
@@ -56,7 +56,7 @@ def problem(p, crowded, told):
     return found
 
 
-@inlined
+@kernel
 def law_problem(found, law, usual, before, told):
     """`found`, if that is a problem, else that of a friction law, a record, behind `before` others."""
     if found == 0:
@@ -104,7 +104,7 @@ def state_constants(m):
     o.ball_outer, o.ball_inner, o.rings = counted.ball_outer, counted.ball_inner, counted.rings
 
 
-@inlined
+@kernel
 def settle(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
     p, d, b = m.p, m.d, m.p.balls

@@ -13,7 +13,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.modelkit.integrators import verlet
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import array, group, real
 
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
@@ -73,7 +73,7 @@ def book(dq, load, m):
     dq[ring.LOSS] -= b.jx * jx + b.jy * jy + b.jm * jw + b.hx * hx + b.hy * hy
 
 
-@inlined
+@kernel
 def leapfrog(rhs, drift, fastest, observe, m, work, span):
     """Advance m.q by `span` (s) in steps of at most m.d.micro_step and m.d.resolution.
 

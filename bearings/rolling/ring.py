@@ -10,13 +10,20 @@ from dataclasses import dataclass
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import curve
-from touchdown.bearings.contact.journal import note, place_in_bore, touch, touch_of, watch_contact
+from touchdown.bearings.contact.journal import (
+    note,
+    place_in_bore,
+    time_to_touch,
+    touch,
+    touch_of,
+    watch_contact,
+)
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
 from touchdown.bearings.rolling.pitch_circle import Gap
 from touchdown.bearings.rolling.rubbing import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
 
@@ -161,7 +168,7 @@ def gap(q):
     )
 
 
-@inlined
+@kernel
 def translate(q, dq, m, journal, fx, fy):
     """Derivatives dq of the ring but for its spin, under the journal's `Touch` and the balls' force (N)."""
     p = m.p
@@ -172,7 +179,7 @@ def translate(q, dq, m, journal, fx, fy):
     dq[RANGLE] = q[RW]
 
 
-@inlined
+@kernel
 def accelerate(q, dq, m, journal, balls):
     """Derivatives dq of the ring under the journal's `Touch` and the balls' `Total` (N, N m)."""
     translate(q, dq, m, journal, balls.fx, balls.fy)
@@ -232,9 +239,10 @@ def report(q, m, race_radius):
     c = m.o.contact
     c.force, c.indentation = m.s.ring.normal, m.s.ring.indentation
     c.sliding = o.journal_speed - o.surface_speed
+    c.reach = time_to_touch(seat.journal_motion(q), ring_motion(q), p.clearance)
 
 
-@inlined
+@kernel
 def set_weights(weight):
     """Set the error weights of the ring's components in `weight` (n,); the heat lost is a quadrature."""
     weight[RX] = weight[RY] = 1.0 / seat.POSITION_SCALE

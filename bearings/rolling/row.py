@@ -19,7 +19,7 @@ from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
 from touchdown.bearings.rolling.sides.chain import after, link, part_ways, press_of, share
 from touchdown.bearings.rolling.sides.contact import heat_of
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.numerics.angles import cosine_and_sine
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
@@ -93,7 +93,7 @@ def drift(trial, q, mid, h, m):
         trial[i] = q[i] + h * mid[i + n]
 
 
-@inlined
+@kernel
 def raceway(m):
     """The `Raceway` of all balls."""
     d, law = m.d, m.d.race
@@ -103,7 +103,7 @@ def raceway(m):
     )
 
 
-@inlined
+@kernel
 def _loads_of(s, n):
     """`Loads` (n,) as views of `s` (RaceBalls)."""
     ways = s.lever[:n], s.radius[:n], s.along[:n]

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.modelkit.kernel import inlined, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import array
 
 
@@ -51,7 +51,7 @@ class Rubbed(NamedTuple):
     gain: object  # N s/m
 
 
-@inlined
+@kernel
 def rubbed_of(race, n):
     """`Rubbed` (n,) as views of `race` (RubbedRace)."""
     r = race
@@ -112,7 +112,7 @@ class Around(NamedTuple):
     bore: Bore
 
 
-@inlined
+@kernel
 def over_ring(nx, ny, lever, moved):
     """By how much (m/s) the ring's surface runs ahead, along t, at a contact of `lever` (m)."""
     return moved.y * nx - moved.x * ny + lever * moved.spin
@@ -181,7 +181,7 @@ def _turn_ring(h, count, around, at, inner):
     return _solved(h, push.mass + xx, xy, push.mass + yy, xw, yw, push.inertia + ww, fx, fy, moment)
 
 
-@inlined
+@kernel
 def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
     """h times the solution of the ring's three symmetric equations, as `Moved`."""
     xy_xx, xw_xx = xy / xx, xw / xx

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import memory_layout
 from touchdown.modelkit.ports import MODES, FlexibleSeatMotion, MountMotion
 from touchdown.modelkit.variables import Nothing, group, integer, real
@@ -68,7 +68,7 @@ def bearing_memory(
     return memory_layout(parameters, inputs, outputs, size + ROOM, derived, hidden)
 
 
-@inlined
+@kernel
 def set_weights(weight):
     """Set the error weights of the copies, the first `INSIDE` of a bearing's `weight` (n,)."""
     weight[JX] = weight[JY] = weight[HX] = weight[HY] = 1.0 / POSITION_SCALE

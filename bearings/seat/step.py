@@ -27,7 +27,7 @@ from touchdown.bearings.seat.load import (
     remember,
 )
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import MODEL
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
 
@@ -59,7 +59,7 @@ def _weigh_impulse(m):
         m.weight[JPX] = m.weight[JPY] = 1.0 / IMPULSE_SCALE
 
 
-@inlined
+@kernel
 def begin(react, report, m):
     """First outputs, from state and inputs; the first restart compares with the load now."""
     take_modes(m)
@@ -69,7 +69,7 @@ def begin(react, report, m):
     report(m.q, m)
 
 
-@inlined
+@kernel
 def instant(react, t, q, dq, m):
     """Derivative dq of what is inside and the load now, for a solver that holds all bodies itself.
 
@@ -80,7 +80,7 @@ def instant(react, t, q, dq, m):
     hand_now(m, load)
 
 
-@inlined
+@kernel
 def integrate(rhs, observe, m, work, span):
     """Advance m.q by `span` (s) in adaptive steps of the error interface.tolerance.
 
@@ -96,7 +96,7 @@ def any_time(m, since):
     """A bearing whose law does not depend on time has nothing to get ready; since: s."""
 
 
-@inlined
+@kernel
 def advance(react, integrate, report, words, m, work, time, step):
     """One macro step of `step` (s) from `time` (s); returns a status.
 
@@ -105,7 +105,7 @@ def advance(react, integrate, report, words, m, work, time, step):
     return advance_timed(any_time, react, integrate, report, words, m, work, time, step)
 
 
-@inlined
+@kernel
 def advance_timed(ready, react, integrate, report, words, m, work, time, step):
     """`advance` of a bearing that looks at the clock.
 

@@ -70,7 +70,7 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
     made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in places(native.targets).items():
         entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
-    return write(entries, folder, recipe.name, compressed=True)
+    return write(entries, folder, recipe.name)
 
 
 def prepare(recipes: Sequence[Recipe]) -> None:

@@ -5,7 +5,7 @@ wrappers that speak Python. So this module runs as a program of its own, in whic
 processor is a plain one, and each function's code is put aside before numba makes machine code of it, which
 leaves intrinsics of the machine behind. Entries take plain pointers. They have numba's own calling
 convention, which is no public one (`numba.core.callconv.CPUCallConv`: status = f(&result, &exception,
-arguments...)): hence `NUMBA`, the versions it was tried with.
+arguments...)): hence `tried.NUMBA`, the versions it was tried with.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import platform
 import subprocess
 import sys
 import tempfile
@@ -27,13 +26,14 @@ from touchdown.fmus.native.targets import NativeError
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.kernel.cache_folder import own_folder, put
+from touchdown.modelkit.kernel.linked import KernelDispatcher
 from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
+from touchdown.modelkit.kernel.shipped import plain_processor
+from touchdown.modelkit.kernel.tried import NUMBA
 from touchdown.modelkit.model import Model
 
-NUMBA = ((0, 68), (0, 68))  # the first and the last version that it was tried with
 ENTRIES = ("settle", "start", "advance")
 PREFIX = "kernel_"  # of the entries' names
-PROCESSOR = {"x86_64": "x86-64-v3", "AMD64": "x86-64-v3"}  # that loops are shaped for, by machine
 
 
 def bitcode(model: Model) -> bytes:
@@ -45,7 +45,7 @@ def bitcode(model: Model) -> bytes:
     order = _order(model)
     text = json.dumps(order, sort_keys=True)
     own = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
-    made = (text, own, version("numba"), version("llvmlite"), _processor())
+    made = (text, own, version("numba"), version("llvmlite"), plain_processor())
     key = hashlib.sha256(" ".join(made).encode()).hexdigest()[:24]
     kept = own_folder("machine-code", source_hash()) / f"native-{key}.bc"
     code = unsealed(kept)
@@ -73,11 +73,6 @@ def _order(model: Model) -> dict[str, Any]:
 def _state_size(model: Model) -> int:
     fields: Any = model.memory.fields
     return fields["q"][0].shape[0]
-
-
-def _processor() -> str:
-    """That loops are shaped for, as LLVM calls it."""
-    return PROCESSOR.get(platform.machine(), "generic")
 
 
 def _require_numba() -> None:
@@ -110,7 +105,7 @@ def run_apart(*arguments: str) -> subprocess.CompletedProcess[str]:
     """
     environment = {
         **{name: value for name, value in os.environ.items() if not name.startswith("NUMBA_")},
-        "NUMBA_CPU_NAME": _processor(),
+        "NUMBA_CPU_NAME": plain_processor(),
         "NUMBA_CPU_FEATURES": "",
         "PYTHONHASHSEED": "0",  # equal sources, equal code
         "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
@@ -128,6 +123,7 @@ def compile_entries(order: Mapping[str, Any]) -> bytes:
     For a process that runs no kernels: numba's code generation is changed in all of it.
     """
     _put_code_aside()
+    _forget_addresses()
     KernelCache.active = False
     whole = None
     for name, place in order["kernels"].items():
@@ -166,6 +162,25 @@ def _put_code_aside() -> None:
         finalize(library)
 
     cast(Any, CPUCodeLibrary)._finalize_final_module = keeping
+
+
+def _forget_addresses() -> None:
+    """Have no address of this process in the code: a kernel that is an argument is known by its type alone.
+
+    numba names that type after the place of the function in memory, and hands over the place, unused.
+    """
+    from llvmlite.ir import Constant
+    from numba.core import types
+    from numba.core.cpu import CPUContext
+
+    def named(kernel: KernelDispatcher) -> str:
+        return f"{kernel.py_func.__module__}.{kernel.py_func.__qualname__}"
+
+    def nowhere(context: Any, builder: Any, address: int, info: str) -> Any:
+        return Constant(context.get_value_type(types.voidptr), None)
+
+    cast(Any, KernelDispatcher).__repr__ = named
+    cast(Any, CPUContext).add_dynamic_addr = nowhere
 
 
 def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:

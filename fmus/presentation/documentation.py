@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from inspect import cleandoc
+from itertools import groupby
 from pathlib import Path
 
 from touchdown.fmus.description import causality
@@ -233,20 +234,26 @@ def _tables(exposed: Sequence[Slot]) -> Iterator[str]:
 
 
 def _rows(chosen: Iterable[Slot]) -> Iterator[str]:
-    """A row for each variable; members of a group share one."""
-    members: dict[tuple[str, ...], list[Slot]] = {}
+    """A row for each variable; neighbours in a group that are alike share one."""
+    groups: dict[str, list[Slot]] = {}
     for slot in chosen:
-        spec = slot.variable.spec
-        key = (re.sub(r"\[\d+\]", "[k]", slot.variable.name), spec.unit, _bounds(slot), spec.meaning)
-        members.setdefault(key, []).append(slot)
-    for (_, unit, bounds, meaning), group in members.items():
-        first, last = group[0].variable, group[-1].variable
-        name = first.name if len(group) == 1 else f"{first.name}<br>… {last.name}"
-        start = (
-            f"{first.default:g}" if causality(group[0])[0] in (Causality.PARAMETER, Causality.INPUT) else ""
-        )
-        cells = (name, start, _plain(unit), bounds, _plain(meaning))
-        yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
+        groups.setdefault(re.sub(r"\[\d+\]", "[k]", slot.variable.name), []).append(slot)
+    for group in groups.values():
+        for told, alike in groupby(group, _told):
+            first, *others = (slot.variable.name for slot in alike)
+            name = f"{first}<br>… {others[-1]}" if others else first
+            yield "<tr>" + "".join(f"<td>{cell}</td>" for cell in (name, *told)) + "</tr>"
+
+
+def _told(slot: Slot) -> tuple[str, ...]:
+    """What a row says of a variable beside its name."""
+    spec = slot.variable.spec
+    return _start(slot), _plain(spec.unit), _bounds(slot), _plain(spec.meaning)
+
+
+def _start(slot: Slot) -> str:
+    settable = causality(slot)[0] in (Causality.PARAMETER, Causality.INPUT)
+    return f"{slot.variable.default:g}" if settable else ""
 
 
 def _bounds(slot: Slot) -> str:

@@ -6,6 +6,7 @@ puts them there. What is damaged there is put there anew. Where that cannot be t
 """
 
 import contextlib
+import ctypes
 import filecmp
 import hashlib
 import importlib.util
@@ -15,8 +16,18 @@ import sys
 import tempfile
 from pathlib import Path
 
-HELD: list = []  # globals of FMU scripts, see there
 DIGESTS = "bytecode.txt"  # digest and path of all bytecode
+
+
+def keep(script_globals: dict) -> None:
+    """Take one reference to the globals of an FMU's script, in nobody's name.
+
+    pythonfmu's library runs the script anew for every instance, and each time drops a reference to its
+    globals that it only borrowed. This is the one it drops. Nothing in Python may hold it in its place, a
+    list say: the count would be one too small beside those who really hold them, and the end of the
+    interpreter, or a collection of garbage, would free them under the module that still uses them.
+    """
+    ctypes.pythonapi.Py_IncRef(ctypes.py_object(script_globals))
 
 
 def _cache_folder(here: Path):

@@ -13,8 +13,8 @@ from pathlib import Path
 from touchdown.modelkit.kernel import PHYSICS_PACKAGES, source_hash
 
 ROOT = Path(__file__).resolve().parents[2]
-SLAVE_MODULES = ("__init__.py", "slave.py", "description.py", "refusals.py", "version.py")
-_IMPORT = re.compile(r"^(from|import) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
+SLAVE_MODULES = ("__init__.py", "slave.py", "starts.py", "description.py", "refusals.py", "version.py")
+_IMPORT = re.compile(r"^([ \t]*(?:from|import)) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 
 
 def content_hash() -> str:
@@ -63,8 +63,8 @@ def write_script(text: str, module: str, folder: Path, interpreter: str = "None"
     """
     text = f"__import__({host_module()!r}).prepare({interpreter})\n\n{rewritten(text)}"
     text += (
-        "\n\n# pythonfmu runs this file anew and drops one reference to these globals for every instance\n"
-        f"__import__({package_name()!r}).HELD.append(globals())\n"
+        "\n\n# pythonfmu runs this file anew for every instance, and drops a reference to its globals\n"
+        f"__import__({package_name()!r}).keep(globals())\n"
     )
     path = folder / f"{module}.py"
     path.write_text(text, encoding="utf-8")

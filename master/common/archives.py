@@ -16,6 +16,7 @@ from touchdown.modelkit.kernel.cache_folder import is_own
 LARGEST = 512 * 1024**2  # bytes, unpacked; VARIABLE says otherwise
 VARIABLE = "TOUCHDOWN_LARGEST_FMU"
 MOST = 20_000  # entries
+UNPORTABLE = {"\\": "backslash", ":": "colon"}  # folders, drives and streams for some, letters for others
 _SIZE = re.compile(r"\s*([0-9.]+(?:e[0-9]+)?)\s*(|k|M|G|T)(i?)B?\s*")
 _PIECE = 2**20  # bytes read at a time
 
@@ -36,14 +37,20 @@ def largest() -> int:
 def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
     """Raise TouchdownError where unpacking `archive`, read from `path`, would do harm.
 
-    Entries that lead out of the folder, links, and more than a disk should take. An entry never unpacks
+    Entries that lead out of the folder or not to the same place everywhere, links, and more than a disk
+    should take. An entry never unpacks
     to more than the size it states, so the sum of these is a bound.
     """
     entries = archive.infolist()
     for entry in entries:
         name = entry.filename
-        if name.startswith("/") or ".." in PurePosixPath(name).parts or ":" in name or "\\" in name:
+        if name.startswith("/") or ".." in PurePosixPath(name).parts:
             raise TouchdownError(f"{path} holds an entry {name!r} that leads out of its folder; refused")
+        if unportable := next((mark for mark in UNPORTABLE if mark in name), None):
+            raise TouchdownError(
+                f"{path} holds an entry {name!r} with a {UNPORTABLE[unportable]}, which is another file on "
+                "each system; refused (pack it anew, with / between folders)"
+            )
         if stat.S_ISLNK(entry.external_attr >> 16):
             raise TouchdownError(f"{path} holds a link, {name!r}; refused")
     refuse_large(sum(entry.file_size for entry in entries), f"{path} would unpack to")

@@ -21,13 +21,15 @@ from touchdown.modelkit.variables import Causality, Variability
 
 
 class Kind(StrEnum):
-    """Types of FMI 2.0's variables."""
+    """Types of FMI 2.0's variables, and what FMI 3.0 has beside them; its sizes of numbers are left out."""
 
     REAL = "Real"
     INTEGER = "Integer"
     BOOLEAN = "Boolean"
     STRING = "String"
     ENUMERATION = "Enumeration"
+    BINARY = "Binary"
+    CLOCK = "Clock"
 
 
 REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
@@ -83,6 +85,7 @@ class Variable:
     maximum: float | None
     start: float | None
     description: str
+    element: int = 0  # of an array of FMI 3.0, counted from 0 in the order of its values
 
     @property
     def settable(self) -> bool:
@@ -205,6 +208,8 @@ class Component(ABC):
         kinds = [self.variable(name).kind for name in names]
         return [int(v) if k is Kind.INTEGER else float(v) for v, k in zip(values, kinds, strict=True)]
 
+    foreign = False  # whether it is an FMU of others'
+    any_step = True  # whether it takes steps of any length
     can_save = True  # whether its state can be saved
 
     @abstractmethod

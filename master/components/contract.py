@@ -43,6 +43,9 @@ REPORTS = (  # groups of what bearings and bodies say of themselves, for figures
 )
 SUPPLIED = "supplied"  # J, energy that a component brings in
 
+MOUNTED = "housing"  # a bearing's port on what it is mounted in
+REACH = "contact.reach"  # s, of a touchdown bearing: time until its journal touches, going straight on
+
 POSITION = ("x", "y")
 GAINS = ("inv_m", "inv_I", "k_over_m", "c_over_m")  # what a bearing carries a body by
 FORCE = ("fx", "fy")

@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from fmpy import calloc, free
@@ -27,13 +27,13 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import ByFunctions, Call, Component, Kind
+from touchdown.master.components.component import ByFunctions, Call, Component, InMemory, Kind
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
 
 OK, WARNING = 0, 1
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
-CALLS = (  # what can be said of where an FMU is
+CALLS = (  # what can be said of where an FMU is, in the order of `fmu3.CALLS`
     "loading its library",
     "fmi2Instantiate",
     "fmi2SetupExperiment",
@@ -104,7 +104,10 @@ class ArchivedFmu(Component):
         self.folder = unpack(path, cache)
         self.description = describe(path, self.folder)
         super().__init__(name, origin or str(path), variables_of(self.description))
-        self.can_save = bool(self.description.coSimulation.canGetAndSetFMUstate)
+        self.foreign = not origin
+        able = self.description.coSimulation
+        self.can_save = bool(able.canGetAndSetFMUstate)
+        self.any_step = bool(able.canHandleVariableCommunicationStepSize)
         self.units = units_of(self.description)
         self.path, self._cache, self._own_origin = path, cache, origin
 
@@ -113,11 +116,14 @@ def untold(_: str) -> None:
     """Nobody asks where the FMU is."""
 
 
-class FmuComponent(ArchivedFmu):
-    """An FMU that is stepped in this process.
+class LoadedFmu(ArchivedFmu):
+    """An FMU that is loaded into this process, of whatever version of FMI.
 
     `origin` names one of the project's own. told(call) hears, before rare calls, which of CALLS it is.
     """
+
+    ENDING: ClassVar[tuple[str, str]]  # names of the functions that terminate an instance, and free it
+    STATES: ClassVar[tuple[str, str, str]]  # and that save, restore and free its states
 
     def __init__(
         self,
@@ -134,29 +140,113 @@ class FmuComponent(ArchivedFmu):
         here = Path.cwd()
         try:
             told("loading its library")
-            self._fmu = FMU2Slave(
-                guid=self.description.guid,
-                modelIdentifier=self.description.coSimulation.modelIdentifier,
-                unzipDirectory=str(self.folder),
-                instanceName=name,
-            )
-            self._callbacks = self._make_callbacks()
-            self._instantiate(_resources(self.folder, self.description))
+            self._fmu = self._load()
         except Exception as error:
             os.chdir(here)  # fmpy leaves the library's folder current where loading fails
             raise TouchdownError(f"cannot load {path} as {name}: {self._reason(str(error))}") from None
         self._open = True
         self._component = self._fmu.component
-        self._bind_functions()
-        self._in: tuple[int, int, int] = (0, 0, 0)
-        self._out: tuple[int, int, int] = (0, 0, 0)
 
-    def second(self) -> FmuComponent:
+    def _load(self) -> Any:
+        """fmpy's wrapper of the library, with an instance."""
+        raise NotImplementedError
+
+    def _wrapped(self, wrapper: type) -> Any:
+        """fmpy's wrapper of the library, which is loaded."""
+        return wrapper(
+            guid=self.description.guid,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            unzipDirectory=str(self.folder),
+            instanceName=self.name,
+        )
+
+    def second(self) -> LoadedFmu:
         if self.description.coSimulation.canBeInstantiatedOnlyOncePerProcess:
             raise TouchdownError("its FMU can be loaded only once in a process")
         second = type(self)(f"{self.name} (witness)", self.path, self._cache, self._own_origin)
         second.rename(self._own)
         return second
+
+    def save(self) -> object:
+        state = ctypes.c_void_p()
+        self._state(0, "saving its state", ctypes.byref(state))
+        return state
+
+    def restore(self, state: object) -> None:
+        self._state(1, "restoring its state", state)
+
+    def release(self, state: object) -> None:
+        assert isinstance(state, ctypes.c_void_p)
+        self._state(2, "freeing a state", ctypes.byref(state))
+
+    def _state(self, which: int, doing: str, state: Any) -> None:
+        name = self.STATES[which]
+        self._guard(doing, name, partial(getattr(self._fmu, name), self._component, state))
+
+    def close(self) -> str:
+        if not self._open:
+            return ""
+        self._open = False
+        problem = ""
+        terminate, free = self.ENDING
+        try:
+            if self._stepping:
+                self._guard("terminating", terminate, self._fmu.terminate)
+        except TouchdownError as error:
+            problem = str(error)
+        self._told(free)
+        getattr(self._fmu, free)(self._component)
+        return problem
+
+    # -- failure -------------------------------------------------------------------------------------
+
+    def _guard(self, doing: str, name: str, call: Callable[[], object]) -> None:
+        self._told(name)
+        try:
+            call()
+        except Exception as error:
+            self._stepping = False
+            raise TouchdownError(
+                f"component {self.name}: {self._reason(str(error))} (while {doing})"
+            ) from None
+
+    def _check(self, status: int, doing: str) -> None:
+        if status > WARNING:
+            self._stepping = False
+            reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
+            raise TouchdownError(f"component {self.name}: {reason} (at {doing})")
+
+    def _reason(self, fallback: str) -> str:
+        """The last thing the FMU said that is meant for people."""
+        spoken = [m for m in self._messages if not m.startswith("Fatal py exception")]
+        lines = (spoken or self._messages or [fallback])[-1].splitlines()
+        return next((line for line in reversed(lines) if line.strip()), fallback)
+
+
+class FmuComponent(LoadedFmu):
+    """An FMU of FMI 2.0 that is stepped in this process."""
+
+    ENDING = ("fmi2Terminate", "fmi2FreeInstance")
+    STATES = ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
+
+    def __init__(
+        self,
+        name: str,
+        path: Path,
+        cache: Path,
+        origin: str = "",
+        told: Callable[[str], object] = untold,
+    ) -> None:
+        super().__init__(name, path, cache, origin, told)
+        self._bind_functions()
+        self._in: tuple[int, int, int] = (0, 0, 0)
+        self._out: tuple[int, int, int] = (0, 0, 0)
+
+    def _load(self) -> Any:
+        self._fmu = self._wrapped(FMU2Slave)
+        self._callbacks = self._make_callbacks()
+        self._instantiate(_resources(self.folder, self.description))
+        return self._fmu
 
     def _instantiate(self, resources: str) -> None:
         self._told("fmi2Instantiate")
@@ -241,7 +331,7 @@ class FmuComponent(ArchivedFmu):
         if status > WARNING:
             self._check(status, Call.GET)
 
-    def by_address(self) -> ByFunctions:
+    def by_address(self) -> InMemory | ByFunctions | None:
         """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here."""
         taken, given = self._held
         return ByFunctions(
@@ -297,57 +387,3 @@ class FmuComponent(ArchivedFmu):
         status = self._do_step(self._component, time, step, 1)
         if status > WARNING:
             self._check(status, _step_from(time))
-
-    def save(self) -> object:
-        state = ctypes.c_void_p()
-        save = partial(self._fmu.fmi2GetFMUstate, self._component, ctypes.byref(state))
-        self._guard("saving its state", "fmi2GetFMUstate", save)
-        return state
-
-    def restore(self, state: object) -> None:
-        assert isinstance(state, ctypes.c_void_p)
-        restore = partial(self._fmu.fmi2SetFMUstate, self._component, state)
-        self._guard("restoring its state", "fmi2SetFMUstate", restore)
-
-    def release(self, state: object) -> None:
-        assert isinstance(state, ctypes.c_void_p)
-        release = partial(self._fmu.fmi2FreeFMUstate, self._component, ctypes.byref(state))
-        self._guard("freeing a state", "fmi2FreeFMUstate", release)
-
-    def close(self) -> str:
-        if not self._open:
-            return ""
-        self._open = False
-        problem = ""
-        try:
-            if self._stepping:
-                self._guard("terminating", "fmi2Terminate", self._fmu.terminate)
-        except TouchdownError as error:
-            problem = str(error)
-        self._told("fmi2FreeInstance")
-        self._fmu.fmi2FreeInstance(self._component)
-        return problem
-
-    # -- failure -------------------------------------------------------------------------------------
-
-    def _guard(self, doing: str, name: str, call: Callable[[], object]) -> None:
-        self._told(name)
-        try:
-            call()
-        except Exception as error:
-            self._stepping = False
-            raise TouchdownError(
-                f"component {self.name}: {self._reason(str(error))} (while {doing})"
-            ) from None
-
-    def _check(self, status: int, doing: str) -> None:
-        if status > WARNING:
-            self._stepping = False
-            reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
-            raise TouchdownError(f"component {self.name}: {reason} (at {doing})")
-
-    def _reason(self, fallback: str) -> str:
-        """The last thing the FMU said that is meant for people."""
-        spoken = [m for m in self._messages if not m.startswith("Fatal py exception")]
-        lines = (spoken or self._messages or [fallback])[-1].splitlines()
-        return next((line for line in reversed(lines) if line.strip()), fallback)

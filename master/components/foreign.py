@@ -11,11 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import ByFunctions, Call
-from touchdown.master.components.fmu import FmuComponent, untold
+from touchdown.master.components.component import ByFunctions, Call, InMemory
+from touchdown.master.components.fmu import FmuComponent, LoadedFmu, untold
+from touchdown.master.components.fmu3 import Fmu3Component
+from touchdown.master.components.interface import fmi_version
 
 
-class ForeignFmu(FmuComponent):
+class _Foreign(LoadedFmu):
     """An FMU of others' that is stepped in this process.
 
     The working directory is put back after every call but those of a step, and at the end. Raises
@@ -30,8 +32,8 @@ class ForeignFmu(FmuComponent):
         origin: str = "",
         told: Callable[[str], object] = untold,
     ) -> None:
-        self._given: Sequence[str] = ()
-        self._reached = 0.0  # s
+        self._exchanged: Sequence[str] = ()
+        self._stepped_to = 0.0  # s
         self._home = os.open(".", os.O_RDONLY)  # a path would lead nowhere where the folder was removed
         try:
             with self._at_home():
@@ -46,7 +48,7 @@ class ForeignFmu(FmuComponent):
 
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
         super().bind(inputs, outputs, names)
-        self._given = names
+        self._exchanged = names
 
     def enter(self, start_time: float) -> None:
         with self._at_home():
@@ -58,7 +60,7 @@ class ForeignFmu(FmuComponent):
 
     def step(self, time: float, step: float) -> None:
         super().step(time, step)
-        self._reached = time + step
+        self._stepped_to = time + step
 
     def pull(self) -> None:
         super().pull()
@@ -66,11 +68,12 @@ class ForeignFmu(FmuComponent):
         if self._stepping and not np.isfinite(self.outputs.sum()):
             self._refuse_what_is_no_number()
 
-    def by_address(self) -> ByFunctions:
-        return replace(super().by_address(), checked=True)
+    def by_address(self) -> InMemory | ByFunctions | None:
+        found = super().by_address()
+        return replace(found, checked=True) if isinstance(found, ByFunctions) else found
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
-        self._reached = time + step
+        self._stepped_to = time + step
         super().refuse(call, status, time, step)
         self._refuse_what_is_no_number()  # the FMU itself had nothing against going on
 
@@ -86,13 +89,13 @@ class ForeignFmu(FmuComponent):
     def _refuse_what_is_no_number(self) -> None:
         wrong = [
             f"{name} = {value}"
-            for name, value in zip(self._given, self.outputs, strict=True)
+            for name, value in zip(self._exchanged, self.outputs, strict=True)
             if not np.isfinite(value)
         ]
         if wrong:
             self._stepping = False
             raise TouchdownError(
-                f"component {self.name}: its FMU gives {', '.join(wrong)} at t = {self._reached:.9g} s"
+                f"component {self.name}: its FMU gives {', '.join(wrong)} at t = {self._stepped_to:.9g} s"
             )
 
     @contextmanager
@@ -106,3 +109,19 @@ class ForeignFmu(FmuComponent):
     def _leave_home(self) -> None:
         with suppress(OSError):
             os.close(self._home)
+
+
+class ForeignFmu(_Foreign, FmuComponent):
+    """One of FMI 2.0."""
+
+
+class ForeignFmu3(_Foreign, Fmu3Component):
+    """One of FMI 3.0."""
+
+
+def foreign_fmu(
+    name: str, path: Path, cache: Path, origin: str = "", told: Callable[[str], object] = untold
+) -> LoadedFmu:
+    """The FMU at `path`, of whatever version. Raises TouchdownError where it cannot be loaded."""
+    kind = ForeignFmu3 if fmi_version(path, cache).startswith("3.") else ForeignFmu
+    return kind(name, path, cache, origin, told)

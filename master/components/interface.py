@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import product
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import ParseError, iterparse
+from xml.parsers.expat import ExpatError
 
 from fmpy import platform as fmi_platform
-from fmpy import read_model_description, sharedLibraryExtension
+from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
-from touchdown.master.components.binary import refuse_damaged
 from touchdown.master.components.component import Kind, Variable
-from touchdown.master.components.description import refuse_definitions, refuse_lies
+from touchdown.master.components.screening.binary import refuse_damaged
+from touchdown.master.components.screening.description import (
+    KINDS_3,
+    STRUCTURAL,
+    refuse_definitions,
+    refuse_lies,
+)
 from touchdown.master.components.unpack import unpack
 from touchdown.modelkit.variables import Causality, Variability
+
+SHOWN = 5  # files named where one is missing
 
 
 def describe(path: Path, folder: Path) -> Any:
@@ -25,23 +37,52 @@ def describe(path: Path, folder: Path) -> Any:
     except Exception as error:
         first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
         raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({first})") from None
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        kind = "co-simulation" if description.coSimulation else "model exchange only"
+    third = description.fmiVersion.startswith("3.")
+    if not (third or description.fmiVersion == "2.0") or description.coSimulation is None:
         raise TouchdownError(
-            f"{path} is FMI {description.fmiVersion}, {kind}; FMI 2.0 for co-simulation is needed"
+            f"{path} is FMI {description.fmiVersion}, {_purpose(description)}; FMI 2.0 or 3.0 for "
+            "co-simulation is needed"
         )
     identifier = description.coSimulation.modelIdentifier
     refuse_lies(path, description)
-    library = folder / "binaries" / fmi_platform / f"{identifier}{sharedLibraryExtension}"
+    place = platform_tuple if third else fmi_platform
+    library = folder / "binaries" / place / f"{identifier}{sharedLibraryExtension}"
     if not library.is_file():
-        there = sorted(p.name for p in (folder / "binaries").glob("*")) or ["none"]
         raise TouchdownError(
-            f"{path} has no binary for this platform ({fmi_platform}); it has: {', '.join(there)}"
+            f"{path} has no binary for this platform ({place}): it lacks {_held(library, folder)}"
         )
     refuse_damaged(path, library)
     if by_pythonfmu(description):
         _check_script(path, folder)
     return description
+
+
+def _purpose(description: Any) -> str:
+    """What an FMU is for."""
+    if description.coSimulation is not None:
+        return "co-simulation"
+    scheduled = getattr(description, "scheduledExecution", None) is not None
+    return "scheduled execution only" if scheduled else "model exchange only"
+
+
+def _held(library: Path, folder: Path) -> str:
+    """Where the `library` of an FMU that is unpacked in `folder` should be, and which it has instead."""
+    held = sorted(str(p.relative_to(folder)) for p in (folder / "binaries").rglob("*") if p.is_file())
+    first = ", ".join(held[:SHOWN]) + (f" and {len(held) - SHOWN} more" if len(held) > SHOWN else "")
+    return f"{library.relative_to(folder)}, and has {first or 'none'}"
+
+
+def fmi_version(path: Path, cache: Path) -> str:
+    """The version of FMI that an FMU states; "" where its description cannot be read.
+
+    Raises TouchdownError where it cannot be unpacked.
+    """
+    described = unpack(path, cache) / "modelDescription.xml"
+    with suppress(OSError, ParseError, ExpatError, ValueError, LookupError):
+        refuse_definitions(described)
+        _, root = next(iterparse(described, ("start",)))
+        return root.get("fmiVersion", "")
+    return ""
 
 
 def by_pythonfmu(description: Any) -> bool:
@@ -58,31 +99,44 @@ def _check_script(path: Path, folder: Path) -> None:
 
 
 def variables_of(description: Any) -> dict[str, Variable]:
-    """Variables by name."""
-
-    def number(text: object) -> float | None:
-        try:
-            return None if text is None else float(str(text))
-        except ValueError:
-            return None
-
+    """Variables by name. An array of FMI 3.0 is one scalar for each element: x[1], x[2], or x[1,2]."""
+    third = description.fmiVersion.startswith("3.")
     return {
-        v.name: Variable(
-            name=v.name,
-            reference=v.valueReference,
-            kind=Kind(v.type),
-            causality=Causality(v.causality or Causality.LOCAL),
-            variability=Variability(v.variability or Variability.CONTINUOUS),
-            unit=(v.unit or (v.declaredType.unit if v.declaredType else None))
-            if v.type == Kind.REAL
-            else "1",
-            minimum=number(v.min),
-            maximum=number(v.max),
-            start=number(v.start),
-            description=v.description or "",
-        )
+        scalar.name: scalar
         for v in description.modelVariables
+        for scalar in _scalars(v, KINDS_3[v.type] if third else Kind(v.type))
     }
+
+
+def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
+    """What fmpy read of one variable of the description, as scalars."""
+    known = v.causality if v.causality != STRUCTURAL else None  # it is set in a mode that is not entered
+    starts = str(v.start).split() if v.shape and v.start is not None else [v.start]
+    for element, index in enumerate(product(*(range(1, size + 1) for size in v.shape or ()))):
+        yield Variable(
+            name=f"{v.name}[{','.join(map(str, index))}]" if index else v.name,
+            reference=v.valueReference,
+            kind=kind,
+            causality=Causality(known or Causality.LOCAL),
+            variability=Variability(v.variability or Variability.CONTINUOUS),
+            unit=_unit(v) if kind is Kind.REAL else "1",
+            minimum=_number(v.min),
+            maximum=_number(v.max),
+            start=_number(starts[element] if element < len(starts) else starts[-1]),
+            description=v.description or "",
+            element=element,
+        )
+
+
+def _unit(v: Any) -> str | None:
+    return v.unit or (v.declaredType.unit if v.declaredType else None)
+
+
+def _number(text: object) -> float | None:
+    try:
+        return None if text is None else float(str(text))
+    except ValueError:
+        return None
 
 
 def units_of(description: Any) -> dict[str, Unit]:

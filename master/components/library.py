@@ -12,7 +12,7 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.processes.watched import watch
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
-from touchdown.master.components.foreign import ForeignFmu
+from touchdown.master.components.foreign import foreign_fmu
 from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.components.twin import TwinComponent
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
@@ -67,7 +67,7 @@ def load_component(
     if origin:
         return FmuComponent(name, path, user_cache(), origin)
     watch(f"code of others ran in it, such as that of {path}; isolate it to see where it ends")
-    return ForeignFmu(name, path, user_cache())
+    return foreign_fmu(name, path, user_cache())
 
 
 def foreign(fmu: str) -> bool:

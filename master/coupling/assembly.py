@@ -8,7 +8,8 @@ from contextlib import suppress
 from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
-from touchdown.master.components.component import Component, check_value
+from touchdown.master.components.component import SETTABLE, Component, check_value
+from touchdown.master.coupling.bonds.bond import found
 from touchdown.master.coupling.connections import (
     Attachment,
     Connection,
@@ -26,9 +27,13 @@ from touchdown.master.scene.schemes import Scheme
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
-def assemble(scene: Scene, load: Callable[[str, str], Component]) -> System:
+Hearing = Callable[[Mapping[str, Component], Sequence[Attachment]], dict[str, Component]]
+
+
+def assemble(scene: Scene, load: Callable[[str, str], Component], hear: Hearing) -> System:
     """Load a scene's components with load(name, fmu), and wire them up as its scheme has it.
 
+    hear(components, attachments) gives components that tell more than they would by themselves.
     Raises TouchdownError where a component is missing, a setting cannot be, or the ports do not fit.
     """
     components: dict[str, Component] = {}
@@ -36,14 +41,14 @@ def assemble(scene: Scene, load: Callable[[str, str], Component]) -> System:
         for name, spec in scene.components.items():
             components[name] = load(name, spec.fmu)
             components[name].rename(spec.names)
-        return _wired(scene, components)
+        return _wired(scene, components, hear)
     except BaseException:
         for component in components.values():
             component.close()
         raise
 
 
-def _wired(scene: Scene, components: dict[str, Component]) -> System:
+def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> System:
     scheme = scene.run.scheme
     _check_zero(scene, components)
     settings: dict[tuple[str, str], float] = {}
@@ -57,10 +62,12 @@ def _wired(scene: Scene, components: dict[str, Component]) -> System:
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
     attachments = recognised(connections)
+    bonds = found(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
-    return System(components, attachments, connections, settings, every, left_out)
+    components = hear(components, attachments)
+    return System(components, attachments, connections, settings, every, left_out, bonds)
 
 
 def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
@@ -81,7 +88,9 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     attached = [attachment(pair, components) for pair in scene.attach]
     connections = [c for a in attached for c in port_connections(a, components, scheme)]
     connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
-    connections += [connection(wire, components) for wire in scene.connect]
+    declared = [wire for bond in scene.bond for wire in bond.wires]
+    wires = dict.fromkeys([*scene.connect, *declared])  # a bond's may stand among the others, too
+    connections += [connection(wire, components) for wire in wires]
     check_connections(connections, components)
     for c in connections:
         if c.input in scene.components[c.target].set:
@@ -146,6 +155,10 @@ def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Co
 def checked(component: Component, name: str, given: object) -> float:
     """A setting's value in SI. Raises TouchdownError where the component cannot take it."""
     variable = component.variable(name)
+    if variable.kind not in SETTABLE:
+        raise TouchdownError(
+            f"{component.name}.{variable.name} is of the type {variable.kind}; only numbers can be set"
+        )
     if not variable.settable:
         raise TouchdownError(
             f"{component.name}.{name} has the causality {variable.causality} and cannot be set"

@@ -22,11 +22,12 @@ from touchdown.master.components.contract import (
     MOTION,
     NEEDED,
     POSITION,
+    REACH,
     SENSED,
     SLOPE,
 )
-from touchdown.master.scene.scene import Wire
 from touchdown.master.scene.schemes import Scheme
+from touchdown.master.scene.wires import Wire
 from touchdown.modelkit.variables import Causality
 
 GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be
@@ -104,6 +105,11 @@ class Attachment:
     def load(self, variable: str) -> str:
         """COMPONENT.VARIABLE of what the bearing gives, such as bearing.journal.fx."""
         return self.bearing_end.full(variable)
+
+    @property
+    def reach(self) -> str:
+        """COMPONENT.VARIABLE of the time until the journal touches, where the bearing states it."""
+        return full(self.bearing, REACH)
 
     @property
     def title(self) -> str:
@@ -202,6 +208,20 @@ def _mode_connections(motion: Way, load: Way) -> Iterable[Connection]:
             return
         given += [load.connection(f"mode[{k}].{variable}") for variable in MODE_LOAD]
         yield from (c for c in given if c is not None)
+
+
+def hit_together(
+    attachments: Iterable[Attachment], components: Mapping[str, Component]
+) -> tuple[Attachment, ...]:
+    """Those of bodies that two bearings or more can hit, which say how far off that is."""
+    telling = [a for a in attachments if REACH in components[a.bearing].variables and _turns(a, components)]
+    bodies = [a.body for a in telling]
+    return tuple(a for a in telling if bodies.count(a.body) > 1)
+
+
+def _turns(a: Attachment, components: Mapping[str, Component]) -> bool:
+    """Whether it is a journal that is attached, not the housing."""
+    return a.bearing_end.own("omega") in components[a.bearing].variables
 
 
 def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component]) -> Iterable[Connection]:

@@ -54,9 +54,15 @@ def lay_out(
     components: Mapping[str, Component],
     connections: Sequence[Connection],
     attachments: Iterable[Attachment],
+    watched: Iterable[tuple[str, str]] = (),
 ) -> Layout:
-    """Give every exchanged output, and every account, its place, and bind the components to them."""
+    """Give every exchanged output, and every account, its place, and bind the components to them.
+
+    watched: components and their outputs that are looked at in every step, connected or not.
+    """
     outputs = _outputs(components, connections, attachments)
+    for name, variable in watched:
+        outputs[name] |= {variable: None}
     names = [full(name, variable) for name, given in outputs.items() for variable in given]
     position = {name: i for i, name in enumerate(names)}
     signals = np.zeros(len(names))
@@ -65,7 +71,7 @@ def lay_out(
     for name, component in components.items():
         end = start + len(outputs[name])
         intakes[name] = _intake([c for c in connections if c.target == name], position)
-        component.bind(intakes[name].inputs, signals[start:end], outputs[name])
+        component.bind(intakes[name].inputs, signals[start:end], list(outputs[name]))
         start = end
     return Layout(signals, position, intakes)
 
@@ -74,8 +80,8 @@ def _outputs(
     components: Mapping[str, Component],
     connections: Iterable[Connection],
     attachments: Iterable[Attachment],
-) -> dict[str, list[str]]:
-    """What each component gives: outputs that are connected, and the accounts of attachments."""
+) -> dict[str, dict[str, None]]:
+    """What each component gives, in order: outputs that are connected, and the accounts of attachments."""
     outputs: dict[str, dict[str, None]] = {name: {} for name in components}
     for c in connections:
         outputs[c.source][c.output] = None
@@ -84,7 +90,7 @@ def _outputs(
             accounts = (end.own(account) for account in (WORK, JUMP))
             has = components[end.component].variables
             outputs[end.component] |= dict.fromkeys(name for name in accounts if name in has)
-    return {name: list(given) for name, given in outputs.items()}
+    return outputs
 
 
 def _intake(fed: Sequence[Connection], position: Mapping[str, int]) -> Intake:

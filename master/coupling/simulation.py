@@ -16,7 +16,9 @@ from touchdown.master.common.interrupts import Interrupts, interrupts_noted
 from touchdown.master.components.component import Component
 from touchdown.master.components.library import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
+from touchdown.master.coupling.bonds.told import exchange, unjoined
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
+from touchdown.master.coupling.ledger.heard import heard
 from touchdown.master.coupling.loop.retirement import Retirement
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.stretches import Stretches
@@ -47,9 +49,12 @@ class Outcome:
     unaudited: tuple[str, ...] = ()  # connections without an account, each with why
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
     warning: str = ""  # what it said there
+    divided_in_impacts: int = 0  # macro steps, of rotors hit by two bearings at once
     shorter_steps: Mapping[float, float] = field(default_factory=dict[float, float])  # s each, for how long
     ended: Ended = Ended.COMPLETED
     reason: str = ""  # why, where it did not complete
+    exchange: str = ""  # how everything that is exchanged crosses
+    unjoined: str = ""  # what is to be said where the scheme has nothing to act on
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
     def after(self, problem: str) -> Outcome:
@@ -70,21 +75,28 @@ class Outcome:
             raise TouchdownError(self.reason)
 
 
-def open_system(scene: Scene, in_process: bool = False) -> System:
-    """Load the scene's components, as FMUs or in process, and wire them up."""
+def open_system(scene: Scene, in_process: bool = False, listening: bool = True) -> System:
+    """Load the scene's components, as FMUs or in process, and wire them up.
+
+    listening: bearings of others' that report no contact tell what is heard of it.
+    """
 
     def load_one(name: str, fmu: str) -> Component:
         spec = scene.components[name]
         stepping = Stepping(in_process, spec.isolate, scene.run.call_timeout, spec.native)
         return load_component(name, fmu, scene.folder, stepping)
 
-    return assemble(scene, load_one)
+    return assemble(scene, load_one, heard if listening else _as_they_are)
+
+
+def _as_they_are(components: Mapping[str, Component], _: object) -> dict[str, Component]:
+    return dict(components)
 
 
 @contextmanager
-def opened(scene: Scene, in_process: bool = False) -> Generator[System]:
-    """The scene's system, freed at the end."""
-    system = open_system(scene, in_process)
+def opened(scene: Scene, in_process: bool = False, listening: bool = True) -> Generator[System]:
+    """The scene's system as `open_system` gives it, freed at the end."""
+    system = open_system(scene, in_process, listening)
     try:
         yield system
     finally:
@@ -121,12 +133,16 @@ def simulate(
             told.append(Retirement(coupling, [ledger, *told]))
             told.append(_Progress(lambda now: progress(now.since_zero, ledger.worst_share)))
             start_up = clock.perf_counter() - began
-            steps = Stretches(MacroSteps(coupling, ledger, shortening), judge, recorder, told)
+            one_by_one = MacroSteps(coupling, ledger, shortening)
+            steps = Stretches(one_by_one, judge, recorder, told)
             wall_time, compiling = _loop(steps, told, now, interrupted)
     return replace(
         _seen(now, ledger, judge, shortening),
         wall_time=wall_time,
         start_up=start_up + compiling,
+        divided_in_impacts=one_by_one.impacts.divided,
+        exchange=exchange(coupling),
+        unjoined=unjoined(coupling),
         coupling=coupling.figures,
     )
 

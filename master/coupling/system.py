@@ -10,7 +10,9 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import scaled
 from touchdown.master.components.component import Component
-from touchdown.master.coupling.connections import Attachment, Connection, split, used_modes
+from touchdown.master.components.contract import REACH
+from touchdown.master.coupling.bonds.bond import Bond
+from touchdown.master.coupling.connections import Attachment, Connection, hit_together, split, used_modes
 from touchdown.master.coupling.layout import Intake, lay_out
 
 RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
@@ -26,15 +28,20 @@ class System:
     settings: dict[tuple[str, str], float]
     every: dict[str, int]  # macro steps of the run that each component takes in one
     left_out: Sequence[str] = ()  # what swapped components do not take over, a line each
-    order: list[str] = field(init=False)  # bearings first
+    bonds: Sequence[Bond] = ()
+    order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
     intakes: Mapping[str, Intake] = field(init=False)  # by component: what it takes of the signals
     retired: set[str] = field(init=False, default_factory=set[str])
+    hit_together: Sequence[Attachment] = field(init=False)  # seats of bodies that two bearings can hit
 
     def __post_init__(self) -> None:
         bearings = dict.fromkeys(a.bearing for a in self.attachments)
-        self.order = [*bearings, *(name for name in self.components if name not in bearings)]
+        order = [*bearings, *(name for name in self.components if name not in bearings)]
+        before = [(a.bearing, a.body) for a in self.attachments]
+        self.order = _in_order(order, [*before, *((b.giver, b.taker) for b in self.bonds)])
+        self.hit_together = hit_together(self.attachments, self.components)
         self._lay_out()
 
     def close(self) -> str:
@@ -46,6 +53,11 @@ class System:
         """Value of COMPONENT.VARIABLE."""
         component, variable = split(name, self.components)
         return component.read([variable.name])[0]
+
+    @property
+    def divisible(self) -> bool:
+        """Whether all components take the same macro steps, of any length."""
+        return all(self.every[name] == 1 and c.any_step for name, c in self.components.items())
 
     def __contains__(self, name: str) -> bool:
         """Whether there is COMPONENT.VARIABLE."""
@@ -136,8 +148,19 @@ class System:
     def _lay_out(self) -> None:
         """Give everything that is exchanged its place, as it is exchanged from now on."""
         attachments = [a for a in self.attachments if not self.retired & {a.bearing, a.body}]
-        layout = lay_out(self.components, self._live(), attachments)
+        watched = [(a.bearing, REACH) for a in self.hit_together]
+        layout = lay_out(self.components, self._live(), attachments, watched)
         self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
+
+
+def _in_order(names: Sequence[str], before: Sequence[tuple[str, str]]) -> list[str]:
+    """`names` as they stand, but for those of `before`, whose first comes first; circles are cut open."""
+    left, ordered = list(names), list[str]()
+    while left:
+        late = {second for first, second in before if first in left and first != second}
+        ordered.append(next((name for name in left if name not in late), left[0]))
+        left.remove(ordered[-1])
+    return ordered
 
 
 def fastest_contact(system: System) -> tuple[str, float]:

@@ -19,6 +19,7 @@ from touchdown.modelkit.variables import Causality
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds
 DRY_RUN_FORCE = 1e-2  # N, on a body
+UNLISTED = "ModelStructure/InitialUnknowns does not contain"  # fmpy's words
 
 
 def check_fmu(
@@ -40,13 +41,7 @@ def check_fmu(
     report = Report(name)
     try:
         component.rename(names or {})
-        complaints = validate_fmu(str(component.path))
-        if not complaints:
-            report.lines.append("valid FMI 2.0 for co-simulation")
-        elif role is None:
-            report.problems += complaints
-        else:  # what this master does not need
-            report.lines += [f"not valid FMI 2.0: {problem}" for problem in complaints]
+        _check_validity(component, role, report)
         check_ports(component, report)
         if role is not None:
             check_role(component, role, report)
@@ -59,6 +54,25 @@ def check_fmu(
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
     return report
+
+
+def _check_validity(component: ArchivedFmu, role: str | None, report: Report) -> None:
+    """What fmpy has against it: problems, or lines where this master does without it."""
+    version = f"FMI {component.description.fmiVersion}"
+    said = validate_fmu(str(component.path))
+    optional = [c for c in said if c.startswith(UNLISTED) and not component.description.initialUnknowns]
+    complaints = [complaint for complaint in said if complaint not in optional]
+    if not complaints:
+        but = " but for its InitialUnknowns" if optional else ""
+        report.lines.append(f"valid {version} for co-simulation{but}")
+    elif role is None:
+        report.problems += complaints
+    else:  # what this master does not need
+        report.lines += [f"not valid {version}: {complaint}" for complaint in complaints]
+    if optional:
+        report.lines.append(
+            "it lists no InitialUnknowns, so tools cannot tell what its first outputs follow from"
+        )
 
 
 def _dry_run(component: Component, report: Report) -> None:

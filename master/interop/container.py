@@ -21,17 +21,18 @@ from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS
-from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.coupling.simulation import open_system, zero_of
+from touchdown.master.coupling.simulation import opened, zero_of
 from touchdown.master.coupling.system import System
+from touchdown.master.interop.packing import AS_IN_SCENE, Making, changes, packed_fmus, start_values
 from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.titles import amended
 from touchdown.modelkit.variables import Causality
 
 SEQUENTIAL = {"gauss-seidel": True, "jacobi": False}  # how a container steps, by a scheme's sequence
 DESCRIPTION = "modelDescription.xml"
 
 
-def write_container(scene: Scene, path: Path) -> Path:
+def write_container(scene: Scene, path: Path, making: Making = AS_IN_SCENE) -> Path:
     """Write `scene` to `path` (.fmu); returns it. Raises TouchdownError where it cannot."""
     sequence = scene.run.scheme.sequence
     if sequence not in SEQUENTIAL:
@@ -39,23 +40,25 @@ def write_container(scene: Scene, path: Path) -> Path:
             f"a container cannot step as scheme {scene.run.scheme.name} does; take interface or jacobi-lead"
         )
     toolbox = _toolbox()
-    system = open_system(scene)
-    try:
+    with (
+        opened(scene, listening=False) as system,
+        tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
+    ):
         _refuse_what_it_cannot(system)
         zero = zero_of(scene, system)
         system.initialise()
-        with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
+        fmus = packed_fmus(scene, system, making, Path(folder) / "inside")
+        about = amended(scene.title, changes(scene, system))
+        try:
             container = toolbox.FMUContainer(re.sub(r"\W", "_", path.stem, flags=re.ASCII), folder)
             container.start_time, container.stop_time = 0.0, zero + scene.run.duration
-            _fill(container, system, SEQUENTIAL[sequence])
+            _fill(container, system, fmus, SEQUENTIAL[sequence])
             container.make_fmu("made.fmu", scene.run.macro_step, sequential=SEQUENTIAL[sequence])
-            with zipfile.ZipFile(Path(folder) / "made.fmu") as archive:
-                content = {name: archive.read(name) for name in sorted(archive.namelist())}
-    except toolbox.FMUContainerError as error:
-        raise TouchdownError(f"cannot make a container of {scene.name}: {error}") from None
-    finally:
-        system.close()
-    write_archive(path, {**content, DESCRIPTION: _mended(content)})
+        except toolbox.FMUContainerError as error:
+            raise TouchdownError(f"cannot make a container of {scene.name}: {error}") from None
+        with zipfile.ZipFile(Path(folder) / "made.fmu") as archive:
+            content = {name: archive.read(name) for name in sorted(archive.namelist())}
+    write_archive(path, {**content, DESCRIPTION: _mended(content, about)})
     return path
 
 
@@ -81,16 +84,14 @@ def _refuse_what_it_cannot(system: System) -> None:
             )
 
 
-def _fill(container: Any, system: System, sequential: bool) -> None:
+def _fill(container: Any, system: System, fmus: Mapping[str, Path], sequential: bool) -> None:
     """Put in the FMUs, their values, what links them, and what else they give (locals outside arrays).
 
     One after the other, bearings go first. All at once, the bodies do: a loop of links is initialised
     from what goes first, and bearings need the bodies' motion.
     """
     for name in system.order if sequential else reversed(system.order):
-        component = system.components[name]
-        assert isinstance(component, ArchivedFmu)
-        container.get_fmu(str(component.path.absolute()), f"{name}.fmu")
+        container.get_fmu(str(fmus[name].absolute()), f"{name}.fmu")
     linked: set[tuple[str, str]] = set()
     for c in system.connections:
         source, target = system.components[c.source], system.components[c.target]
@@ -99,10 +100,7 @@ def _fill(container: Any, system: System, sequential: bool) -> None:
             container.add_link(*(part for name, end in ends for part in (f"{name}.fmu", end)))
             linked.add((c.source, c.output))
     for name, component in system.components.items():
-        taken = [c.input for c in system.connections if c.target == name]
-        settings = [variable for owner, variable in system.settings if owner == name]
-        chosen = list(dict.fromkeys([*settings, *taken]))
-        for variable, value in zip(chosen, component.read(chosen), strict=True):
+        for variable, value in start_values(system, name).items():
             container.add_start_value(f"{name}.fmu", component.own_name(variable), repr(value))
         for variable in component.variables.values():
             given = variable.causality is Causality.OUTPUT
@@ -112,10 +110,10 @@ def _fill(container: Any, system: System, sequential: bool) -> None:
                 container.add_output(f"{name}.fmu", own, f"{name}.{own}")
 
 
-def _mended(content: Mapping[str, bytes]) -> bytes:
-    """The container's description without the time, the user and the random identity of its making.
+def _mended(content: Mapping[str, bytes], about: str) -> bytes:
+    """The container's description, without the time, the user and the random identity of its making.
 
-    What it lists as outputs are outputs; the toolbox leaves locals among them.
+    It says what it is: `about`. What it lists as outputs are outputs; the toolbox leaves locals among them.
     """
     root = fromstring(content[DESCRIPTION])
     variables = root.findall("ModelVariables/ScalarVariable")
@@ -123,6 +121,7 @@ def _mended(content: Mapping[str, bytes]) -> bytes:
         variables[int(output.get("index", "0")) - 1].set("causality", "output")
     root.set("generationDateAndTime", RELEASED)
     root.set("author", "touchdown-cosim")
+    root.set("description", about)
     root.set("guid", "")
     digest = hashlib.sha256(tostring(root))
     for name, data in content.items():

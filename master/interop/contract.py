@@ -12,6 +12,7 @@ from enum import StrEnum
 from touchdown.master.components.component import Component, Kind, Variable
 from touchdown.master.components.contract import (
     FORCE,
+    JUMP,
     LOAD,
     MODE_LOAD,
     MODE_MOTION,
@@ -23,7 +24,9 @@ from touchdown.master.components.contract import (
     SPIN,
     STATIC,
     UNITS,
+    WORK,
 )
+from touchdown.master.coupling.ledger.heard import CLEARANCE, REPORT
 from touchdown.modelkit.ports import MODES
 from touchdown.modelkit.variables import Causality
 
@@ -88,8 +91,9 @@ class Role:
     parameters: Mapping[str, str] = field(default_factory=dict)  # names and units
 
 
+BEARING = "bearing"
 ROLES = {
-    "bearing": Role("a bearing", Side.BEARING, ("journal",), ("housing",)),
+    BEARING: Role("a bearing", Side.BEARING, ("journal",), ("housing",)),
     "amb": Role("a magnetic bearing", Side.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
     "rotor": Role("a rotor", Side.BODY),  # whatever its seats are called
     "housing": Role("a housing", Side.BODY, ("seat",)),
@@ -123,12 +127,29 @@ def check_role(component: Component, role: str, report: Report) -> None:
             f"no port of a {wanted.side} that spins; {wanted.title} needs for each of its seats, called A "
             "for one, A.x, A.y (output in m), A.omega (output in rad/s) and A.fx, A.fy (input in N)"
         )
+    if role == BEARING:
+        report.lines += _would_bring_more(component)
     for name, unit in wanted.parameters.items():
         variable = component.variables.get(name)
         if variable is None or variable.causality is not Causality.PARAMETER:
             report.problems.append(f"{name} is missing (parameter in {unit}); scenes count from it")
         else:
             _check_variable(variable, (Causality.PARAMETER,), unit, report)
+
+
+def _would_bring_more(component: Component) -> list[str]:
+    """What a bearing leaves to the master, and which variables of its own would tell it better."""
+    port = ROLES[BEARING].ports[0]
+    states = all(f"{port}.{account}" in component.variables for account in (WORK, JUMP))
+    told = (
+        (REPORT in component.variables, "it reports no contact: first contact, peak force and verdict are "
+         f"heard from means over macro steps; {REPORT} and contact.peak_force as outputs would tell them"),
+        (CLEARANCE in component.variables, "it states no clearance: that is taken to be where the journal "
+         f"first meets a force; {CLEARANCE} as a parameter would tell it"),
+        (states, f"it states no work: the ledger listens to a second instance; {port}.{WORK} and "
+         f"{port}.{JUMP} as outputs would spare that"),
+    )  # fmt: skip
+    return [line for there, line in told if not there]
 
 
 def _spins(component: Component, port: str) -> bool:

@@ -26,6 +26,7 @@ from touchdown.master.components.interface import describe
 from touchdown.master.components.unpack import unpack
 from touchdown.master.interop import trial
 from touchdown.modelkit.kernel.cache_folder import user_cache, why_temporary
+from touchdown.modelkit.kernel.machine_code import about_shipped
 
 PATIENCE = 600.0  # s; a first step compiles for a minute at most
 
@@ -51,6 +52,7 @@ def examine() -> Iterator[Finding]:
     for name in NEEDED:
         yield _package(name)
     yield _compiler()
+    yield Finding("kernels", about_shipped())
     yield _cache()
     yield _patchelf()
 
@@ -116,7 +118,9 @@ def why_not(path: Path) -> str:
     with tempfile.TemporaryDirectory(prefix="touchdown_") as elsewhere:
         try:
             folder = unpack(path, Path(elsewhere))
-            describe(path, folder)
+            version = describe(path, folder).fmiVersion
+            if version != "2.0":
+                return f"{path} is FMI {version}; only FMI 2.0 is tried, `touchdown check` steps both"
             done = subprocess.run(
                 [sys.executable, "-I", trial.__file__, str(folder)],
                 cwd=elsewhere,

@@ -12,12 +12,13 @@ from typing import Protocol
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component, Variable
+from touchdown.master.components.contract import MOUNTED
 from touchdown.master.coupling.connections import Attachment, Connection, full
 from touchdown.master.coupling.system import System
 from touchdown.master.results.recording import Recording
 from touchdown.master.scene.scene import Scene
 
-HOUSING = "housing.x"  # what a bearing knows of the housing it moves with
+HOUSING = f"{MOUNTED}.x"  # what a bearing knows of the housing it moves with
 
 
 class Teller(Protocol):

@@ -96,7 +96,8 @@ def _warnings(outcome: Outcome) -> list[str]:
     """What is to be said of a run beside its figures; where it stopped, only why."""
     if outcome.ended is Ended.STOPPED:
         return []
-    said = [f"not audited: {connection}" for connection in outcome.unaudited]
+    said = [outcome.unjoined] if outcome.unjoined else []
+    said += [f"not audited: {connection}" for connection in outcome.unaudited]
     if outcome.warning and outcome.ended is Ended.COMPLETED:
         said.append(outcome.warning)
     return said

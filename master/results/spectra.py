@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import get_window
 
 BEGIN = 1.0  # s after the shutdown, when the landing has died down
 POINTS = 262_144
 LENGTH = POINTS / 200e3  # s of one window: the source's points at its 200 kHz
 SLACK = 1e-3  # of an interval, for times that are sums of steps
 APART = 4  # lines of a spectrum; nearer to a taller line stand that line's own side lobes
+
+
+def hann(count: int) -> np.ndarray:
+    """Hann window of `count` values, periodic: scipy.signal's, which takes a second to import."""
+    return 0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, count + 1)[:-1])
 
 
 def interval(time: np.ndarray) -> float:
@@ -48,10 +52,10 @@ def velocity_spectrum(
     if len(velocity) < count:
         raise ValueError(f"the recording ends before the window from {start:g} s for {length:g} s does")
     points = max(points, count)
-    hann = get_window("hann", count)
+    shape = hann(count)
     frequency = np.fft.rfftfreq(points, step)
-    lines = np.fft.rfft((velocity - np.mean(velocity)) * hann, points)
-    return frequency, 2.0 * np.abs(lines) / np.sum(hann) / np.sinc(frequency * step)
+    lines = np.fft.rfft((velocity - np.mean(velocity)) * shape, points)
+    return frequency, 2.0 * np.abs(lines) / np.sum(shape) / np.sinc(frequency * step)
 
 
 def on_grid(time: np.ndarray) -> np.ndarray:
@@ -77,6 +81,8 @@ def waterfall(
     """
     if len(time) < 2 or not np.allclose(np.diff(time), 1.0 / rate, rtol=SLACK, atol=0.0):
         raise ValueError(f"the recording must have the rate {rate:g} Hz throughout; {_found_rate(time)}")
+    from scipy.signal import get_window  # slow to import
+
     size = len(time) // spectra
     if size < points:
         raise ValueError(f"each of {spectra} parts has {size} values; a spectrum needs {points}")

@@ -7,13 +7,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import get_window
 
 from touchdown.master.common.ended import Ended
+from touchdown.master.components.contract import MOUNTED
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.ledger.heard import told_by_master
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.results.ending import Readable, housing_port
 from touchdown.master.results.recording import NotRecordedError, Recording
+from touchdown.master.results.spectra import hann
 from touchdown.master.results.stresses import stress_figures
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
@@ -54,6 +56,7 @@ FIGURES = (
     Figure("loaded_balls_end", "balls.loaded"),
 )
 LAST_PART = 0.2  # of a run, for means
+_DIVIDED = "macro_steps_divided_in_impacts"
 
 
 ENERGIES = (
@@ -69,8 +72,13 @@ def touchdown_seats(system: Readable) -> list[Attachment]:
     return [
         a
         for a in system.attachments
-        if f"{a.bearing}.contact.first_time" in system and a.bearing_end.full("omega") in system
+        if f"{a.bearing}.contact.first_time" in system and a.bearing_port != MOUNTED
     ]
+
+
+def is_heard(system: Readable, a: Attachment) -> bool:
+    """Whether it is the master that tells of contact in the bearing, which tells nothing of it."""
+    return told_by_master(system.components[a.bearing].variables["contact.first_time"])
 
 
 def seat_name(a: Attachment, seats: list[Attachment]) -> str:
@@ -101,6 +109,8 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         seat = next(a for a in seats if a.body == name)
         speed = seat.motion("omega")
         figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
+    if by_master := [a.bearing for a in seats if is_heard(system, a)]:
+        figures["contact_heard_by_master"] = ", ".join(by_master)
     figures |= stress_figures(system, outcome)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
@@ -167,6 +177,8 @@ def whirl_at(system: Readable, a: Attachment, recording: Recording) -> Whirl | N
     if "clearance" not in system.components[a.bearing].variables:
         return None
     clearance = system.value(f"{a.bearing}.clearance")
+    if clearance <= 0.0:  # it was heard to push from the start
+        return None
     orbit = relative_orbit(system, a, recording)
     force = _force_on_journal(a, orbit, recording)
     return classify(recording.time, *orbit, clearance, _spin(a, recording), force)
@@ -272,7 +284,7 @@ def dominant_frequency(
     if not np.any(centred):
         return None
     count = 8 * len(centred)
-    spectrum = np.abs(np.fft.rfft(centred * get_window("hann", len(centred)), count))
+    spectrum = np.abs(np.fft.rfft(centred * hann(len(centred)), count))
     frequency = np.fft.rfftfreq(count, step)
     band = np.flatnonzero((frequency >= low) & (frequency <= high))
     if len(band) < 3:
@@ -344,8 +356,10 @@ def _run_figures(
         "simulated_time_s": simulated,
         "wall_time_per_simulated_s": outcome.wall_time / simulated if simulated > 0.0 else None,
         "scheme": scene.run.scheme.name,
+        "exchange": outcome.exchange,
         "macro_step_s": scene.run.macro_step,
         "macro_steps": outcome.steps,
+        **({_DIVIDED: outcome.divided_in_impacts} if outcome.divided_in_impacts else {}),
         **{f"time_at_{1e6 * step:g}_us_s": time for step, time in sorted(outcome.shorter_steps.items())},
     }
 

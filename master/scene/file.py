@@ -8,6 +8,9 @@ attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
 sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
 connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target; where the target is
                                                # to be scaled, then factor and offset
+bond = [["s1.f", "s2.f"], ["s2.x", "s1.x2"]]   # a force and the motion it acts along: wires of a bond, or a
+                                               # list of bonds; {force = [...], position = [...],
+                                               # velocity = [...]} where units do not tell which is which
 
 [run]
 duration = 5.0        # s
@@ -31,18 +34,16 @@ gives takes the place of what stands there, table by table; a component that nam
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import to_si
 from touchdown.master.scene.run_spec import RunSpec, with_changes
-from touchdown.master.scene.scene import ComponentSpec, Scene, Wire, checked_preset
+from touchdown.master.scene.scene import ComponentSpec, Scene, checked_preset
 from touchdown.master.scene.tables import (
     entries,
     flat,
-    items,
     pairs,
     reference,
     references,
@@ -52,6 +53,7 @@ from touchdown.master.scene.tables import (
     table,
     whole,
 )
+from touchdown.master.scene.wires import bonds, wires
 
 LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
@@ -82,7 +84,18 @@ def locate(name: str) -> Path:
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     """A scene from the tables of its TOML file."""
-    known = ("title", "about", "zero", "energy_scale", "attach", "sense", "connect", "run", "components")
+    known = (
+        "title",
+        "about",
+        "zero",
+        "energy_scale",
+        "attach",
+        "sense",
+        "connect",
+        "bond",
+        "run",
+        "components",
+    )
     refuse_unknown(data, known, f"scene {name}")
     components = {
         key: _component(part, f"scene {name}: [components.{key}]", folder)
@@ -97,7 +110,8 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         components=components,
         attach=pairs(data.get("attach", []), f"scene {name}: attach"),
         sense=pairs(data.get("sense", []), f"scene {name}: sense"),
-        connect=_wires(data.get("connect", []), f"scene {name}: connect"),
+        connect=wires(data.get("connect", []), f"scene {name}: connect"),
+        bond=bonds(data.get("bond", []), f"scene {name}: bond"),
         zero=reference(data["zero"], f"scene {name}: zero") if "zero" in data else None,
         energy_scale=references(data.get("energy_scale", []), f"scene {name}: energy_scale"),
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
@@ -174,27 +188,6 @@ def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
         else:
             merged[key] = _over(there, given)
     return merged
-
-
-def _wires(value: object, where: str) -> tuple[Wire, ...]:
-    """Pairs, some with factor and offset."""
-    wires = [items(wire) for wire in items(value) or ()]
-    if not isinstance(value, list) or None in wires:
-        raise TouchdownError(f'{where} must be a list such as [["rotor.A.x", "probe.x"]]')
-    return tuple(_wire(wire, where) for wire in wires if wire is not None)
-
-
-def _wire(wire: Sequence[object], where: str) -> Wire:
-    """Source and target, and where it is scaled, factor and offset."""
-    ((source, target),) = pairs([list(wire[:2])], where)
-    if len(wire) == 2:
-        return Wire(source, target)
-    if len(wire) != 4:
-        raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
-    what = f"{where}: {source} to {target}"
-    return Wire(
-        source, target, (to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset"))
-    )
 
 
 def _names(value: object, where: str, folder: Path) -> dict[str, str]:

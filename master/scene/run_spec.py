@@ -6,12 +6,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
 from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
 
 CALL_TIMEOUT = 60.0  # s
+AUTO = "auto"  # as the scheme has it
+BONDS = (AUTO, "smooth", "contact", "hold")
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,9 @@ class RunSpec:
     warn_residual: float = 0.02  # ledger's residual over the turnover of a connection: say so
     stop_residual: float = 0.2  # the same: stop
     call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take
+    bonds: str = AUTO  # one of BONDS: how force and motion cross between FMUs that know no contract
     whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
+    impact_step: float = 1e-6  # s, at most, while two bearings hit a rotor; 0: macro steps are not divided
 
 
 def with_changes(run: RunSpec, changes: Mapping[str, object]) -> RunSpec:
@@ -47,11 +51,24 @@ def _scheme(value: object, name: str) -> Scheme:
     return value
 
 
+def _bonds(value: object, name: str) -> str:
+    if value not in BONDS:
+        raise TouchdownError(f"{name} = {value}: {one_of(str(value), BONDS)}")
+    return str(value)
+
+
 def _above_zero(unit: str) -> Callable[[object, str], float]:
     def read(value: object, name: str) -> float:
         return above_zero(value, unit, name)
 
     return read
+
+
+def _time(value: object, name: str) -> float:
+    seconds = to_si(value, "s", name)
+    if seconds < 0.0:
+        raise TouchdownError(f"{name} = {value} must not be below 0 s")
+    return seconds
 
 
 def _steps_above_zero(value: object, name: str) -> int:
@@ -68,6 +85,7 @@ def _count(value: object, name: str) -> int:
 
 READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
     "scheme": _scheme,
+    "bonds": _bonds,
     "record": beginnings,
     "record_also": beginnings,
     "record_arrays": switch,
@@ -79,4 +97,5 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "stop_residual": _above_zero("1"),
     "call_timeout": _above_zero("s"),
     "whirl_halvings": _count,
+    "impact_step": _time,
 }

@@ -6,13 +6,13 @@ import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import Scale, plain
+from touchdown.master.common.units import plain
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.tables import switch, whole
 from touchdown.master.scene.titles import retitled
+from touchdown.master.scene.wires import BondSpec, Wire
 
 
 @dataclass(frozen=True)
@@ -48,14 +48,6 @@ class ComponentSpec:
         )
 
 
-class Wire(NamedTuple):
-    """A single variable feeding another, COMPONENT.VARIABLE both."""
-
-    source: str
-    target: str
-    scale: Scale | None = None  # factor and offset; None: as it is, in equal units
-
-
 @dataclass(frozen=True, repr=False)
 class Scene:
     """Everything a run needs. `set` and `swap` make copies, which share what they do not change.
@@ -69,7 +61,7 @@ class Scene:
       amb: amb
       bearing: simplified_cageless
       housing: housing
-      run: 0.01 s by macro steps of 2e-05 s, scheme interface>
+      run: 0.01 s by macro steps of 0.0001 s, scheme interface>
     """
 
     name: str
@@ -79,6 +71,7 @@ class Scene:
     attach: tuple[tuple[str, str], ...] = ()
     sense: tuple[tuple[str, str], ...] = ()
     connect: tuple[Wire, ...] = ()
+    bond: tuple[BondSpec, ...] = ()
     zero: str | None = None
     energy_scale: tuple[str, ...] = ()
     run: RunSpec = field(default_factory=RunSpec)

@@ -46,7 +46,7 @@ class Scheme:
     slopes: bool  # whether dfx, dfy, dmz are exchanged
     modes: bool  # whether the bearings carry the rotor's elastic modes
     error_order: int  # of motion and of the ledger in the macro step; 0: a tolerance sets the error
-    bears: float  # rad, of the journal's swing on its contact in a macro step (`coupling.advisor`)
+    bears: float  # rad, of the journal's swing on its contact in a macro step (`studies.schemes.advisor`)
     sequence: str = "gauss-seidel"
     lead: bool = False  # whether bearings hand over the load of the step to come
 

@@ -7,13 +7,13 @@ import math
 from touchdown.master.scene.run_spec import RunSpec
 
 
-def shorter_step(run: RunSpec, share: float) -> float:
+def shorter_step(run: RunSpec, share: float, order: int) -> float:
     """A macro step (s) with which the ledger should hold, after `share` of the turnover was too much.
 
-    From the order at which the scheme's residual falls with the step, to half of what is warned of.
+    From the order at which the residual falls with the step, to half of what is warned of.
     """
     wanted = 0.5 * run.warn_residual / share if math.isfinite(share) else 0.0
-    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / run.scheme.error_order)
+    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / order)
     return tidy(min(step, 0.5 * run.macro_step))
 
 

@@ -1,10 +1,12 @@
-"""Titles of scenes whose components are swapped."""
+"""Titles of scenes whose components are swapped or set otherwise."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import PurePath
 
+MOST = 3  # changes that a title names
 _DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
 
 
@@ -30,6 +32,18 @@ def retitled(title: str, component: str, before: str, after: str, alone: bool) -
         return title + added.format(new)
     capital = found[0][0].isupper() and not old[0].isupper()
     return title[: found.start()] + (new[0].upper() + new[1:] if capital else new) + title[found.end() :]
+
+
+def amended(title: str, changes: Sequence[str]) -> str:
+    """A scene's title with what was set beside the scene, which the title may deny.
+
+    >>> amended("A disk at 9000 rpm", ["rotor.speed = 12000 rpm"])
+    'A disk at 9000 rpm, but with rotor.speed = 12000 rpm'
+    """
+    if not changes:
+        return title
+    more = f" and {len(changes) - MOST} more" if len(changes) > MOST else ""
+    return f"{title}, but with {', '.join(changes[:MOST])}{more}"
 
 
 def _words(fmu: str) -> str:

@@ -14,6 +14,7 @@ from touchdown.master.verbs import completion
 from touchdown.master.verbs.completion import complete
 
 if TYPE_CHECKING:
+    from touchdown.master.interop.packing import Making
     from touchdown.master.scene.scene import Scene
 
 MOST = 10_000  # of what is counted: runs, repetitions
@@ -31,6 +32,11 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
+    add_swaps(verb)
+
+
+def add_swaps(verb: argparse.ArgumentParser) -> None:
+    """Add --swap and --names; `swapped` reads them."""
     swap = verb.add_argument(
         "--swap", action="append", default=[], metavar="COMPONENT=FMU", help="replace a component's FMU"
     )
@@ -87,6 +93,16 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def add_making(verb: argparse.ArgumentParser) -> None:
+    """Add --link-python and --native, for FMUs that others run; `making` reads them."""
+    verb.add_argument(
+        "--link-python",
+        action="store_true",
+        help="its FMUs name this interpreter's libpython, for hosts without Python on this machine",
+    )
+    verb.add_argument("--native", action="store_true", help="its FMUs need no Python anywhere")
+
+
 def add_quiet(verb: argparse.ArgumentParser) -> None:
     """Add --quiet."""
     verb.add_argument("--quiet", action="store_true", help="no progress bar")
@@ -98,20 +114,12 @@ def add_quiet(verb: argparse.ArgumentParser) -> None:
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
     from touchdown.master.interop.scenes import find_scene
-    from touchdown.master.scene.file import read_names
 
-    chosen = find_scene(options.scene)
-    for text in options.swap:
-        name, fmu = assignment(text, "--swap")
-        chosen = chosen.swap(**{name: fmu})
-    for text in options.names:
-        name, file = assignment(text, "--names")
-        chosen = chosen.with_names(name, read_names(Path(file)))
-    chosen = chosen.set(settings(options))
+    chosen = swapped(find_scene(options.scene), options).set(settings(options))
     if options.scheme is not None:
         chosen = chosen.set({"run.scheme": options.scheme})
     if options.macro_step == "auto":
-        from touchdown.master.coupling.advisor import advise
+        from touchdown.master.studies.schemes.advisor import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
@@ -119,6 +127,26 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     elif options.macro_step is not None:
         chosen = chosen.set({"run.macro_step": options.macro_step})
     return chosen
+
+
+def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
+    """`scene` with what --swap puts into it, by the names that --names gives. Raises TouchdownError."""
+    from touchdown.master.scene.file import read_names
+
+    for text in options.swap:
+        name, fmu = assignment(text, "--swap")
+        scene = scene.swap(**{name: fmu})
+    for text in options.names:
+        name, file = assignment(text, "--names")
+        scene = scene.with_names(name, read_names(Path(file)))
+    return scene
+
+
+def making(options: argparse.Namespace) -> Making:
+    """How the options of `add_making` ask for FMUs. Raises TouchdownError."""
+    from touchdown.master.interop.packing import Making
+
+    return Making(options.link_python, options.native)
 
 
 def settings(options: argparse.Namespace) -> dict[str, str]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 
 SMALLEST_STEP = 1e-15  # s; far below the fastest motion here (0.1 us)
 MOST_STEPS = 1_000_000  # in one macro step; a slower advance is a failure, not patience
@@ -20,13 +20,13 @@ MIN_FACTOR = 0.2  # a step shrinks to no less than this share of the last one
 NO_NUMBER_FACTOR = 0.1  # where the error is no number, and says nothing about the next step
 
 
-@inlined
+@kernel
 def is_last(t, h, span):
     """Whether a step of h (s) from t (s) reaches the end of the span; 1e-6 h is not worth a step."""
     return t + h * 1.000001 >= span
 
 
-@inlined
+@kernel
 def shrunk(step, error_norm, exponent):
     """The step (s) to try after one whose error was too large, or no number."""
     return step * (
@@ -34,7 +34,7 @@ def shrunk(step, error_norm, exponent):
     )
 
 
-@inlined
+@kernel
 def grown(step, error_norm, exponent, least_error, max_factor):
     """The step (s) to take after one that was accepted; an error below `least_error` counts as that."""
     return step * min(max_factor, SAFETY / max(error_norm, least_error) ** exponent)

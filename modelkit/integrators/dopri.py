@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 STAGES = 7
@@ -41,7 +41,7 @@ def scratch_layout(size: int) -> np.dtype:
     return np.dtype([("rows", "f8", (STAGES + 1, size))])
 
 
-@inlined
+@kernel
 def rk_step(rhs, m, q, n, K, t, h):
     """One step of h (s) from q (n,) at t (s), whose slope is K[0]; fills K[1:7] and K[TRIAL], its end."""
     trial = K[TRIAL]
@@ -67,7 +67,7 @@ def rk_step(rhs, m, q, n, K, t, h):
     rhs(t + h, trial, K[6], m)
 
 
-@inlined
+@kernel
 def estimate_error_norm(K, n, weight, h):
     """Largest error of a step of h (s) over the scales 1 / weight (n,), from its stages K; may be a NaN."""
     error_norm = 0.0
@@ -79,7 +79,7 @@ def estimate_error_norm(K, n, weight, h):
     return error_norm
 
 
-@inlined
+@kernel
 def integrate(rhs, observe, m, q, n, weight, K, span, h, tolerance):
     """Advance the state q[:n] over `span` (s) in place.
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 STAGES = 4
@@ -77,7 +77,7 @@ class Rows(NamedTuple):
     f: np.ndarray  # dq at q
 
 
-@inlined
+@kernel
 def row_step(rhs, solve, m, q, n, rows, t, h):
     """One step of h (s) from q (n,) at t (s), where `rows.f` and `rows.stiff` are known.
 
@@ -111,7 +111,7 @@ def row_step(rhs, solve, m, q, n, rows, t, h):
         trial[i] = q[i] + M1 * u1[i] + M2 * u2[i] + M3 * u3[i] + M4 * u4[i]
 
 
-@inlined
+@kernel
 def estimate_error_norm(rows, n, weight):
     """Largest error of a step over the scales 1 / weight (n,), from its stages; may be a NaN."""
     u1, u2, u3, u4 = rows.u1, rows.u2, rows.u3, rows.u4
@@ -123,7 +123,7 @@ def estimate_error_norm(rows, n, weight):
     return error_norm
 
 
-@inlined
+@kernel
 def integrate(rhs, linearise, solve, observe, m, q, n, weight, work, span, h, tolerance):
     """Advance the state q[:n] over `span` (s) in place.
 

@@ -16,7 +16,7 @@ import math
 from typing import NamedTuple
 
 from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
@@ -30,7 +30,7 @@ class Steps(NamedTuple):
     resolution: float  # rad, of the fastest contact
 
 
-@inlined
+@kernel
 def step_length(frequency, left, steps):
     """The next step (s) for contacts up to `frequency` (rad/s): even ones over what is `left` (s)."""
     slow = frequency * steps.longest <= steps.resolution  # a NaN is not
@@ -38,7 +38,7 @@ def step_length(frequency, left, steps):
     return left if h >= left else left / math.ceil(left / h - 1e-6) if h > 0.0 else 0.0
 
 
-@inlined
+@kernel
 def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps):
     """Advance the state q[:n] over `span` (s) in place, in `Steps`.
 

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from touchdown.modelkit.kernel.compiled import (
         PHYSICS_PACKAGES,
-        inlined,
         kernel,
         kernel_of,
         source_hash,
         woven,
     )
 
-__all__ = ["PHYSICS_PACKAGES", "inlined", "kernel", "kernel_of", "source_hash", "woven"]
+__all__ = ["PHYSICS_PACKAGES", "kernel", "kernel_of", "source_hash", "woven"]
 
 
 def __getattr__(name: str) -> object:

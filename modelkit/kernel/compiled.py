@@ -1,6 +1,6 @@
 """How kernels are compiled.
 
-A kernel's machine code holds pieces of other kernels, inlined, and would go on using them after they
+A kernel's machine code holds that of the kernels it calls (`linked`), and would go on using it after they
 changed. So the folder it is kept in (`machine_code`) is named by a hash over the sources of all physics
 packages: any edit starts a fresh folder, and nothing stale is ever run.
 """
@@ -14,10 +14,13 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import config
 from numba.core.dispatcher import Dispatcher
 
+from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import own_folder
 from touchdown.modelkit.kernel.machine_code import KernelCache
+from touchdown.modelkit.kernel.tried import is_tried
 
 
 @cache
@@ -50,8 +53,9 @@ def source_hash(packages: tuple[str, ...] = PHYSICS_PACKAGES) -> str:
 def kernel(function: F) -> F:
     """Compile `function` on first call and keep the machine code for later processes.
 
-    IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in process
-    must agree bit for bit.
+    It may take other kernels as arguments; then it is for kernels to call, as Python's calls of it cannot
+    be kept. IEEE arithmetic without reassociation (no fastmath): an FMU and the same model stepped in
+    process must agree bit for bit.
     """
     return _compiled(function, PHYSICS_PACKAGES)
 
@@ -77,11 +81,21 @@ def woven(function: F) -> F:
 
 
 def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False) -> F:
-    compiled = numba.njit(error_model="numpy", forceinline=forceinline)(function)
+    compiled = _dispatcher(function, forceinline)
     folder = _machine_code_folder(packages)
     if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
-        cast(Any, compiled)._cache = KernelCache(function, folder)
+        cast(Any, compiled)._cache = KernelCache(function, folder, _shipped(packages))
     return cast(F, compiled)
+
+
+def _dispatcher(function: Callable[..., object], forceinline: bool) -> object:
+    """`linked`, or, with a numba that this was not tried with, what numba makes of it: the same results."""
+    if cast(Any, config).DISABLE_JIT or not is_tried():
+        return numba.njit(error_model="numpy", forceinline=forceinline)(function)
+    from touchdown.modelkit.kernel.linked import KernelDispatcher
+
+    options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
+    return KernelDispatcher(function, targetoptions=options)
 
 
 @cache
@@ -93,11 +107,9 @@ def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
         return None
 
 
-def inlined(function: F) -> F:
-    """Compile `function` into each caller, so that it may take other kernels as arguments.
-
-    numba cannot cache a kernel that was handed another one as a value; inlined, the argument is a
-    name known at compile time, and the caller is cached as usual. Right also for a piece of one kernel
-    that stands apart to be read: a kernel of its own is compiled again for every kernel above it.
-    """
-    return cast(F, numba.njit(inline="always", error_model="numpy")(function))
+@cache
+def _shipped(packages: tuple[str, ...]) -> Path | None:
+    """Where machine code of these sources came along with the installation; None where none did."""
+    brought = shipped.folder("machine-code")
+    found = None if brought is None else brought / source_hash(packages)
+    return found if found is not None and found.is_dir() else None

@@ -2,7 +2,8 @@
 
 numba's own cache loads whatever its files hold: one flipped byte ends the process. Here a file holds the
 code of one kernel for one signature behind a digest of it, under a name that both decide. What is damaged,
-another signature's or another user's is as good as missing: it is compiled again and replaced.
+another signature's or another user's is as good as missing: it is compiled again and replaced. Where this
+user has kept nothing, what came along with the installation is taken (`shipped`).
 """
 
 from __future__ import annotations
@@ -23,10 +24,12 @@ import numba
 from numba import types
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
+from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
 from touchdown.modelkit.kernel.cache_folder import is_own, put
+from touchdown.modelkit.kernel.shipped import MADE_FOR, folder, made_for, plainer
 
 _DIGEST = 32  # bytes
 _VERSION = (numba.__version__, sys.implementation.cache_tag)
@@ -37,10 +40,11 @@ class KernelCache(_Cache):
 
     active = True  # in this process; code that is kept has been through code generation for one machine
 
-    def __init__(self, kernel: Callable[..., object], folder: Path) -> None:
-        """`folder` is one for the sources of all that the kernel calls."""
+    def __init__(self, kernel: Callable[..., object], folder: Path, shipped: Path | None = None) -> None:
+        """`folder` is for the sources of all that the kernel calls; in `shipped` is what came for them."""
         name = f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
         self._folder, self._name = folder / kernel.__module__, name
+        self._shipped = None if shipped is None else shipped / kernel.__module__
         self._kernel = kernel
         self._enabled = True
 
@@ -60,12 +64,14 @@ class KernelCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
         target_context.refresh()
-        key = self._key(sig, target_context.codegen())
-        data = unsealed(self._path(key)) if self.active and self._enabled else None
-        if data is None:
+        if not (self.active and self._enabled):
             return None
-        kept_for, code = pickle.loads(data)
-        return CompileResult._rebuild(target_context, *code) if kept_for == key else None
+        processor = target_context.codegen().magic_tuple()
+        code = self._code(self._folder, self._key(sig, processor))
+        plain = plainer(processor)
+        if code is None and self._shipped is not None and plain is not None:
+            code = self._code(self._shipped, self._key(sig, plain), own=False)
+        return None if code is None else CompileResult._rebuild(target_context, *code)
 
     def save_overload(self, sig: Any, data: CompileResult) -> None:
         """Keep it, where that can be: what is not kept is compiled again by the next process, no more.
@@ -75,22 +81,30 @@ class KernelCache(_Cache):
         arguments, _ = normalize_signature(sig)
         fixed = not any(isinstance(argument, types.Callable) for argument in arguments)
         if self.active and self._enabled and fixed and not data.library.has_dynamic_globals:
-            key = self._key(sig, data.codegen)
+            key = self._key(sig, data.codegen.magic_tuple())
             with contextlib.suppress(OSError):
-                _replace(self._path(key), sealed(dumps((key, data._reduce()))))
+                _replace(self._path(self._folder, key), sealed(dumps((key, data._reduce()))))
 
-    def _key(self, signature: Any, codegen: Any) -> tuple[Any, ...]:
+    def _key(self, signature: Any, processor: tuple[str, str, str]) -> tuple[Any, ...]:
         """All that decides the code beside other sources: types, processor, numba, the kernel itself."""
         kernel = self._kernel
         cells = tuple(cell.cell_contents for cell in kernel.__closure__ or ())
         closed = hashlib.sha256(dumps(cells)).hexdigest() if cells else ""
         own = kernel.__module__, self._name, kernel.__code__.co_code, closed
-        return signature, codegen.magic_tuple(), own, _text_of(inspect.getfile(kernel)), _VERSION
+        return signature, processor, own, _text_of(inspect.getfile(kernel)), _VERSION
 
-    def _path(self, key: tuple[Any, ...]) -> Path:
+    def _path(self, folder: Path, key: tuple[Any, ...]) -> Path:
         signature, *others = key
         digest = hashlib.sha256(repr((str(signature), others)).encode()).hexdigest()[:24]
-        return self._folder / f"{self._name}.{digest}.nbc"
+        return folder / f"{self._name}.{digest}.nbc"
+
+    def _code(self, folder: Path, key: tuple[Any, ...], own: bool = True) -> Any:
+        """What `folder` holds for a key; None where that is nothing."""
+        data = unsealed(self._path(folder, key), own)
+        if data is None:
+            return None
+        kept_for, code = pickle.loads(data)
+        return code if kept_for == key else None
 
 
 @cache
@@ -100,16 +114,28 @@ def _text_of(file: str) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
 
 
+def about_shipped() -> str:
+    """What there is to say, to people, of machine code that came along with the installation."""
+    found = folder("machine-code")
+    if found is None or not (found / MADE_FOR).is_file():
+        return "compiled on first use; no machine code came along with this installation"
+    made = (found / MADE_FOR).read_text("utf-8").strip()
+    codegen: Any = cpu_target.target_context.codegen  # type: ignore[attr-defined]
+    if made == made_for(numba.__version__) and plainer(codegen().magic_tuple()) is not None:
+        return f"machine code came along, made with {made}"
+    return f"compiled on first use; the machine code that came along was made with {made}"
+
+
 def sealed(data: bytes) -> bytes:
     """`data` behind a digest of it."""
     return hashlib.sha256(data).digest() + data
 
 
-def unsealed(path: Path) -> bytes | None:
-    """What `sealed` was given; None where the file is missing, damaged or another user's."""
+def unsealed(path: Path, own: bool = True) -> bytes | None:
+    """What `sealed` was given; None where the file is missing or damaged, or, `own`, another user's."""
     try:
         with path.open("rb") as file:
-            if not is_own(os.fstat(file.fileno())):
+            if own and not is_own(os.fstat(file.fileno())):
                 return None
             content = file.read()
     except OSError:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 
 MOST_MEANS = 20  # each doubles the digits; a modulus of 1 - 1e-300 takes 14
 
@@ -26,7 +26,7 @@ class Complete(NamedTuple):
     left: float  # m - (K - E) / K
 
 
-@inlined
+@kernel
 def complete(parameter, complement):
     """`Complete` integrals of a `parameter` m from 0 to 1, to rounding; complement: 1 - m, above 0."""
     a, b, weight, later = 1.0, math.sqrt(complement), 0.5, 0.0

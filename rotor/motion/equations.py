@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.rotor.drag import drag
 from touchdown.rotor.motion.gyroscopics import polar_product
 from touchdown.rotor.motion.loads import modal_forces, moment
@@ -73,7 +73,7 @@ def rhs(t, q, dq, m):
         tail_rate[WORK + j] = _power(m, j, since_middle, now.vx, now.vy, spin)
 
 
-@inlined
+@kernel
 def _power(m, j, since_middle, vx, vy, spin):
     """Power (W) of the load at station j at modal velocities (n,) and `spin` (rad/s)."""
     load = m.u.station[j]

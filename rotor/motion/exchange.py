@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import MODES
 from touchdown.rotor.motion.state import ANGLE, SPIN, WORK, modal, rest
 from touchdown.rotor.motion.unbalance import spin_momentum
@@ -59,7 +59,7 @@ def take_mode_loads(q, m):
         tail[SPIN] += change
 
 
-@inlined
+@kernel
 def _kick(q, m, j, k, load):
     """Move mode k by a `ModeLoad` at station j; returns the energy (J) that brings."""
     px, py, vx, vy = modal(q, m)

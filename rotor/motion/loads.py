@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.rotor.drag import drag
 
 
@@ -16,7 +16,7 @@ def moment(m, since_middle):
     return total
 
 
-@inlined
+@kernel
 def spin_up(m, since_middle, spin):
     """Spin acceleration (rad/s2) by loads and drag at `spin` (rad/s), without the unbalance's reaction."""
     return (moment(m, since_middle) - drag(spin, m.p)) / m.d.inertia
@@ -44,7 +44,7 @@ def modal_force_rates(m, dfx, dfy):
         _add(m, j, load.dfx, load.dfy, dfx, dfy)
 
 
-@inlined
+@kernel
 def _add(m, j, x, y, fx, fy):
     """Add a force (x, y) at station j, in N or N/s, to modal ones (n,)."""
     if x != 0.0 or y != 0.0:

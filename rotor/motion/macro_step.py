@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.rotor.drag import drag
 from touchdown.rotor.motion import stress_report
 from touchdown.rotor.motion.equations import accelerate
@@ -55,7 +55,7 @@ def advance(q, m, step, longest, work):
     account(q, m, step, start, area, tail[ANGLE] - angle, swept)
 
 
-@inlined
+@kernel
 def _stride(q, m, since_middle, h, load, reaction, area, spare):
     """One stride of h (s) about `since_middle` (s) under a `LinearLoad`; area, spare: `Planar`.
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.rotor.motion.equations import accelerate, energies
 from touchdown.rotor.motion.state import LOSS, SPIN, WORK, Planar, modal, rest
 
@@ -73,7 +73,7 @@ def _publish_station(q, m, j, acceleration, alpha):
             z.ay_free += shape[k] * (ay[k] - shape[k] * fy)
 
 
-@inlined
+@kernel
 def publish_constants(m):
     """Outputs that stay: mass (kg), polar inertia (kg m2), positions of the nodes (m), and at stations."""
     m.o.mass, m.o.polar_inertia = m.d.mass, m.d.inertia
@@ -83,7 +83,7 @@ def publish_constants(m):
         _publish_station_constants(m, j)
 
 
-@inlined
+@kernel
 def _publish_station_constants(m, j):
     """What stays at station j; modes that share a slot there become one of the same static flexibility."""
     d, o = m.d, m.o.station[j]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 
 ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
 
@@ -33,7 +33,7 @@ class Modal(NamedTuple):
     vy: np.ndarray
 
 
-@inlined
+@kernel
 def planar(row, m):
     """The first 2 n places of `row` as `Planar` views."""
     n = m.d.modes

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import integer, real
 from touchdown.rotor.motion.state import modal
 
@@ -149,7 +149,7 @@ def _add(row, x, y, stress):
         stress.y[i] += row[i] * y
 
 
-@inlined
+@kernel
 def _largest(bending, shear, m):
     """Largest bending and shear along the rotor (`Peak` each), and the stress that decides what is kept.
 
@@ -184,7 +184,7 @@ def _keep(bending, shear, m):
         o.shear_x, o.shear_y = _larger(o.shear_x, shear.x[i]), _larger(o.shear_y, shear.y[i])
 
 
-@inlined
+@kernel
 def _larger(before, stress):
     """The one of larger size, with its sign (Pa)."""
     return stress if abs(stress) > abs(before) else before

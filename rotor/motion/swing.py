@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.numerics import oscillator
 from touchdown.modelkit.variables import array, real
 from touchdown.rotor.modal.data import MOST_MODES
@@ -95,7 +95,7 @@ def swing(q, m, load, since_middle, h, alpha, area):
     return lost
 
 
-@inlined
+@kernel
 def _pull(m, k, cosine, sine, square, alpha):
     """Modal force (x, y) of the unbalance: (square - i alpha) U exp(i theta), square that of the spin."""
     ux, uy = unbalance_of(m, k, cosine, sine)

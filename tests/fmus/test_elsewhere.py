@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import ast
+import json
 import os
 import re
 import shlex
 import shutil
 import subprocess
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -25,6 +27,7 @@ from touchdown.fmus.build import build
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.python import link
 from touchdown.fmus.python.link import Interpreter, LinkError, interpreter
+from touchdown.fmus.python.sources import package_name, write_package
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
@@ -60,12 +63,18 @@ def linked(here: Interpreter, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return linked_to(here, tmp_path_factory.mktemp("linked"))
 
 
-def hosted(host: Path, folder: Path, commands: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Let the host do `commands` to the FMU in `folder`, knowing nothing of this environment."""
-    resources = (folder / "resources").as_uri()
+def hosted(
+    host: Path, folders: Path | Sequence[Path], commands: str, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Let the host do `commands` to the FMUs in `folders`, knowing nothing of this environment."""
     return hosting.hosted(
-        host, folder, commands, resources, {"TOUCHDOWN_CACHE": str(user_cache()), **environment}
+        host, folders, commands, "{}/resources", {"TOUCHDOWN_CACHE": str(user_cache()), **environment}
     )
+
+
+def preloaded() -> dict[str, str]:
+    """The environment that `touchdown doctor` gives hosts without Python."""
+    return dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
 
 
 def test_a_host_in_c_gets_the_same_numbers_to_the_last_bit(
@@ -102,6 +111,57 @@ def test_a_host_in_c_ends_well(commands: str, host: Path, linked: Path):
     assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 4
 
 
+Fleet = tuple[list[Path], dict[str, str]]
+FEW = ("bushing", "housing", "rigid_rotor", "simplified_caged")
+
+
+@pytest.fixture(scope="module")
+def fleets(
+    here: Interpreter, linked: Path, unpacked: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory
+) -> Mapping[str, Fleet]:
+    """FMUs for hosts without Python, linked and as they are, each kind with the environment it needs."""
+    folder = tmp_path_factory.mktemp("fleet")
+    others = [linked_to(here, folder / name, name) for name in FEW[1:]]
+    return {"linked": ([linked, *others], {}), "preloaded": ([unpacked[name] for name in FEW], preloaded())}
+
+
+@pytest.mark.parametrize("way", ["linked", "preloaded"])
+@pytest.mark.parametrize("count", [2, 4])
+def test_a_host_in_c_with_several_fmus_ends_well(
+    way: str, count: int, host: Path, fleets: Mapping[str, Fleet]
+):
+    """One interpreter is theirs together; the first that was loaded ends it, after the others let go."""
+    folders, environment = fleets[way]
+    commands = (f"start step 0 1e-5 {LIFE}", "start step 0 1e-5 leave")
+    with ThreadPoolExecutor(2) as pool:
+        ended = list(pool.map(lambda c: hosted(host, folders[:count], c, **environment), commands))
+    assert [(done.returncode, done.stderr) for done in ended] == [(0, "")] * 2
+
+
+COUNTED = """
+import gc, json
+from slave_driver import Slave
+for k in range(5):
+    slave = Slave(sys.argv[1]).start()
+    slave.free()
+scripts = [m.__dict__ for n, m in sys.modules.items() if n.startswith("bushing_")]
+holders = sum(r is scripts[0] for o in gc.get_objects() for r in gc.get_referents(o))
+print(json.dumps([len(scripts), holders, sys.getrefcount(scripts[0]) - 1]))
+"""
+
+
+def test_nothing_is_released_that_is_still_used(alone: Alone, unpacked: Mapping[str, Path]):
+    """pythonfmu drops one reference to the script's globals for every instance, which it does not own.
+
+    Where more hold them than are counted, the end of the interpreter frees them too early.
+    """
+    done = alone(COUNTED, unpacked["bushing"])
+    assert done.returncode == 0, done.stderr
+    scripts, holders, counted = json.loads(done.stdout)
+    assert scripts == 1
+    assert counted >= holders >= 2  # the module, and the list here
+
+
 PLAIN = """
 from pythonfmu import Fmi2Causality, Fmi2Slave, Real
 
@@ -123,7 +183,7 @@ def test_an_instance_that_is_freed_leaves_no_more_than_pythonfmu_does(
     (tmp_path / "plain.py").write_text(PLAIN)
     built = FmuBuilder.build_FMU(tmp_path / "plain.py", dest=tmp_path)
     plain = Path(extract(str(built), str(tmp_path / "unpacked")))
-    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    command = preloaded()
     lives = 500
     left = []
     for folder, environment in ((plain, command), (linked, {})):
@@ -169,7 +229,7 @@ def test_another_python_leaves_its_paths_alone(here: Interpreter, tmp_path: Path
     folder = linked_to(replace(here, version="3.0"), tmp_path)
     bare = hosted(host, folder, "start")
     assert bare.returncode == 2  # nothing was shared, so nothing compiled can be imported
-    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    command = preloaded()
     assert hosted(host, folder, "start step 0 1e-5", **command).returncode == 0
 
 
@@ -210,6 +270,18 @@ def test_what_cannot_be_linked(
     assert list(tmp_path.rglob("*.fmu")) == []
 
 
+def test_sources_in_an_fmu_import_none_of_the_project_that_may_be_installed(tmp_path: Path):
+    """Nor do functions, which import when they are called."""
+    modules = [
+        ast.parse(path.read_text(encoding="utf-8")) for path in write_package(tmp_path).rglob("*.py")
+    ]
+    nodes = [node for module in modules for node in ast.walk(module)]
+    imported = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+    imported |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    assert any(name.startswith(f"{package_name()}.") for name in imported)
+    assert [name for name in imported if name.split(".")[0] == "touchdown"] == []
+
+
 # -- documentation and icon --------------------------------------------------------------------------
 
 
@@ -222,6 +294,19 @@ def test_documentation_names_every_variable(fmu: str, unpacked: Mapping[str, Pat
     assert {name for name in plain if f"<td>{name}</td>" not in text} == set()
     for slot in slots(recipe(fmu).model):
         assert slot.variable.spec.meaning.split("'")[0].replace("<", "&lt;") in text
+
+
+def test_a_row_of_the_documentation_is_true_of_all_between():
+    """Members that start alike share a row where they are neighbours."""
+    modes = [f"journal.mode[{k}].inv_m" for k in range(1, 21)]
+    text = page(recipe("bushing").starting_from({modes[k]: 3.0 for k in (0, 1, 4)}))
+    rows = re.findall(r"<tr><td>([^<]+)(?:<br>… ([^<]+))?</td><td>([^<]+)</td>", text)
+    assert [row for row in rows if row[0] in modes] == [
+        (modes[0], modes[1], "3"),
+        (modes[2], modes[3], "0"),
+        (modes[4], "", "3"),
+        (modes[5], modes[19], "0"),
+    ]
 
 
 @every_fmu
@@ -275,7 +360,7 @@ def test_doctor_finds_this_machine_fit(capsys: pytest.CaptureFixture[str], here:
 
 def test_the_command_line_of_the_doctor_works(host: Path, here: Interpreter, unpacked: Mapping[str, Path]):
     """With an FMU that is not linked; and without it the host cannot load one."""
-    command = dict(word.split("=", 1) for word in shlex.split(doctor.command_line()) if "=" in word)
+    command = preloaded()
     assert hosted(host, unpacked["bushing"], "start step 0 1e-5", **command).returncode == 0
     assert hosted(host, unpacked["bushing"], "start").returncode == 1
 

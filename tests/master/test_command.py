@@ -15,10 +15,11 @@ from places import COMMAND
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.version import VERSION
 from touchdown.master.cli import joined, main, parser
+from touchdown.master.interop.scenes import find_scene
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.schemes import SCHEMES
 from touchdown.master.verbs import ALL
-from touchdown.master.verbs.arguments import chosen_scene
+from touchdown.master.verbs.arguments import chosen_scene, swapped
 
 EXAMPLES = [pytest.param(verb, line, id=line) for verb in ALL for line in verb.examples]
 SLOW = {"numba", "scipy", "matplotlib", "h5py", "fmpy"}
@@ -35,8 +36,10 @@ def parsed(line: str) -> argparse.Namespace:
 def test_an_example_is_of_its_verb_and_what_it_asks_for_exists(verb, line: str) -> None:
     options = parsed(line)
     assert options.run is verb.execute
-    if hasattr(options, "swap"):
+    if hasattr(options, "scheme"):
         chosen_scene(options)
+    elif hasattr(options, "swap"):
+        swapped(find_scene(options.scene), options)
     elif getattr(options, "scene", None):
         assert options.scene in shipped()
 

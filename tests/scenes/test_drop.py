@@ -59,6 +59,7 @@ def test_force_on_the_worst_ball_doubles_with_the_cage() -> None:
 # sums of absolute values; twice what the cageless bearing's steps leave, half of what they would leave if
 # their work were booked at the velocities that they forecast
 LEDGER = {CAGED: 1e-4, CAGELESS: 1.5e-4}
+SETTLED = {CAGED: 1.5e-4, CAGELESS: 6e-4}  # over 5 s; twice what macro steps of 100 us leave
 
 
 def test_the_ledger_closes(first_impact: dict) -> None:
@@ -133,7 +134,7 @@ def test_what_five_seconds_bring(
     assert pendulum[0] < float(summary["pendulum_frequency_Hz"]) < pendulum[1]  # type: ignore[arg-type]
     assert summary["rotor_speed_end_rpm"] == pytest.approx(speed, abs=15.0)
     assert summary["loaded_balls_end"] in loaded
-    assert float(summary["energy_residual_relative"]) < LEDGER[name]  # type: ignore[arg-type]
+    assert float(summary["energy_residual_relative"]) < SETTLED[name]  # type: ignore[arg-type]
 
 
 def test_the_linearly_implicit_steps_follow_an_explicit_solution() -> None:

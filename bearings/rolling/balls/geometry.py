@@ -12,7 +12,7 @@ from touchdown.bearings.contact import proportion
 from touchdown.bearings.contact.laws import damp, lay_abreast
 from touchdown.bearings.contact.proportion import out_of_proportion
 from touchdown.bearings.contact.stiffness import in_series, race_contact_stiffness
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 
 EVEN = 1.0  # spread
 ROUNDING = 1e-12  # of a full turn of balls
@@ -24,31 +24,31 @@ def ball_mass(rows, diameter, density):
     return rows * (density * math.pi / 6.0 * diameter**3.0)
 
 
-@inlined
+@kernel
 def ball_inertia(mass, diameter):
     """Of solid spheres of `mass` (kg) about their centres (kg m2); diameter: m."""
     return 0.4 * mass * (0.5 * diameter) ** 2.0
 
 
-@inlined
+@kernel
 def inner_radius(b):
     """Radius of the inner race where the balls run (m)."""
     return 0.5 * b.pitch_diameter - 0.5 * b.diameter
 
 
-@inlined
+@kernel
 def outer_radius(b):
     """Radius of the outer race where the balls run (m)."""
     return 0.5 * b.pitch_diameter + 0.5 * b.diameter
 
 
-@inlined
+@kernel
 def touch_angle(b):
     """Angle at the bearing's centre between neighbours that just touch (rad)."""
     return 2.0 * math.asin(min(1.0, b.diameter / b.pitch_diameter))
 
 
-@inlined
+@kernel
 def spread_of(b):
     """`spread` of a `FreeBallSet`: 1 for even spacing, less for balls bunched around the first."""
     touching = min(1.0, b.count * touch_angle(b) / (2.0 * math.pi))
@@ -63,7 +63,7 @@ def start_angle(first, count, spread, i):
     return angle + gap if i > count // 2 else angle
 
 
-@inlined
+@kernel
 def set_stiffness(stiffness, b):
     """Set `stiffness`, a record of `RaceStiffness`: of a ball on either race (2.45), and through both."""
     groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
@@ -73,14 +73,14 @@ def set_stiffness(stiffness, b):
     stiffness.series = in_series(stiffness.inner, stiffness.outer)
 
 
-@inlined
+@kernel
 def outer_share(stiffness):
     """How much of the rings' approach at a ball is indentation of the outer race; a `RaceStiffness`."""
     inner, outer = stiffness.inner ** (-2.0 / 3.0), stiffness.outer ** (-2.0 / 3.0)
     return outer / (inner + outer)
 
 
-@inlined
+@kernel
 def set_race_law(law, b, stiffness, mass):
     """Set `law`, a record, to that of the balls side by side on races, each of `stiffness` (N/m^1.5).
 
@@ -103,7 +103,7 @@ PROBLEMS = (
 )
 
 
-@inlined
+@kernel
 def problem(b, crowded, told):
     """Why these balls cannot be put together: its number in `PROBLEMS`, or 0.
 

@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from touchdown.bearings.rolling.balls.geometry import outer_share, start_angle
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 
 MOST_STEPS = 100  # of Newton's method; ten are enough where balls hold the ring
 MOST_HALVINGS = 40
@@ -76,13 +76,13 @@ def _step_from(at, weight, far):
     return dx / trace - slide * x, dy / trace - slide * y
 
 
-@inlined
+@kernel
 def _is_lower(tried, at):
     """Whether a `Balance` is nearer to rest than another; at rest potentials differ by rounding only."""
     return tried.potential < at.potential or tried.x**2 + tried.y**2 < at.x**2 + at.y**2
 
 
-@inlined
+@kernel
 def _first_guess(springs, sunk):
     """A place (m, m) by the play and how deep the ring is `sunk` (m) on one ball, for even spacing."""
     half_gap = math.pi / springs.count
@@ -126,7 +126,7 @@ def resting_place(springs, weight, out):
     return x, y
 
 
-@inlined
+@kernel
 def place_balls(d, b, spread):
     """Set d.x and d.y, the centres of the balls at the start (m), with the ring at (d.rest_x, d.rest_y).
 

@@ -14,7 +14,7 @@ from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, press
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
 from touchdown.bearings.rolling.sides.contact import heat_of, note, note_apart
-from touchdown.modelkit.kernel import inlined, kernel
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
 
@@ -130,7 +130,7 @@ def report(q, m):
     return kinetic, p.gravity * p.cage.mass * o.y
 
 
-@inlined
+@kernel
 def set_weights(m):
     """Set the error weights of the cage's components, behind the m.n others, and count them.
 

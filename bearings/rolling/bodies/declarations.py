@@ -35,7 +35,7 @@ from touchdown.bearings.rolling.micro_step import (
     step_in_hit,
 )
 from touchdown.bearings.rolling.sides.contact import SideContacts
-from touchdown.modelkit.kernel import inlined
+from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array, group, groups, integer, real
 
 
@@ -140,7 +140,7 @@ def problems(side: str) -> tuple[str, ...]:
     return (*declarations.problems("race_friction", side), *profiles)
 
 
-@inlined
+@kernel
 def problem(p, crowded, side, usual, told):
     """What is wrong between the parameters p of journal, balls and races: its number, or 0.
 
@@ -162,7 +162,7 @@ def problem(p, crowded, side, usual, told):
     return found
 
 
-@inlined
+@kernel
 def settle(m, spread, side, lighter):
     """Set in m.d what both detailed models share, but for the size; spread: as in `balls.geometry`.
 

@@ -17,7 +17,7 @@ from touchdown.bearings.contact.pair import Place, slip
 from touchdown.bearings.contact.search import Disc, Outline, race_place
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.rubbing import RubbedRace
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import array
 
@@ -87,14 +87,14 @@ class Forces(NamedTuple):
     rate: object  # m/s, of the indentation, before the kick
 
 
-@inlined
+@kernel
 def places_of(contacts, n):
     """`Places` (n,) as views of `contacts` (Contacts)."""
     c = contacts
     return Places(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
 
 
-@inlined
+@kernel
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts

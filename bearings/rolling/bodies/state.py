@@ -15,7 +15,7 @@ from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.balls.geometry import inner_radius
 from touchdown.bearings.rolling.bodies.race import Balls
-from touchdown.modelkit.kernel import inlined, kernel, woven
+from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 
 X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
@@ -90,7 +90,7 @@ def fastest(m):
     return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 
 
-@inlined
+@kernel
 def set_weights(m):
     """Set the error weights up to the balls', and m.n to what is in use without a cage.
 

@@ -72,24 +72,36 @@ static PRINTS Status explain(Fmu *f, const char *format, ...)
 }
 
 /* Hand what was noted to the host's log. */
-static Status tell(Fmu *f)
+static Status tell(Fmu *f, Status status)
 {
     const char *text = f->said ? f->said : SAY_NO_MEMORY;
+    const char *category = status == DISCARD ? "logStatusDiscard" : "logStatusError";
     /* finished: loggers of hosts in other languages do not fill in what a format leaves open */
-    if (f->callbacks.logger)
-        f->callbacks.logger(f->callbacks.environment, f->name, ERROR, "logStatusError", text);
-    return ERROR;
+    if (f->callbacks.logger) f->callbacks.logger(f->callbacks.environment, f->name, status, category, text);
+    return status;
 }
 
 /* Tell it, and keep it: a failed instance does not go on. */
-static Status fail(Fmu *f)
+static Status stop(Fmu *f, Status status)
 {
-    tell(f);
+    tell(f, status);
     free(f->why);
     f->why = f->said;
     f->said = NULL;
     f->life.failed = 1;
-    return ERROR;
+    return status;
+}
+
+static Status fail(Fmu *f)
+{
+    return stop(f, ERROR);
+}
+
+/* Answer that it failed before. */
+static Status stop_again(Fmu *f)
+{
+    explain(f, SAY_STOPPED, f->why ? f->why : SAY_FAILED_STATE);
+    return tell(f, ERROR);
 }
 
 #define FAIL(f, ...) (explain(f, __VA_ARGS__), fail(f))
@@ -279,7 +291,7 @@ API Fmu *fmi2Instantiate(const char *name, int type, const char *guid, const cha
     if (!problem) problem = unusable(type, guid);
     if (problem) {
         explain(f, "%s", problem);
-        tell(f);
+        tell(f, ERROR);
         fmi2FreeInstance(f);
         return NULL;
     }
@@ -314,6 +326,7 @@ API Status fmi2EnterInitializationMode(Fmu *f)
 API Status fmi2ExitInitializationMode(Fmu *f)
 {
     if (f->life.phase != INITIALISING) return FAIL(f, SAY_NOT_ENTERED);
+    if (f->life.failed) return stop_again(f);
     if (refresh(f)) return fail(f);
     f->life.phase = STEPPING;
     f->life.end = f->life.start;
@@ -334,7 +347,7 @@ API Status fmi2Reset(Fmu *f)
 
 /* -- steps --------------------------------------------------------------------------------------- */
 
-/* What stopped a macro step, and what to do about it. */
+/* What stopped a macro step, and what to do about it; discarded where a smaller one may be taken. */
 static Status explain_step(Fmu *f, int64_t status, double time, double step)
 {
     if (status == BAD_INPUT)
@@ -342,22 +355,25 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
             if (s->access & INPUT && !isfinite(f->words[s->index]))
                 return explain(f, SAY_BAD_INPUT, s->name, plain(f->words[s->index]), time);
     if (status == BAD_INPUT || status == BAD_LOAD) return explain(f, SAY_BAD_LOAD, time);
-    if (status == TOO_MANY_STEPS) return explain(f, SAY_TOO_MANY_STEPS, MOST_STEPS, step, time);
     if (status == RAISED) return explain(f, SAY_GAVE_UP, time);
-    return explain(f, SAY_UNRESOLVED, time, step);
+    if (status == TOO_MANY_STEPS)
+        explain(f, SAY_TOO_MANY_STEPS, MOST_STEPS, step, time);
+    else
+        explain(f, SAY_UNRESOLVED, time, step);
+    return DISCARD;
 }
 
 API Status fmi2DoStep(Fmu *f, double time, double step, int no_set_state_before)
 {
     (void)no_set_state_before;
     Life *life = &f->life;
-    if (life->failed) return explain(f, SAY_STOPPED, f->why ? f->why : SAY_FAILED_STATE), tell(f);
+    if (life->failed) return stop_again(f);
     if (life->phase != STEPPING) return FAIL(f, life->phase == ENDED ? SAY_ENDED : SAY_NOT_STARTED);
     if (fabs(time - life->end) > LATE * step) return FAIL(f, SAY_APART, time, step, life->end);
     if (!(step > 0.0) || !isfinite(step) || !isfinite(time)) return FAIL(f, SAY_NO_STEP, plain(time), plain(step));
     if (f->outdated && derive(f)) return fail(f);
     int64_t status = advance(f->words, f->scratch, time, step);
-    if (status) return explain_step(f, status, time, step), fail(f);
+    if (status) return stop(f, explain_step(f, status, time, step));
     life->end = time + step;
     return OK;
 }
@@ -421,10 +437,15 @@ static int settable(const Fmu *f)
     return f->life.phase < STEPPING ? PARAMETER | INPUT : INPUT;
 }
 
-/* Whether outputs follow from what was set; before initialisation they are made to, if they can be. */
-static int current(Fmu *f)
+/* See that the variables of these kinds can be read and have values: outputs have none before initialisation
+   is entered, and until it is complete they are made to follow from what was set. */
+static Status readable(Fmu *f, const Reference *vr, size_t count, int type, const char *kind)
 {
-    return f->life.phase >= STEPPING || !f->stale || !refresh(f);
+    const int given = type | PARAMETER | INPUT, all = given | OUTPUT;
+    if (!allowed(vr, count, all)) return refuse(f, SAY_UNREADABLE, vr, count, all, kind);
+    if (f->life.phase >= STEPPING || allowed(vr, count, given)) return OK;
+    if (f->life.phase == NEW) return refuse(f, SAY_READ_EARLY, vr, count, given, kind);
+    return f->stale && refresh(f) ? fail(f) : OK;
 }
 
 API Status fmi2SetReal(Fmu *f, const Reference vr[], size_t count, const double values[])
@@ -438,10 +459,8 @@ API Status fmi2SetReal(Fmu *f, const Reference vr[], size_t count, const double 
 
 API Status fmi2GetReal(Fmu *f, const Reference vr[], size_t count, double values[])
 {
-    const int needed = REAL | PARAMETER | INPUT | OUTPUT;
-    int known = current(f);
-    if (known && !allowed(vr, count, needed)) return refuse(f, SAY_UNREADABLE, vr, count, needed, "real");
-    for (size_t i = 0; i < count; i++) values[i] = known ? f->words[vr[i]] : NAN;
+    if (readable(f, vr, count, REAL, "real")) return ERROR;
+    for (size_t i = 0; i < count; i++) values[i] = f->words[vr[i]];
     return OK;
 }
 
@@ -459,10 +478,8 @@ API Status fmi2SetInteger(Fmu *f, const Reference vr[], size_t count, const int 
 
 API Status fmi2GetInteger(Fmu *f, const Reference vr[], size_t count, int values[])
 {
-    const int needed = INTEGER | PARAMETER | INPUT | OUTPUT;
-    int known = current(f);
-    if (known && !allowed(vr, count, needed)) return refuse(f, SAY_UNREADABLE, vr, count, needed, "integer");
-    for (size_t i = 0; i < count; i++) values[i] = known ? (int)whole(f->words + vr[i]) : 0;
+    if (readable(f, vr, count, INTEGER, "integer")) return ERROR;
+    for (size_t i = 0; i < count; i++) values[i] = (int)whole(f->words + vr[i]);
     return OK;
 }
 
@@ -573,26 +590,41 @@ API Status fmi2SetFMUstate(Fmu *f, const Saved *state)
     return OK;
 }
 
+/* Serialised states end with this number of their bytes (FNV-1a): a state that was changed on its way would
+   be taken for places and counts in memory. */
+static uint64_t checksum(const char bytes[], size_t size)
+{
+    uint64_t sum = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < size; i++) sum = (sum ^ (unsigned char)bytes[i]) * 0x100000001b3u;
+    return sum;
+}
+
 API Status fmi2SerializedFMUstateSize(Fmu *f, const Saved *state, size_t *size)
 {
     if (!state) return FAIL(f, SAY_FOREIGN_STATE);
-    *size = state->size;
+    *size = state->size + sizeof(uint64_t);
     return OK;
 }
 
 API Status fmi2SerializeFMUstate(Fmu *f, const Saved *state, char bytes[], size_t size)
 {
     if (!state) return FAIL(f, SAY_FOREIGN_STATE);
-    if (size < state->size) return FAIL(f, SAY_NO_ROOM);
+    if (size < state->size + sizeof(uint64_t)) return FAIL(f, SAY_NO_ROOM);
+    const uint64_t sum = checksum(state->bytes, state->size);
     memcpy(bytes, state->bytes, state->size);
+    memcpy(bytes + state->size, &sum, sizeof sum);
     return OK;
 }
 
-/* Whose state it is, `fmi2SetFMUstate` asks. */
 API Status fmi2DeSerializeFMUstate(Fmu *f, const char bytes[], size_t size, Saved **state)
 {
-    if (!room(state, size)) return FAIL(f, SAY_NO_MEMORY);
-    memcpy((*state)->bytes, bytes, size);
+    const size_t own = state_size();
+    if (!bytes || size != own + sizeof(uint64_t) || memcmp(bytes, MODEL.guid, strlen(MODEL.guid)))
+        return FAIL(f, SAY_FOREIGN_STATE);
+    const uint64_t sum = checksum(bytes, own);
+    if (memcmp(bytes + own, &sum, sizeof sum)) return FAIL(f, SAY_FOREIGN_STATE);
+    if (!room(state, own)) return FAIL(f, SAY_NO_MEMORY);
+    memcpy((*state)->bytes, bytes, own);
     return OK;
 }
 

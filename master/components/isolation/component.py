@@ -15,6 +15,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.fmu import CALLS, ArchivedFmu
+from touchdown.master.components.fmu3 import CALLS as CALLS_3
 from touchdown.master.components.isolation.board import Ask, Word
 from touchdown.master.components.isolation.worker import LostError, Worker
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
@@ -152,7 +153,8 @@ class IsolatedFmu(ArchivedFmu):
         try:
             request(*arguments, pushed=pushed)
         except LostError as error:
-            call = CALLS[self._worker.board.words[Word.AT]]
+            calls = CALLS_3 if self.description.fmiVersion.startswith("3.") else CALLS
+            call = calls[self._worker.board.words[Word.AT]]
             self._lost = f"{error} in {call} at t = {self._time:.9g} s{error.remedy}"
             raise TouchdownError(self._sentence()) from None
         except KeyboardInterrupt:

@@ -16,7 +16,8 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.processes.orphans import die_with_parent
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import CALLS, FmuComponent
-from touchdown.master.components.foreign import ForeignFmu
+from touchdown.master.components.fmu3 import CALLS as CALLS_3
+from touchdown.master.components.foreign import foreign_fmu
 from touchdown.master.components.isolation.board import Ask, Board, Word
 from touchdown.master.components.isolation.crossing import CUT_OFF, GoneError, Side
 
@@ -38,8 +39,8 @@ class Host:
 
     def load(self, name: str, path: str, cache: str, origin: str) -> None:
         """Load the FMU at `path`."""
-        kind = FmuComponent if origin else ForeignFmu
-        self._fmu = kind(name, Path(path), Path(cache), origin, self._note)
+        load = FmuComponent if origin else foreign_fmu
+        self._fmu = load(name, Path(path), Path(cache), origin, self._note)
 
     def set(self, values: dict[str, float]) -> None:
         """Set parameters or inputs before initialisation."""
@@ -107,7 +108,7 @@ class Host:
         return self._fmu
 
     def _note(self, call: str) -> None:
-        self._words[Word.AT] = CALLS.index(call)
+        self._words[Word.AT] = (CALLS if call in CALLS else CALLS_3).index(call)
 
 
 def main() -> None:

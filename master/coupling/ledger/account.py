@@ -6,16 +6,19 @@ from typing import Any
 
 import numpy as np
 
+from touchdown.master.coupling.bonds.crossing import Crossing
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.loop.kernels.books import BOOK
+
+SETTLED = 4  # steps in which a bond has done work, before it is judged
 
 
 class Account:
     """One connection's: a name for what stands in its record, which kernels book in."""
 
-    def __init__(self, attachment: Attachment, record: Any = None) -> None:
+    def __init__(self, title: str, record: Any = None) -> None:
         """`record`: a row of an array of BOOK; a blank one where none is given."""
-        self.attachment = attachment
+        self.title = title  # of the connection, for people
         self.record = np.zeros(1, BOOK)[0] if record is None else record
         self.unaudited = ""  # why, where it is not audited
 
@@ -43,3 +46,45 @@ class Account:
         """Add a macro step's (J)."""
         self.record["total"] += abs(residual)
         self.record["made"] -= residual
+
+
+class SeatAccount(Account):
+    """Of a bearing's port on a body's port."""
+
+    def __init__(self, attachment: Attachment, record: Any = None) -> None:
+        super().__init__(attachment.title, record)
+        self.attachment = attachment
+
+
+class BondAccount(Account):
+    """Of a bond, whose crossing hears what is made.
+
+    It tells no mass, so how much energy the motion brings along is not known; it is judged once it has
+    turned some over.
+    """
+
+    def __init__(self, crossing: Crossing, record: Any = None) -> None:
+        super().__init__(crossing.bond.title, record)
+        self.crossing = crossing
+
+    @property
+    def total(self) -> float:
+        return self.crossing.past.audit.total
+
+    @property
+    def made(self) -> float:
+        return self.crossing.past.audit.made
+
+    @property
+    def turned(self) -> float:
+        return self.crossing.past.audit.turned
+
+    @property
+    def turnover(self) -> float:
+        return self.turned
+
+    def fetch(self) -> None:
+        """Take over, for judgement, what was heard so far."""
+        heard = self.crossing.past.audit
+        if heard.loaded >= SETTLED:
+            self.record["total"], self.record["turned"] = heard.total, heard.turned

@@ -9,7 +9,7 @@ import numpy as np
 
 from touchdown.master.components.contract import FORCE, JUMP, POSITION, WORK
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.ledger.account import Account
+from touchdown.master.coupling.ledger.account import Account, BondAccount, SeatAccount
 from touchdown.master.coupling.ledger.witness import witnesses
 from touchdown.master.coupling.loop.kernels.books import BOOK, book, worst_of
 from touchdown.master.coupling.steppers.stepper import Stepper
@@ -19,7 +19,7 @@ VELOCITY = tuple(f"v{axis}" for axis in POSITION)
 
 
 class Ledger:
-    """Accounts of all attachments of a system that is initialised.
+    """Accounts of all attachments and bonds of a system that is initialised.
 
     scale: what residuals are related to (J), 0: nothing; fall: energy lost by falling (J), 0: unknown.
     """
@@ -27,11 +27,18 @@ class Ledger:
     def __init__(self, stepper: Stepper, scale: float, fall: float) -> None:
         self.scale, self.fall = scale, fall
         self._system = system = stepper.system
-        self.books = np.zeros(len(system.attachments), BOOK)
-        self.accounts = [Account(a, self.books[i]) for i, a in enumerate(system.attachments)]
-        self._flows = [_begun(system, account) for account in self.accounts]
+        self.books = np.zeros(len(system.attachments) + len(system.bonds), BOOK)
+        rows = iter(self.books)
+        self._seats = [SeatAccount(a, next(rows)) for a in system.attachments]
+        self._bonds = [BondAccount(c, next(rows)) for c in stepper.crossings]
+        crossing = {account.title for account in self._bonds}
+        held = [title for bond in system.bonds if (title := bond.title) not in crossing]
+        self.accounts: list[Account] = [*self._seats, *self._bonds, *(Account(b, next(rows)) for b in held)]
+        for account in self.accounts[len(self._seats) + len(self._bonds) :]:
+            account.unaudited = f"scheme {stepper.run.scheme.name} holds its values"
+        self._flows = [_begun(system, account) for account in self._seats]
         self._find()
-        silent = [account for account in self.accounts if not account.record["stating"]]
+        silent = [account for account in self._seats if not account.record["stating"]]
         self._witnesses = witnesses(stepper, silent)
 
     def close(self) -> None:
@@ -47,7 +54,7 @@ class Ledger:
 
     def _find(self) -> None:
         self._signals, position = self._system.signals, self._system.position
-        for account, flow in zip(self.accounts, self._flows, strict=True):
+        for account, flow in zip(self._seats, self._flows, strict=True):
             for names, there, places in (
                 (_statements(account.attachment), "stating", "statements"),
                 (flow, "flowing", "flow"),
@@ -64,6 +71,8 @@ class Ledger:
     def book(self, done: int, step: float) -> None:
         """Book a step of `step` (s) that was just taken, the number `done` (from 1)."""
         book(self.books, self._signals, done)
+        for account in self._bonds:
+            account.fetch()
         for witness in self._witnesses:
             witness.book(step)
 
@@ -101,7 +110,7 @@ class Ledger:
     def worst_title(self) -> str:
         """The connection with the largest share, for people; empty where there is none."""
         worst = self.worst()
-        return worst.attachment.title if worst else ""
+        return worst.title if worst else ""
 
     @property
     def worst_share(self) -> float:
@@ -111,7 +120,7 @@ class Ledger:
     @property
     def unaudited(self) -> tuple[str, ...]:
         """Connections that are not audited, each with why."""
-        return tuple(f"{a.attachment.title}, {a.unaudited}" for a in self.accounts if a.unaudited)
+        return tuple(f"{a.title}, {a.unaudited}" for a in self.accounts if a.unaudited)
 
 
 def _statements(a: Attachment) -> list[str]:
@@ -119,7 +128,7 @@ def _statements(a: Attachment) -> list[str]:
     return [a.bearing_end.full(WORK), a.bearing_end.full(JUMP), a.body_end.full(WORK)]
 
 
-def _begun(system: System, account: Account) -> list[str]:
+def _begun(system: System, account: SeatAccount) -> list[str]:
     """Begin an account; returns the names of motion and load from which follows what it turns over."""
     a, record = account.attachment, account.record
     inv_m = a.motion("inv_m")  # 1/kg; 0: unknown, or prescribed

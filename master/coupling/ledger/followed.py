@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from touchdown.master.coupling.ledger.account import Account
+from touchdown.master.coupling.ledger.account import SeatAccount
 from touchdown.master.coupling.system import System
 
 Place = Callable[[str], int | None]
@@ -34,7 +34,7 @@ class Path:
 class Axis:
     """One direction of a port: the body's way along it, and the force that the body was given."""
 
-    def __init__(self, system: System, account: Account, axis: str, place: Place) -> None:
+    def __init__(self, system: System, account: SeatAccount, axis: str, place: Place) -> None:
         a = account.attachment
         self.account, self._system = account, system
         self._told = [place(a.bearing_end.own(n)) for n in (axis, f"v{axis}", f"a{axis}_free")]
@@ -86,7 +86,7 @@ class Axis:
 class Spin:
     """The spin at a port, from one end of the step to the other."""
 
-    def __init__(self, system: System, account: Account, place: Place) -> None:
+    def __init__(self, system: System, account: SeatAccount, place: Place) -> None:
         a = account.attachment
         self._told = [place(a.bearing_end.own(name)) for name in ("omega", "alpha_free")]
         self._at, self._system = system.position.get(a.motion("omega")), system

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.coupling.ledger.account import Account
+from touchdown.master.coupling.bonds.ways import way_of
+from touchdown.master.coupling.ledger.account import Account, SeatAccount
 from touchdown.master.coupling.ledger.accounts import Ledger
 from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.system import RATE, System
@@ -44,7 +45,7 @@ class Judge(Observer):
         if worst is None:
             return "the system has no connection that is audited"
         return (
-            f"the energy ledger of {worst.attachment.title} is off by {100.0 * share:.2g} % of what it "
+            f"the energy ledger of {worst.title} is off by {100.0 * share:.2g} % of what it "
             f"turned over at t = {now.since_zero:.6g} s; {remedy(self._run, now.system, worst, share)}"
         )
 
@@ -58,6 +59,8 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
     if run.scheme.error_order == 0:
         smaller = 0.1 * run.tolerance
         return f"the tolerance of {run.tolerance:g} m is too large, try --set run.tolerance={smaller:g}"
+    if not isinstance(account, SeatAccount):
+        return _shorter_for_bond(run, share)
     bearing = account.attachment.bearing
     swing = _swing(run, system, bearing)
     inside = _finer(system, bearing) if swing < BEYOND * run.scheme.bears else ""
@@ -69,7 +72,16 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
     either = f"or the steps inside the bearing are, try {inside} or" if inside else "try"
     return (
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
-        f"{either} --macro-step {shorter_step(run, share):g}"
+        f"{either} --macro-step {shorter_step(run, share, run.scheme.error_order):g}"
+    )
+
+
+def _shorter_for_bond(run: RunSpec, share: float) -> str:
+    way = way_of(run)
+    other = "try --set run.bonds=smooth, or" if way.held else "try"
+    return (
+        f"the macro step of {run.macro_step:g} s is too long for a bond that crosses by {way.name}, "
+        f"{other} --macro-step {shorter_step(run, share, way.error_order):g}"
     )
 
 

@@ -25,7 +25,7 @@ class Shortening(Observer):
 
     def __init__(self, ledger: Ledger, stepper: Stepper) -> None:
         run, system = stepper.run, stepper.system
-        able = stepper.any_step and ledger.fall > 0.0 and set(system.every.values()) == {1}
+        able = stepper.any_step and ledger.fall > 0.0 and system.divisible
         self.halvings = 0  # of the macro step to come
         self._most = run.whirl_halvings if able else 0
         self._order = max(run.scheme.error_order, 1)

@@ -22,7 +22,7 @@ from touchdown.master.common.units import scaled
 from touchdown.master.components.contract import FORCE, GAINS, POSITION
 from touchdown.master.coupling.assembly import LEAD, ORDER
 from touchdown.master.coupling.connections import Connection
-from touchdown.master.coupling.ledger.account import Account
+from touchdown.master.coupling.ledger.account import SeatAccount
 from touchdown.master.coupling.ledger.followed import Axis, Spin
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
@@ -32,12 +32,12 @@ PARTS = 4  # of a step in which there is a load
 AS_TOLD = {ORDER: MODEL, LEAD: 0}  # it follows what is prescribed, and hands over what acted meanwhile
 
 
-def witnesses(stepper: Stepper, accounts: Iterable[Account]) -> list[Witness]:
+def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[Witness]:
     """One for each bearing of `accounts`, whose sides do not both state their work.
 
     Where there can be none, the accounts say why.
     """
-    by_bearing: dict[str, list[Account]] = {}
+    by_bearing: dict[str, list[SeatAccount]] = {}
     for account in accounts:
         by_bearing.setdefault(account.attachment.bearing, []).append(account)
     found: list[Witness] = []
@@ -50,7 +50,7 @@ def witnesses(stepper: Stepper, accounts: Iterable[Account]) -> list[Witness]:
     return found
 
 
-def _check(stepper: Stepper, accounts: Iterable[Account]) -> None:
+def _check(stepper: Stepper, accounts: Iterable[SeatAccount]) -> None:
     """Raise TouchdownError where steps or loads do not let themselves be followed."""
     system = stepper.system
     if not stepper.in_one:
@@ -62,7 +62,7 @@ def _check(stepper: Stepper, accounts: Iterable[Account]) -> None:
             raise TouchdownError("what crosses is scaled")
 
 
-def _leave(accounts: Iterable[Account], why: str) -> None:
+def _leave(accounts: Iterable[SeatAccount], why: str) -> None:
     for account in accounts:
         account.unaudited = why
 
@@ -73,9 +73,9 @@ class Witness:
     Raises TouchdownError where there can be no second one.
     """
 
-    def __init__(self, system: System, accounts: Sequence[Account]) -> None:
+    def __init__(self, system: System, accounts: Sequence[SeatAccount]) -> None:
         self._system = system
-        self._accounts: Sequence[Account] = accounts  # none once it hears no more
+        self._accounts: Sequence[SeatAccount] = accounts  # none once it hears no more
         self._bearing = accounts[0].attachment.bearing
         self._component = system.components[self._bearing].second()
         self._time = 0.0  # s

@@ -77,6 +77,7 @@ class Stretches:
         coupling = cast(GaussSeidel, self._steps.coupling)
         if self._signals is not coupling.system.signals:
             self._signals, self._tables = coupling.system.signals, tables(coupling, self._recorder)
+            self._steps.impacts.follow()
         return self._tables
 
     def _stretch(self, found: Tables, now: Moment) -> None:
@@ -86,6 +87,7 @@ class Stretches:
         plan = self._planned(now, self._ends(now, len(rows)))
         failed = self._run(found, rows)
         steps.booked = int(plan["booked"])
+        steps.impacts.divided += int(plan["hit"])
         now.move(int(plan["done"]), steps.length)
         if recorder is not None and plan["row"]:
             recorder.took(int(plan["row"]))
@@ -93,10 +95,9 @@ class Stretches:
             self._refuse(found, plan)
 
     def _run(self, found: Tables, rows: np.ndarray) -> bool:
-        books = self._steps.ledger.books
-        return run(
-            self._plan, found.turns, found.parts, books, found.signals, found.reads, found.columns, rows
-        )
+        steps, f = self._steps, found
+        seats, books = steps.impacts.seats, steps.ledger.books
+        return run(self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows)
 
     def _refuse(self, found: Tables, plan: Any) -> None:
         """Raise what the component that failed has to say."""
@@ -116,7 +117,7 @@ class Stretches:
         """The plan of a stretch from now to the end of macro step `until`."""
         steps = self._steps
         self._plan[0] = (
-            self._at_once, steps.length, steps.parts, now.done, until, 0.0, steps.booked, steps.ledger.fall,
-            self._judge.limit, self._every, 0, now.zero, 0, 0, 0,
+            self._at_once, steps.length, steps.parts, steps.impacts.parts, 0, now.done, until, 0.0,
+            steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero, 0, 0, 0,
         )  # fmt: skip
         return self._plan[0]

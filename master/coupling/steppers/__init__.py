@@ -6,13 +6,16 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.steppers.bonded import Bonded
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.coupling.steppers.halving import Halving
 from touchdown.master.coupling.steppers.iterated import Iterated
+from touchdown.master.coupling.steppers.iterated_bonds import IteratedBonds
 from touchdown.master.coupling.steppers.jacobi import Jacobi
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import RunSpec
+from touchdown.modelkit.ports import HOLD
 
 _OWN: Mapping[str, type[Stepper]] = {
     "gauss-seidel": GaussSeidel,
@@ -20,6 +23,11 @@ _OWN: Mapping[str, type[Stepper]] = {
     "iterated": Iterated,
     "halving": Halving,
 }
+BONDED: Mapping[type[Stepper], type[Stepper]] = {
+    GaussSeidel: Bonded,
+    Iterated: IteratedBonds,
+}
+"""What steps systems with bonds."""
 _sequences: dict[str, type[Stepper]] = dict(_OWN)
 SEQUENCES: Mapping[str, type[Stepper]] = MappingProxyType(_sequences)
 """All there are, by name: the project's own, then those that were registered."""
@@ -59,4 +67,13 @@ def stepper(system: System, run: RunSpec) -> Stepper:
             f"this process does not know the sequence {name}; put its stepper at the top of a module that "
             "can be imported, and register it from there"
         )
-    return SEQUENCES[name](system, run)
+    kind = SEQUENCES[name]
+    if not system.bonds:
+        return kind(system, run)
+    if kind is Jacobi and run.scheme.order != HOLD:
+        raise TouchdownError(
+            f"scheme {run.scheme.name} steps all components at once, and {system.bonds[0].title} is a "
+            "bond, whose force must be known before it is taken; choose interface, iterated or halving, or "
+            "jacobi-hold, which holds its values"
+        )
+    return BONDED.get(kind, kind)(system, run)

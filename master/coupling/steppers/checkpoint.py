@@ -7,17 +7,20 @@ from types import TracebackType
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
 
 
 class Checkpoint:
     """The state of all components that are stepped, and what they last gave; free it after use.
 
+    With a stepper, what that knows of the past as well.
     Raises TouchdownError where a component cannot save its state, or fails to.
     """
 
-    def __init__(self, system: System) -> None:
-        self._system = system
+    def __init__(self, system: System, stepper: Stepper | None = None) -> None:
+        self._system, self._stepper = system, stepper
+        self._memory = stepper.memory() if stepper else None
         self._signals = system.signals.copy()
         self._states: dict[str, object] = {}
         try:
@@ -32,6 +35,8 @@ class Checkpoint:
         for name, state in self._states.items():
             self._system.components[name].restore(state)
         self._system.signals[:] = self._signals
+        if self._stepper:
+            self._stepper.recall(self._memory)
 
     @property
     def signals(self) -> np.ndarray:
@@ -62,4 +67,14 @@ def require_states(system: System, scheme: str) -> None:
         if system.every[name] != 1:
             raise TouchdownError(
                 f"scheme {scheme} steps all components alike; remove {name}.every = {system.every[name]}"
+            )
+
+
+def require_any_step(system: System, scheme: str) -> None:
+    """Raise TouchdownError where a component takes steps of one length only."""
+    for name, component in system.components.items():
+        if not component.any_step:
+            raise TouchdownError(
+                f"scheme {scheme} divides steps, and {name} ({component.origin}) says that it takes steps "
+                "of one length only; choose interface, or another FMU"
             )

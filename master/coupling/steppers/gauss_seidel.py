@@ -22,11 +22,20 @@ class Turn(NamedTuple):
     every: int  # macro steps of the run that it takes in one
     cuts: tuple[Scaling | Part, ...]  # what is done to its inputs
 
+    def take(self, signals: np.ndarray, number: int, time: float, step: float) -> None:
+        """Macro step `number` of the run, from `time` by `step` (s)."""
+        self.component.inputs[:] = signals[self.places]
+        for part in self.cuts:
+            part.cut(self.component.inputs, number)
+        self.component.push()
+        self.component.step(time, self.every * step)
+        self.component.pull()
+
 
 class GaussSeidel(Stepper):
     """One component after another, in the system's order."""
 
-    in_one = any_step = True
+    in_one = any_step = any_moment = True
 
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
@@ -43,12 +52,6 @@ class GaussSeidel(Stepper):
 
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
-        for component, places, every, cuts in self.turns:
-            if number % every:
-                continue
-            component.inputs[:] = signals[places]
-            for part in cuts:
-                part.cut(component.inputs, number)
-            component.push()
-            component.step(time, every * step)
-            component.pull()
+        for turn in self.turns:
+            if number % turn.every == 0:
+                turn.take(signals, number, time, step)

@@ -6,11 +6,15 @@ kept is the finer result. A macro step starts with the division that the one bef
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.contract import POSITION
-from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_states
+from touchdown.master.coupling.bonds.crossing import Crossing
+from touchdown.master.coupling.steppers.bonded import Bonded
+from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_any_step, require_states
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.coupling.steppers.stepper import Stepper
 from touchdown.master.coupling.system import System
@@ -26,7 +30,9 @@ class Halving(Stepper):
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
         require_states(system, run.scheme.name)
-        self._inner = GaussSeidel(system, run)
+        if system.bonds:
+            require_any_step(system, run.scheme.name)
+        self._inner = Bonded(system, run) if system.bonds else GaussSeidel(system, run)
         self._level = 0  # halvings at the end of the last macro step
         self._deepest = 0
         self._error = 0.0  # m, largest estimate of what was kept
@@ -34,7 +40,7 @@ class Halving(Stepper):
 
     def follow(self) -> None:
         self._inner.follow()
-        self._places = positions(self.system)
+        self._places, self._rates = watched(self.system)
 
     def step(self, number: int, time: float, step: float) -> None:
         parts = 2**self._level
@@ -49,13 +55,14 @@ class Halving(Stepper):
 
     def _advance(self, time: float, step: float, level: int) -> tuple[int, float]:
         """Take a step, divided as needed: (halvings of the macro step, largest error estimate in m)."""
-        with Checkpoint(self.system) as before:
+        with Checkpoint(self.system, self._inner) as before:
             self._inner.step(0, time, step)
             whole = self.system.signals[self._places]
             before.restore()
             self._inner.step(0, time, 0.5 * step)
             self._inner.step(0, time + 0.5 * step, 0.5 * step)
-            error = float(np.max(np.abs(self.system.signals[self._places] - whole), initial=0.0))
+            apart = np.abs(self.system.signals[self._places] - whole)
+            error = float(np.max(np.where(self._rates, step, 1.0) * apart, initial=0.0))
             if error <= self.run.tolerance:
                 return level, error
             if level == DEEPEST:
@@ -69,6 +76,10 @@ class Halving(Stepper):
         return max(first[0], second[0]), max(first[1], second[1])
 
     @property
+    def crossings(self) -> Sequence[Crossing]:
+        return self._inner.crossings
+
+    @property
     def figures(self) -> dict[str, float]:
         return {
             "smallest_step_us": 1e6 * self.run.macro_step / 2**self._deepest,
@@ -76,7 +87,10 @@ class Halving(Stepper):
         }
 
 
-def positions(system: System) -> np.ndarray:
-    """Where the bodies' positions at the bearings stand in the signals."""
-    names = {a.motion(axis) for a in system.attachments for axis in POSITION}
-    return np.array(sorted(system.position[name] for name in names & system.position.keys()), dtype=np.intp)
+def watched(system: System) -> tuple[np.ndarray, np.ndarray]:
+    """Where the bodies' motion at bearings and bonds stands in the signals, and which of it is velocity."""
+    seats = {a.motion(axis): False for a in system.attachments for axis in POSITION}
+    bonds = {c.source_name: c is b.velocity for b in system.bonds for c in b.motion}
+    kinds = {system.position[n]: rate for n, rate in {**seats, **bonds}.items() if n in system.position}
+    places = sorted(kinds)
+    return np.array(places, dtype=np.intp), np.array([kinds[place] for place in places], dtype=bool)

@@ -79,7 +79,7 @@ class Iterated(Stepper):
 
     def _advance(self, time: float, step: float, level: int) -> None:
         self._deepest = max(self._deepest, level)
-        with Checkpoint(self.system) as before:
+        with self._checkpoint() as before:
             change = self._converge(before, time, step)
             if change <= self.run.tolerance:
                 return
@@ -92,6 +92,9 @@ class Iterated(Stepper):
             before.restore()
         self._advance(time, 0.5 * step, level + 1)
         self._advance(time + 0.5 * step, 0.5 * step, level + 1)
+
+    def _checkpoint(self) -> Checkpoint:
+        return Checkpoint(self.system)
 
     def _converge(self, before: Checkpoint, time: float, step: float) -> float:
         """Repeat the step from the motion of the last one; returns what the last repetition changed (m)."""

@@ -15,6 +15,8 @@ from touchdown.master.scene.run_spec import RunSpec
 class Jacobi(GaussSeidel):
     """Inputs for all, then steps, then outputs of all."""
 
+    any_moment = False  # loads were given for steps as long as the last
+
     def __init__(self, system: System, run: RunSpec) -> None:
         super().__init__(system, run)
         self._expected = run.macro_step  # s, the step for which leading bearings gave their load

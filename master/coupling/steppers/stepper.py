@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import ClassVar
 
+from touchdown.master.coupling.bonds.crossing import Crossing
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import RunSpec
 
@@ -30,11 +32,12 @@ class Stepper(ABC):
     >>> touchdown.register_scheme(scheme, Counting)
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
     >>> touchdown.run(scene.set({"run.scheme": "counting"}), in_process=True).summary["steps_counted"]
-    300
+    60
     """
 
     in_one: ClassVar[bool] = False  # whether each component takes a macro step once, and in one
     any_step: ClassVar[bool] = False  # whether its steps may be of another length than those before
+    any_moment: ClassVar[bool] = False  # whether they may be so without being told ahead (`expect`)
 
     def __init__(self, system: System, run: RunSpec) -> None:
         self.system = system
@@ -55,6 +58,18 @@ class Stepper(ABC):
 
     def follow(self) -> None:  # noqa: B027 - most have nothing to do
         """Components were retired: find what is used where it now stands."""
+
+    @property
+    def crossings(self) -> Sequence[Crossing]:
+        """The bonds that it steps as such."""
+        return ()
+
+    def memory(self) -> object:
+        """What it knows of steps that are over, for `recall`; None: nothing."""
+        return None
+
+    def recall(self, memory: object) -> None:  # noqa: B027 - most know nothing
+        """Go back to what it knew."""
 
     @property
     def figures(self) -> dict[str, float]:

@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import Scale, Unit
 from touchdown.master.interop.ssp import xml
+from touchdown.master.interop.ssp.names import INTEGERS, REALS
 
 SET_TYPE, MAPPING_TYPE = "application/x-ssp-parameter-set", "application/x-ssp-parameter-mapping"
 BOOLEANS = {"true": 1.0, "1": 1.0, "false": 0.0, "0": 0.0}
@@ -66,7 +67,7 @@ def _content(element: Element, inline: str, root: str, folder: Path, where: str)
 def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:
     name = xml.required(parameter, "name", where)
     where = f"{where}, {name}"
-    for kind in ("Real", "Integer"):
+    for kind in (*REALS, *INTEGERS):
         content = xml.child(parameter, f"ssv:{kind}")
         if content is not None:
             return Value(name, xml.number(content, "value", where), content.get("unit"), units)
@@ -80,14 +81,22 @@ def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:
 
 
 def _mapped(given: Iterable[Value], mapping: Element, folder: Path, where: str) -> Iterable[Value]:
-    """Values under the names that a mapping gives them; those it does not name are not applied."""
+    """Values under the names that a mapping gives them; those it does not name are not applied.
+
+    A mapping without entries, which some tools write beside every parameter set, leaves all as they are.
+    """
     where = f"{where}, parameter mapping"
     kind = mapping.get("type", MAPPING_TYPE)
     if kind != MAPPING_TYPE:
         raise TouchdownError(f"{where}: the type {kind} is not supported, only {MAPPING_TYPE} is")
     content = _content(mapping, "ssm:ParameterMapping", "ssm:ParameterMapping", folder, where)
+    entries = xml.children(content, "ssm:MappingEntry") if content is not None else []
+    if not entries:
+        yield from given
     by_name = {value.name: value for value in given}
-    for entry in xml.children(content, "ssm:MappingEntry") if content is not None else ():
+    for entry in entries:
+        if entry.get("source") == "":  # a template that nobody filled in
+            continue
         source, target = xml.required(entry, "source", where), xml.required(entry, "target", where)
         if source in by_name:
             yield replace(

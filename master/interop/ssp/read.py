@@ -6,8 +6,8 @@ so that packages of other tools have an energy ledger and bearings that step fir
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError, one_of
@@ -15,19 +15,21 @@ from touchdown.master.common.units import Scale, Unit, scaled, then
 from touchdown.master.components.component import Variable
 from touchdown.master.components.interface import interface
 from touchdown.master.components.unpack import Format, unpack
+from touchdown.master.coupling.simulation import MOST_STEPS
 from touchdown.master.interop.ssp import structure
-from touchdown.master.interop.ssp.bindings import Value
+from touchdown.master.interop.ssp.flat import Flat, Leg, Link, flattened
 from touchdown.master.interop.ssp.names import HEART
-from touchdown.master.interop.ssp.structure import Link, Structure
-from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
+from touchdown.master.interop.ssp.structure import Structure
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.wires import BondSpec, Wire
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene")
 
 
 RUN_KEYS = (
-    "scheme", "tolerance", "record_every", "record", "record_also", "record_arrays", "warn_residual",
-    "stop_residual", "whirl_halvings",
+    "scheme", "bonds", "tolerance", "record_every", "record", "record_also", "record_arrays",
+    "warn_residual", "stop_residual", "whirl_halvings", "impact_step",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 
@@ -49,133 +51,150 @@ class Side:
 SCHEME_SETS = ("interface.order", "interface.lead")  # a package states them for tools without schemes
 
 
+@dataclass(frozen=True)
+class Package:
+    """What a package says, and what its FMUs do."""
+
+    said: Structure
+    flat: Flat
+    sides: Mapping[str, Side]  # by component
+    where: str  # for people
+
+
 def read(path: Path) -> Scene:
     """The scene in a package (.ssp). Raises TouchdownError where it is broken or cannot be run."""
     cache = user_cache()
     folder = unpack(path, cache, PACKAGE)
-    system = structure.read(folder, str(path))
-    sides = {name: Side(*interface(part.path, cache)) for name, part in system.parts.items()}
-    settings = _settings(system, sides, str(path))
+    said = structure.read(folder, str(path))
+    flat = flattened(said.root, str(path))
+    sides = {name: Side(*interface(part.path, cache)) for name, part in flat.parts.items()}
+    package = Package(said, flat, sides, str(path))
+    settings = _settings(package)
+    wires = tuple(_wire(package, link) for link in flat.links)
     scene = Scene(
         name=path.stem,
-        title=system.title,
-        about=system.scene.get("about", ""),
-        components={name: _component(system, name, settings[name]) for name in system.parts},
-        connect=tuple(
-            _wire(system, link, sides, str(path)) for link in system.links if link.start and link.end
-        ),
-        zero=system.scene.get("zero"),
-        energy_scale=tuple(system.scene.get("energy_scale", "").split()),
+        title=said.scene.get("title", said.root.title),
+        about=said.scene.get("about", ""),
+        components={name: _component(package, name, settings[name]) for name in flat.parts},
+        connect=wires,
+        bond=tuple(_bond(package, told, wires) for told in said.bonds),
+        zero=said.scene.get("zero"),
+        energy_scale=tuple(said.scene.get("energy_scale", "").split()),
     )
-    return _with_run(scene, system, sides, str(path))
+    return _with_run(scene, package)
 
 
-def _component(system: Structure, name: str, settings: Mapping[str, float]) -> ComponentSpec:
-    names = system.names.get(name, {})
-    given = {_here(system, name, variable): value for variable, value in settings.items()}
+def _component(package: Package, name: str, settings: Mapping[str, float]) -> ComponentSpec:
+    said = package.said
+    given = {_here(said, name, variable): value for variable, value in settings.items()}
+    given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
     return ComponentSpec(
-        str(system.parts[name].path.absolute()),
-        {variable: value for variable, value in given.items() if variable not in SCHEME_SETS},
-        every=system.every(name),
-        names=names,
+        str(package.flat.parts[name].path.absolute()),
+        given,
+        every=_every(package, name),
+        names=said.names.get(name, {}),
+        own=tuple(changed for changed in said.changed.get(name, ()) if changed in given),
     )
 
 
-def _here(system: Structure, component: str, variable: str) -> str:
+def _here(said: Structure, component: str, variable: str) -> str:
     """The name by which an FMU's variable goes in the scene."""
-    own = {own: here for here, own in system.names.get(component, {}).items()}
+    own = {own: here for here, own in said.names.get(component, {}).items()}
     return own.get(variable, variable)
 
 
-def _with_run(scene: Scene, system: Structure, sides: Mapping[str, Side], where: str) -> Scene:
+def _every(package: Package, name: str) -> int:
+    """How many of the system's macro steps the component `name` takes in one. Raises TouchdownError."""
+    step, macro_step = package.flat.parts[name].step, package.said.macro_step
+    ratio = step / macro_step if step and macro_step else 1.0
+    if not ratio < MOST_STEPS:
+        raise TouchdownError(
+            f"component {name} asks for steps of {step:g} s, {ratio:g} of the package's macro steps; "
+            f"less than {MOST_STEPS:g} are possible"
+        )
+    return max(1, round(ratio))
+
+
+def _with_run(scene: Scene, package: Package) -> Scene:
     """`scene` with how to run it, as far as the package says it."""
-    settings: dict[str, object] = {f"run.{k}": system.scene[k] for k in RUN_KEYS if k in system.scene}
-    if system.macro_step is not None:
-        settings["run.macro_step"] = system.macro_step
-    if system.stop is not None:
+    said, sides = package.said, package.sides
+    settings: dict[str, object] = {f"run.{k}": said.scene[k] for k in RUN_KEYS if k in said.scene}
+    if said.macro_step is not None:
+        settings["run.macro_step"] = said.macro_step
+    if said.stop is not None:
         zero = 0.0
         if scene.zero:
             head, _, tail = scene.zero.partition(".")
             if head not in sides:
-                raise TouchdownError(f"{where}: zero = {scene.zero}: there is no component {head}")
+                raise TouchdownError(f"{package.where}: zero = {scene.zero}: there is no component {head}")
             own = scene.components[head].names.get(tail, tail)
-            start = sides[head].variable(own, f"{where}: zero").start
+            start = sides[head].variable(own, f"{package.where}: zero").start
             zero = float(str(scene.components[head].set.get(tail, start or 0.0)))
-        settings["run.duration"] = round(system.stop - zero, DIGITS)
+        settings["run.duration"] = round(said.stop - zero, DIGITS)
     return scene.set(settings)
 
 
 # -- values ------------------------------------------------------------------------------------------------
 
 
-def _settings(system: Structure, sides: Mapping[str, Side], where: str) -> dict[str, dict[str, float]]:
+def _settings(package: Package) -> dict[str, dict[str, float]]:
     """By component: what the bindings set, in the units of its variables.
 
-    The system's bindings are above those of its components. Start values of inputs that another
-    component feeds are left out: initialisation hands them over.
+    A system's bindings are above those of what is in it. Start values of inputs that another component
+    feeds are left out: initialisation hands them over.
     """
-    settings: dict[str, dict[str, float]] = {name: {} for name in system.parts}
-    fed = {(link.end, link.input) for link in system.links if link.start is not None}
-    for component, value in _bound(system, where):
-        if (component, value.name) not in fed:
-            what = f"{where}: component {component}, {value.name}"
-            settings[component][value.name] = _number(system, sides[component], value, what)
+    settings: dict[str, dict[str, float]] = {name: {} for name in package.flat.parts}
+    fed = {(link.end, link.input) for link in package.flat.links}
+    for bound in package.flat.bound:
+        if (bound.component, bound.variable) not in fed:
+            side = package.sides[bound.component]
+            what = f"{package.where}: component {bound.component}, {bound.variable}"
+            unit = side.variable(bound.variable, what).unit
+            definitions = (bound.value.units or {}, package.said.units, side.units)
+            start, end = _unit(bound.value.unit, definitions), _unit(unit, (side.units, package.said.units))
+            scale = _along(start, bound.legs, end, package, what)
+            settings[bound.component][bound.variable] = scaled(bound.value.number, scale)
     return settings
 
 
-def _bound(system: Structure, where: str) -> Iterator[tuple[str, Value]]:
-    """Component and value of every binding, those that are above others after them."""
-    for name, part in system.parts.items():
-        yield from ((name, value) for value in part.values)
-    outer = [link for link in system.links if link.start is None and link.end is not None]
-    given = {value.name: value for value in system.values}
-    for link in outer:
-        if link.output not in given:
-            raise TouchdownError(
-                f"{where}: {link.title}: nothing feeds the system's connector {link.output}; bind a value "
-                "to it or remove the connection"
-            )
-    for value in system.values:
-        for link in outer:
-            if link.output == value.name and link.end is not None:
-                scale = then(value.scale, link.scale)
-                yield link.end, replace(value, name=link.input, scale=scale)
-        head, _, tail = value.name.partition(".")
-        if head in system.parts:
-            yield head, replace(value, name=tail)
-        elif value.name not in {link.output for link in outer}:
-            raise TouchdownError(
-                f"{where}: a binding of the system sets {value.name}, which is neither COMPONENT.VARIABLE "
-                f"nor a connector that feeds one; {one_of(head, system.parts)}"
-            )
-
-
-def _number(system: Structure, side: Side, value: Value, where: str) -> float:
-    """A bound value in the unit of its variable."""
-    variable = side.variable(value.name, where)
-    first = None
-    if value.convert:
-        source = _unit(value.unit, (value.units or {}, system.units, side.units))
-        first = _conversion(source, _unit(variable.unit, (side.units, system.units)), where)
-    return scaled(value.number, then(first, value.scale))
-
-
-def _wire(system: Structure, link: Link, sides: Mapping[str, Side], where: str) -> Wire:
-    """A connection, with the conversion between its ends' units before its own transformation."""
+def _wire(package: Package, link: Link) -> Wire:
+    """A connection, with the conversions between units on its way, and its transformations."""
     ends: list[_Named] = []
     names: list[str] = []
-    for part, name in link.ends:
-        assert part is not None
-        side = sides[part]
-        variable = side.variable(name, f"{where}: {link.title}")
-        unit = system.parts[part].units.get(name) or variable.unit
-        ends.append(_unit(unit, (system.units, side.units)))
-        names.append(f"{part}.{_here(system, part, name)}")
-    if link.convert:
-        scale = then(_conversion(ends[0], ends[1], f"{where}: {link.title}"), link.scale)
-    else:
-        scale = link.scale or (1.0, 0.0)
+    where = f"{package.where}: {link.title}"
+    for part, name in ((link.start, link.output), (link.end, link.input)):
+        side, connectors = package.sides[part], package.flat.parts[part].connectors
+        variable = side.variable(name, where)
+        declared = connectors[name].unit if name in connectors else None
+        ends.append(_unit(declared or variable.unit, (package.said.units, side.units)))
+        names.append(f"{part}.{_here(package.said, part, name)}")
+    scale = _along(ends[0], link.legs, ends[1], package, where)
+    if not all(leg.convert for leg in link.legs):
+        scale = scale or (1.0, 0.0)  # values stay as they are, whatever the units
     return Wire(names[0], names[1], scale)
+
+
+def _bond(package: Package, told: Mapping[str, str], wires: Iterable[Wire]) -> BondSpec:
+    """A bond that is declared, of the connections to the inputs that it names."""
+    by_input = {wire.target: wire for wire in wires}
+    for name in told.values():
+        if name not in by_input:
+            raise TouchdownError(f"{package.where}: a Bond names {name}, to which nothing is connected")
+    found = {kind: by_input[name] for kind, name in told.items()}
+    return BondSpec(found["force"], found.get("position"), found.get("velocity"))
+
+
+def _along(start: _Named, legs: Sequence[Leg], end: _Named, package: Package, where: str) -> Scale | None:
+    """What becomes of a value on its way: each leg converts it, and then transforms it."""
+    scale: Scale | None = None
+    at = start
+    for leg in legs:
+        to = end if leg is legs[-1] else _unit(leg.unit, (package.said.units,))
+        if leg.convert:
+            scale = then(scale, _conversion(at, to, where))
+        at = at if to[0] is None else to
+        scale = then(scale, leg.scale)
+    return scale
 
 
 _Named = tuple[str | None, Unit | None]  # a unit's name, and what it is where that is known

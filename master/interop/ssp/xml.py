@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Scale, Unit
-from touchdown.master.components.description import DocumentTypeError, refuse_definitions
+from touchdown.master.components.screening.description import DocumentTypeError, refuse_definitions
 from touchdown.master.interop.ssp.names import NAMESPACES
 
 CHOICES = ("BooleanMapping", "IntegerMapping", "EnumerationMapping")  # transformations that are not read
@@ -44,7 +44,7 @@ def read_xml(path: Path, where: str, root: str) -> Element:
     except (ParseError, ExpatError, ValueError, LookupError) as error:
         raise TouchdownError(f"{where}: it is not valid XML ({error})") from None
     if element.tag != tag(root):
-        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP 1.0")
+        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP")
     return element
 
 

@@ -16,7 +16,7 @@ from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.contacts import contacts, has_contacts
 from touchdown.master.results.figures.energy import energy
 from touchdown.master.results.figures.forces import forces
-from touchdown.master.results.figures.motion import paths, speeds
+from touchdown.master.results.figures.motion import distance, paths, slowing, speeds
 from touchdown.master.results.figures.orbits import orbits
 from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
 from touchdown.master.results.figures.stress import has_stress, stress
@@ -24,7 +24,7 @@ from touchdown.master.results.figures.style import sheet
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
 from touchdown.master.results.recording import NotRecordedError
 from touchdown.master.results.stresses import stressed
-from touchdown.master.results.summary import energy_total, touchdown_seats
+from touchdown.master.results.summary import energy_total, is_heard, touchdown_seats
 
 Picture = tuple[str, Callable[[Figure], object]]  # name of the file, and what draws it on an empty figure
 
@@ -43,6 +43,8 @@ OF_BEARING = [
     OfBearing("orbit", paths),
     OfBearing("force", forces, lambda run, a: f"{a.bearing}.contact.force" in run.recording),
     OfBearing("speeds", speeds, lambda run, a: f"{a.bearing}.speed.ring" in run.recording),
+    OfBearing("distance", distance, lambda run, a: is_heard(run.system, a)),
+    OfBearing("slowing", slowing, lambda run, a: is_heard(run.system, a)),
     OfBearing("contacts", contacts, lambda run, a: has_contacts(run.system, a)),
     OfBearing("spectrum", spectrum, lambda run, a: has_spectrum(run.recording, a)),
     OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),

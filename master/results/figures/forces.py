@@ -23,6 +23,7 @@ from touchdown.master.results.figures.style import (
     zooms,
 )
 from touchdown.master.results.recording import Recording
+from touchdown.master.results.summary import is_heard
 
 FIRST = 0.5  # s, the first zoom
 HARDEST = "hardest.ball"
@@ -64,7 +65,8 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             row[0].legend(loc="upper right", fontsize="small")
     _label_columns(grid[0], grid[-1], spans, (beginning(time), float(time[-1])))
     peak = run.system.value(f"{a.bearing}.contact.peak_force")
-    figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{_which(recording, a)}")
+    by = ", heard from means over macro steps" if is_heard(run.system, a) else ""
+    figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{by}{_which(recording, a)}")
     return list(grid.flat)
 
 

@@ -28,6 +28,7 @@ from touchdown.master.results.figures.style import (
     zooms,
 )
 from touchdown.master.results.recording import Recording
+from touchdown.master.results.summary import RPM, relative_orbit
 
 UM = 1e6
 SPEEDS = (  # in the order they are drawn: what varies most first
@@ -105,6 +106,37 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     figure.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=columns)
     figure.suptitle(run.scene.title)
     return row
+
+
+def distance(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
+    """How far the journal is from the bearing's middle [µm], beside the clearance."""
+    recording = run.recording
+    axes = sized(figure, 9, 4).subplots()
+    radius = UM * np.hypot(*relative_orbit(run.system, a, recording))
+    axes.plot(*thinned(recording.time, radius), color=BLUE, lw=0.6, label="journal")
+    clearance = UM * run.system.value(f"{a.bearing}.clearance")
+    axes.axhline(clearance, ls="--", color=GREY, lw=1, label="clearance")
+    axes.set_ylabel("distance from the middle [µm]")
+    return _over_time(axes, run)
+
+
+def slowing(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
+    """How the rotor's speed falls [rpm]: of a bearing that tells no speeds the only one known."""
+    speed = RPM * run.recording[a.motion("omega")]
+    axes = sized(figure, 9, 4).subplots()
+    axes.plot(*thinned(run.recording.time, speed), color=BLACK, label="rotor")
+    axes.ticklabel_format(useOffset=False)
+    axes.set_ylabel("speed [rpm]")
+    return _over_time(axes, run)
+
+
+def _over_time(axes: Axes, run: Finished) -> Axes:
+    time = run.recording.time
+    axes.set_xlim(beginning(time), float(time[-1]))
+    axes.set_xlabel(TIME)
+    axes.set_title(run.scene.title)
+    axes.legend(loc="upper right")
+    return axes
 
 
 def draw_orbit(axes: Axes, run: Finished, a: Attachment) -> Axes:

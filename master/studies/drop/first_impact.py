@@ -52,7 +52,7 @@ class Trace:
         loaded = np.flatnonzero((self.fx != 0.0) | (self.fy != 0.0))
         if len(loaded) == 0:
             return None
-        gaps = np.flatnonzero(np.diff(self.time[loaded]) > PARTED)
+        gaps = np.flatnonzero(np.diff(self.time[loaded]) > _free(self.time[1] - self.time[0]))
         last = loaded[gaps[0]] if len(gaps) else loaded[-1]
         return float(self.time[loaded[0]]), float(self.time[last])
 
@@ -93,6 +93,11 @@ def forces_text(peaks: Mapping[str, float]) -> str:
     """Momentary peaks (N, by part) in words."""
     titles = {CONTACT: "contact force", "ball": "worst ball", "side": "cage or neighbour on a ball"}
     return ", ".join(f"{titles[part]} {force:.5g} N" for part, force in peaks.items())
+
+
+def _free(step: float) -> float:
+    """How long a journal has been free once it has parted (s): PARTED, and at least one macro step."""
+    return max(PARTED, 1.5 * step)
 
 
 def _averaged(time: np.ndarray, impulse: np.ndarray) -> np.ndarray:
@@ -146,7 +151,8 @@ class Watch(Observer):
         stop = self._stop
         if stop is None or self._first is None or len(self._time) % stop.every:
             return False
-        parted = all(last is not None and time - last > PARTED for last in self._loaded)
+        free = _free(time - self._time[-2] if len(self._time) > 1 else 0.0)
+        parted = all(last is not None and time - last > free for last in self._loaded)
         return time - self._first >= stop.after - ROUNDING or (stop.early and parted)
 
     def traces(self) -> list[Trace]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -47,13 +48,22 @@ SECOND = Solver("Radau", 1e-6)
 SECOND_OF_MANY = Solver("RK45", 1e-8)  # where there are too many states for an implicit one
 
 
+class Titled(Protocol):
+    """What made a solution."""
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        ...
+
+
 @dataclass(frozen=True)
 class Solve:
-    """One monolithic solution."""
+    """One monolithic solution, or a refined one."""
 
-    solver: Solver
+    solver: Titled
     motion: np.ndarray  # (times, seats, 4): x, y in m, vx, vy in m/s of each journal
-    evaluations: int
+    evaluations: int  # of the equations, or macro steps
     wall: float  # s per simulated s
 
 

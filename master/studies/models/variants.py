@@ -163,9 +163,7 @@ def _housings(scene: Scene, system: System) -> Iterator[Variant]:
     mounts = [a for a in system.attachments if a.bearing in bearings and a not in seats]
     names = {a.body for a in mounts} - {a.body for a in seats}
     offsets = [f"{n}.{v}" for n in names for v in OFFSETS if v in system.components[n].variables]
-    pairs = (*scene.sense, *((wire.source, wire.target) for wire in scene.connect))
-    tied = {end.partition(".")[0] for pair in pairs for end in pair}
-    if not names or any(system.value(offset) for offset in offsets) or names & tied:
+    if not names or any(system.value(offset) for offset in offsets) or names & tied(scene):
         return
     yield Variant(
         "housings that stand still",
@@ -175,3 +173,10 @@ def _housings(scene: Scene, system: System) -> Iterator[Variant]:
             attach=tuple(pair for pair in scene.attach if pair[1].partition(".")[0] not in names),
         ),
     )
+
+
+def tied(scene: Scene) -> set[str]:
+    """Components that others hang on by sensors, single connections or bonds, beside bearings' ports."""
+    wires = (*scene.connect, *(wire for bond in scene.bond for wire in bond.wires))
+    pairs = (*scene.sense, *((wire.source, wire.target) for wire in wires))
+    return {end.partition(".")[0] for pair in pairs for end in pair}

@@ -43,6 +43,7 @@ from touchdown.master.studies.drop.reference import (
     reference,
     solve,
 )
+from touchdown.master.studies.drop.refined import REFINED, Refined, has_equations, refine
 from touchdown.master.studies.schemes.order import Order, fitted_order
 
 STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
@@ -184,7 +185,7 @@ def compare_schemes(
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0, "run.impact_step": 0})
     begin("fine steps")
     refuse_endless(max(asked.duration or LONGEST, asked.timed or 0.0), min(asked.steps))
     landing = land(scene, asked.duration)
@@ -204,24 +205,36 @@ def compare_schemes(
             begin(f"{name} at {1e6 * step:g} us")
             run = scene.set({"run.scheme": name, "run.macro_step": step})
             rows.append(_timed(judge.row(run, name, step), run, asked))
-    monolithic = [_monolithic(s, exact) for s in solves]
+    monolithic = [_monolithic(s, exact) for s in solves if isinstance(s.solver, Solver)]
     return Comparison(scene, asked, landing, exact, finely.errors, rows, monolithic)
 
 
 def pieces(scene: Scene, asked: Asked) -> int:
     """How many pieces of work a comparison is."""
-    return 4 + len(_loose(pair(scene)[1])) + len(asked.schemes) * len(asked.steps)
+    return 2 + len(_solvers(scene)) + len(asked.schemes) * len(asked.steps)
 
 
 def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[Solve]:
     """Both solutions of the reference, then looser ones."""
-    seats, solvers = looks.landing.seats, pair(scene)
-    solve(scene, seats, np.array([FINE]), Solver(FIRST.method, 1e-3))  # compiles
-    solves = []
-    for solver in (*solvers, *_loose(solvers[1])):
+    seats, solvers = looks.landing.seats, _solvers(scene)
+    if has_equations(scene):
+        solve(scene, seats, np.array([FINE]), Solver(FIRST.method, 1e-3))  # compiles
+    solves: list[Solve] = []
+    for solver in solvers:
         begin(solver.title)
-        solves.append(solve(scene, seats, looks.times, solver))
+        if isinstance(solver, Refined):
+            solves.append(refine(scene, seats, looks.times, solver))
+        else:
+            solves.append(solve(scene, seats, looks.times, solver))
     return solves
+
+
+def _solvers(scene: Scene) -> Sequence[Solver | Refined]:
+    """Those of the reference, then looser ones."""
+    if not has_equations(scene):
+        return REFINED
+    first, second = pair(scene)
+    return first, second, *_loose(second)
 
 
 def _loose(second: Solver) -> Sequence[Solver]:

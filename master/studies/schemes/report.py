@@ -8,6 +8,7 @@ from pathlib import Path
 from touchdown.master.common.files import write_records, writing_to
 from touchdown.master.studies.drop.first_impact import forces_text
 from touchdown.master.studies.drop.reference import POSITION
+from touchdown.master.studies.drop.refined import Refined
 from touchdown.master.studies.schemes.compare import SHOWN, Comparison, Row
 
 MONOLITHIC = "monolithic"
@@ -27,12 +28,13 @@ def _about(comparison: Comparison) -> list[str]:
             f"{forces_text(landing.peaks(seat))}"
         )
     first, second = exact.first, exact.second
+    counted = "macro steps" if isinstance(first.solver, Refined) else "evaluations"
     known = ", ".join(f"{SHOWN[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces)
     until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
     about += [
         f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
         "the first contact",
-        f"reference: {first.solver.title} ({first.evaluations} evaluations) and {second.solver.title} "
+        f"reference: {first.solver.title} ({first.evaluations} {counted}) and {second.solver.title} "
         f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}",
         f"co-simulation in fine steps is off by {1e6 * comparison.fine['position']:.1g} um; "
         f"peak forces are measured against it, known to: {known}",

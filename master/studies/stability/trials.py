@@ -216,7 +216,7 @@ class Bounds(Observer):
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
     """Run a case in process: what the loop says, and the figures, none where the run broke off."""
     scene = case.scene.set({"run.scheme": scheme, "run.macro_step": step})
-    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0})
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0, "run.impact_step": 0})
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, observers=[bounds])
         outcome.raise_if_interrupted()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from touchdown.master.verbs.arguments import add_output, add_scene, chosen_scene
+from touchdown.master.verbs.arguments import add_making, add_output, add_scene, chosen_scene, making
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = ("touchdown container disk-caged-simplified --scheme jacobi-lead -o disk.fmu",)
@@ -14,6 +14,7 @@ EXAMPLES = ("touchdown container disk-caged-simplified --scheme jacobi-lead -o d
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     add_scene(verb)
+    add_making(verb)
     add_output(verb, "SCENE.fmu", "file")
 
 
@@ -22,7 +23,7 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.interop.container import write_container
 
     scene = chosen_scene(options)
-    path = write_container(scene, options.output or Path(f"{scene.name}.fmu"))
+    path = write_container(scene, options.output or Path(f"{scene.name}.fmu"), making(options))
     print(f"{path}: macro step {scene.run.macro_step:g} s, scheme {scene.run.scheme.name}")
     return 0
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from touchdown.master.verbs.arguments import add_output, add_scene, chosen_scene
+from touchdown.master.verbs.arguments import add_making, add_output, add_scene, chosen_scene, making
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
     "touchdown ssp disk-caged-simplified -o disk.ssp",
     'touchdown ssp rotor1-9000 --scheme jacobi-lead --macro-step "5 us" --outputs-only',
+    "touchdown ssp disk-caged-simplified --scheme jacobi-lead --outputs-only --native -o disk.ssp",
 )
 
 
@@ -22,6 +23,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
         action="store_true",
         help="connect outputs only; constants such as inv_m are start values (for libcosim and others)",
     )
+    add_making(verb)
     add_output(verb, "SCENE.ssp", "file")
 
 
@@ -30,11 +32,15 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.interop.ssp.write import write_package
 
     scene = chosen_scene(options)
-    package = write_package(scene, options.output or Path(f"{scene.name}.ssp"), options.outputs_only)
+    path = options.output or Path(f"{scene.name}.ssp")
+    package = write_package(scene, path, options.outputs_only, making(options))
     print(
         f"{package.path}: {package.components} components, {package.connections} connections, "
         f"macro step {scene.run.macro_step:g} s"
     )
+    if package.fixed:
+        names = ", ".join(package.fixed)
+        print(f"in tools that set no values, FMUs given as files start from their own: {names}")
     return 0
 
 

@@ -21,9 +21,9 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.coupling.advisor import advise
     from touchdown.master.interop.scenes import find_scene
     from touchdown.master.scene.schemes import SCHEMES
+    from touchdown.master.studies.schemes.advisor import advise
 
     chosen = find_scene(options.scene).set(settings(options))
     advice = advise(chosen, SCHEMES)

@@ -14,10 +14,12 @@ from touchdown.master.verbs.arguments import (
     add_quiet,
     add_scene_name,
     add_settings,
+    add_swaps,
     count,
     results_folder,
     settings,
     several_above_zero,
+    swapped,
 )
 from touchdown.master.verbs.verb import Verb
 
@@ -47,6 +49,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--repeat", default="3", metavar="N", help="runs that are timed (default: 3)")
     verb.add_argument("--in-process", action="store_true", help="time the models without FMUs")
     add_settings(verb)
+    add_swaps(verb)
     add_output(verb, "runs/compare-SCENE")
     add_quiet(verb)
 
@@ -58,7 +61,7 @@ def execute(options: argparse.Namespace) -> int:
 
     given = settings(options)
     _refuse_varied(given, options)
-    chosen = shortened(find_scene(options.scene)).set(given)
+    chosen = shortened(swapped(find_scene(options.scene), options)).set(given)
     print("\n".join((_models if options.models else _schemes)(chosen, options)))
     return 0
 

@@ -16,11 +16,13 @@ from touchdown.bearings.contact.friction import (
     coefficient,
 )
 from touchdown.bearings.contact.journal import (
+    FAR,
     ContactMemory,
     ContactReport,
     Touch,
     Touched,
     hermite,
+    time_to_touch,
     touch,
     watch_contact,
 )
@@ -317,3 +319,37 @@ def test_start_in_contact():
     assert (report["first_x"], report["first_y"]) == (journal.x, journal.y)
     assert report["first_speed"] == pytest.approx(math.hypot(0.02, 0.05), rel=1e-14)
     assert (report["peak_force"], report["peak_indentation"]) == (12.0, 3e-6)
+
+
+# -- when it will touch --------------------------------------------------------------------------------
+
+
+@every_seed
+def test_the_time_to_the_touch_is_that_of_straight_ways(seed: int) -> None:
+    """Where both are after that time, the gap is closed; before it, it was open."""
+    rng = np.random.default_rng(seed)
+    place, angle = CLEARANCE * rng.uniform(0.0, 0.99), rng.uniform(-math.pi, math.pi)
+    ring = Motion(*rng.normal(scale=(1e-4, 1e-4, 0.2, 0.2)), 0.0)
+    x, y = ring.x + place * math.cos(angle), ring.y + place * math.sin(angle)
+    journal = Motion(x, y, *rng.normal(scale=0.3, size=2), 500.0)
+    time = time_to_touch(journal, ring, CLEARANCE)
+
+    def distance(t: float) -> float:
+        away = [x + v * t for x, v in ((journal.x, journal.vx), (journal.y, journal.vy))]
+        back = [x + v * t for x, v in ((ring.x, ring.vx), (ring.y, ring.vy))]
+        return math.hypot(away[0] - back[0], away[1] - back[1])
+
+    assert 0.0 < time < FAR
+    assert distance(time) == pytest.approx(CLEARANCE, rel=1e-9)
+    assert all(distance(s * time) < CLEARANCE for s in (0.1, 0.5, 0.99))
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-6, 1e-30])
+def test_a_journal_that_hardly_moves_is_far_off(speed: float) -> None:
+    still = Motion(0.0, 0.0, 0.0, 0.0, 0.0)
+    assert time_to_touch(Motion(0.0, 1e-4, 0.0, -speed, 0.0), still, CLEARANCE) == FAR
+
+
+@every_seed
+def test_a_journal_in_contact_touches_now(seed: int) -> None:
+    assert time_to_touch(*random_pair(seed), CLEARANCE) == 0.0

@@ -41,10 +41,14 @@ def marked(content: bytes, offset: int, value: int) -> bytes:
     return bytes(changed)
 
 
-def garbled(content: bytes) -> bytes:
-    """A zip's bytes with a letter of the model description changed."""
-    at = content.index(b"<fmiModelDescription") + 5
-    return content[:at] + b"?" + content[at + 1 :]
+def garbled(fmu: Path) -> bytes:
+    """A zip's bytes with one in the middle of the packed model description changed."""
+    with zipfile.ZipFile(fmu) as source:
+        entry = source.getinfo("modelDescription.xml")
+    content = bytearray(fmu.read_bytes())
+    begin = entry.header_offset + 30 + len(entry.filename)  # behind its header, which ends with its name
+    content[begin + entry.compress_size // 2] ^= 0xFF
+    return bytes(content)
 
 
 def damaged(kind: str, good: Path, folder: Path) -> Path:
@@ -54,7 +58,7 @@ def damaged(kind: str, good: Path, folder: Path) -> Path:
         "empty": b"",
         "truncated": content[: len(content) // 2],
         "random": bytes((7 * i * i + 13 * i) % 251 for i in range(5000)),
-        "garbled": garbled(content),
+        "garbled": garbled(good),
         "encrypted": marked(content, 8, 1),
         "strange compression": marked(content, 10, 97),
     }
@@ -112,15 +116,26 @@ def test_a_library_that_cannot_be_loaded_leaves_the_working_directory(
     assert Path.cwd() == before
 
 
-@pytest.mark.parametrize("way", ["../evil", "a/../../evil", "/{folder}/evil", "..\\evil", "C:evil"])
-def test_an_fmu_that_leads_out_of_its_folder(
-    way: str, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+@pytest.mark.parametrize(
+    ("way", "why"),
+    [
+        ("../evil", "that leads out of its folder"),
+        ("a/../../evil", "that leads out of its folder"),
+        ("/{folder}/evil", "that leads out of its folder"),
+        ("..\\evil", "with a backslash"),
+        ("resources\\evil", "with a backslash"),
+        ("C:evil", "with a colon"),
+    ],
+)
+def test_an_fmu_with_an_entry_that_lies_elsewhere(
+    way: str, why: str, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
 ):
     """Nothing of it is written, inside or outside."""
     entry = way.format(folder=str(tmp_path).lstrip("/"))
     path = archive(tmp_path / "bad.fmu", {**entries_of(built["housing"]), entry: b"evil"})
     ended = command("check", path)
     assert "evil" in ended.line
+    assert why in ended.line
     assert ended.status == FAILED
     assert list(tmp_path.rglob("*evil*")) == []
     assert files_in(own_cache) == [TAG]
@@ -271,12 +286,25 @@ def test_an_fmu_without_its_script(
         assert "lacks the script" in line
 
 
+@pytest.mark.parametrize("more", [(), ("binaries/linux64/",), ("binaries/linux64/other.so",)])
 def test_an_fmu_for_another_platform(
-    run: Command, command: Command, built: Mapping[str, Path], own_cache: Path, tmp_path: Path
+    more: tuple[str, ...],
+    run: Command,
+    command: Command,
+    built: Mapping[str, Path],
+    own_cache: Path,
+    tmp_path: Path,
 ):
-    entries = {n: e for n, e in entries_of(built["bushing"]).items() if not n.endswith(".so")}
+    """The library is missed by its name, whatever else lies where it should."""
+    entries = {n.replace("linux64", "win64"): e for n, e in entries_of(built["bushing"]).items()}
+    entries |= dict.fromkeys(more, b"")
+    lacking = (
+        "no binary for this platform (linux64): it lacks binaries/linux64/Bushing.so, and has binaries/"
+    )
     for line in checked_and_swapped(archive(tmp_path / "bad.fmu", entries), run, command):
-        assert "no binary for this platform (linux64); it has: win64" in line
+        assert lacking in line
+        assert "binaries/win64/Bushing.so" in line
+        assert "binaries/linux64/," not in line
 
 
 @pytest.mark.parametrize("path", ["missing.fmu", "/no/such/folder/missing.fmu"])

@@ -11,7 +11,7 @@ from systems import DISK, GRAVITY, rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.twin import TwinComponent
 from touchdown.master.coupling.ledger import Ledger, Shortening
-from touchdown.master.coupling.ledger.account import Account
+from touchdown.master.coupling.ledger.account import SeatAccount
 from touchdown.master.coupling.ledger.followed import Path as Way
 from touchdown.master.coupling.ledger.judge import remedy
 from touchdown.master.coupling.observer import Moment
@@ -166,7 +166,7 @@ def test_the_remedy_names_what_is_to_blame() -> None:
     scene = load_scene("disk-cageless-simplified")
     with opened(scene, in_process=True) as system:
         system.initialise()
-        account = Account(next(a for a in system.attachments if a.bearing == "bearing"))
+        account = SeatAccount(next(a for a in system.attachments if a.bearing == "bearing"))
         said = {
             step: remedy(scene.set({"run.macro_step": step}).run, system, account, 0.1)
             for step in (1e-5, 5e-3)

@@ -40,7 +40,8 @@ class Diary(Observer):
 
 def fallen(record_to: Path | None = None, *observers: Observer) -> Outcome:
     """2 ms of the smallest scene, the magnetic bearing already off."""
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 2e-3, "run.macro_step": STEP})
+    run = {"run.duration": 2e-3, "run.macro_step": STEP, "run.record_every": 5}
+    scene = load_scene("disk-caged-simplified").set(run)
     with opened(scene, in_process=True) as system:
         return simulate(scene, system, record_to, observers=observers)
 

@@ -81,7 +81,7 @@ def final_signals(scene: Scene, in_process: bool) -> np.ndarray:
 
 
 def test_a_component_that_is_done_is_not_stepped_any_more() -> None:
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.01})
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.01, "run.macro_step": 2e-5})
     system = open_system(scene, in_process=True)
     calls = 0
     step = system.components["amb"].step

@@ -15,7 +15,7 @@ from touchdown.master.interop.container import write_container
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
-SETTINGS = {"amb.shutdown_time": 0.0, "run.duration": 0.012}
+SETTINGS = {"amb.shutdown_time": 0.0, "run.duration": 0.012, "run.macro_step": 2e-5}
 WATCHED = ["rotor.A.x", "rotor.A.y", "bearing.contact.peak_force"]
 EVERY = 5  # macro steps of the container in one of its host
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +17,14 @@ from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
+from touchdown.master.studies.schemes.compare import Asked, compare_schemes
 
 EXAMPLES = ROOT / "examples"
 NAMES = EXAMPLES / "dry_bushing.toml"
 CLEARANCE = 0.2e-3  # m
+LOAD = "            load = "
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +49,8 @@ def test_it_can_stand_in_for_a_bearing(folder: Path) -> None:
     assert report.problems == []
     assert report.lines[-1] == "it can stand in for a bearing"
     assert "journal.inv_m in 1/kg" in report.text  # pythonfmu writes no units
+    assert "it reports no contact: first contact, peak force and verdict are heard" in report.text
+    assert "it states no work: the ledger listens to a second instance" in report.text
 
 
 def test_without_its_names_every_missing_variable_is_named(folder: Path) -> None:
@@ -70,6 +76,66 @@ def test_rotor_1_drops_on_it(folder: Path) -> None:
         assert -1.2 * CLEARANCE < np.min(height) < -CLEARANCE
         assert height[-1] > np.min(height) + 5e-6
     assert values["rotor.A.omega"][-1] < values["rotor.A.omega"][0] - 0.05
+
+
+@pytest.fixture(scope="module")
+def telling(folder: Path) -> Path:
+    """The example, which also tells the largest force that it found in its steps."""
+    script = (EXAMPLES / "dry_bushing.py").read_text(encoding="utf-8")
+    for before, after in (
+        ("class DryBushing", "class TellingBushing"),
+        ('OUTPUTS = ["shaft_fx"', 'OUTPUTS = ["peak", "shaft_fx"'),
+        (LOAD, f"            self.peak = max(self.peak, math.hypot(push, rub))\n{LOAD}"),
+    ):
+        assert before in script
+        script = script.replace(before, after)
+    (folder / "telling_bushing.py").write_text(script, encoding="utf-8")
+    FmuBuilder.build_FMU(folder / "telling_bushing.py", dest=folder)
+    return folder / "TellingBushing.fmu"
+
+
+def test_contact_is_heard_from_what_crosses(telling: Path, tmp_path: Path) -> None:
+    scene = find_scene("disk-caged-simplified").swap(bearing=str(telling))
+    scene = scene.with_names("bearing", read_names(NAMES)).set(
+        {"amb.shutdown_time": 0.0, "bearing.clearance": 0.3e-3, "run.duration": 0.012}
+    )
+    result = run_scene(scene, tmp_path)
+    summary, peak = result.summary, result.recording.at_end("bearing.peak")
+    assert summary["contact_heard_by_master"] == "bearing"
+    assert summary["peak_contact_force_N"] == pytest.approx(peak, rel=0.02)
+    assert peak > 300.0
+    fall = (2.0 * 0.3e-3 / 9.81) ** 0.5
+    assert summary["first_contact_time_s"] == pytest.approx(fall, abs=5e-5)
+    assert summary["first_contact_speed_m_s"] == pytest.approx(9.81 * fall, rel=0.01)
+    assert summary["whirl_A"] is not None
+    names = {path.stem for path in result.pictures}
+    assert names == {"orbit", "force", "distance", "slowing"}
+    assert "bearing.journal on rotor.A by what the bearing itself carries" in str(summary["exchange"])
+
+
+def test_without_a_clearance_it_is_where_the_journal_meets_a_force(folder: Path) -> None:
+    """The same bushing, whose parameter goes by another name."""
+    names = {**read_names(NAMES), "gap": "clearance"}
+    scene = find_scene("disk-caged-simplified").swap(bearing=str(folder / "DryBushing.fmu"))
+    scene = scene.with_names("bearing", names).set(
+        {"amb.shutdown_time": 0.0, "bearing.gap": 0.3e-3, "run.duration": 0.009}
+    )
+    with opened(scene) as system:
+        simulate(scene, system)
+        assert system.value("bearing.clearance") == pytest.approx(0.3e-3, rel=0.01)
+        assert system.value("bearing.contact.peak_indentation") > 1e-6
+
+
+def test_an_fmu_of_others_is_compared_with_its_own_refinement(built: Mapping[str, Path]) -> None:
+    """The project's bushing as a stranger: its refinement tells of an error what its equations tell."""
+    asked = Asked(schemes=("hold",), steps=(2e-5,), wanted=1e-6, repeat=1, duration=1e-3)
+    own = find_scene("disk-caged-simplified").swap(bearing="bushing").set({"amb.shutdown_time": 0.0})
+    strange = own.swap(bearing=str(built["bushing"]))
+    (by_equations,) = compare_schemes(own, asked).rows
+    refined = compare_schemes(strange, asked)
+    assert refined.monolithic == []
+    (by_refinement,) = refined.rows
+    assert by_refinement.errors["position"] == pytest.approx(by_equations.errors["position"], rel=0.05)
 
 
 def test_names_are_given_to_a_swap_and_survive_a_package(folder: Path, tmp_path: Path) -> None:

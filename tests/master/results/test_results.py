@@ -29,7 +29,8 @@ REQUIRED = {
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
     """A short drop with everything written."""
-    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.2, "run.record_every": 2})
+    run = {"run.duration": 0.2, "run.macro_step": 2e-5, "run.record_every": 2}
+    scene = load_scene("disk-caged-simplified").set(run)
     return run_scene(scene, tmp_path_factory.mktemp("run"), in_process=True, csv=True)
 
 
@@ -100,4 +101,4 @@ def test_a_rerun_replaces_what_was_there(tmp_path: Path) -> None:
     for _ in range(2):
         result = run_scene(scene, tmp_path, in_process=True, pictures=False)
     assert result.summary["first_contact_time_s"] is None
-    assert result.summary["macro_steps"] == 350
+    assert result.summary["macro_steps"] == 70

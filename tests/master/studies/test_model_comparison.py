@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,14 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.wires import BondSpec, Wire
 from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.models.compare import Comparison, Row, compare_models
 from touchdown.master.studies.models.report import advice, report_lines
-from touchdown.master.studies.models.variants import Variant, variants
+from touchdown.master.studies.models.variants import Variant, tied, variants
 
 DISK = "disk-caged-simplified"
+STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over
 
 
 def titles(name: str, **settings: object) -> list[str]:
@@ -24,7 +27,7 @@ def titles(name: str, **settings: object) -> list[str]:
 
 
 def test_a_rigid_disk_has_no_modes_to_leave_out() -> None:
-    assert titles(DISK) == [
+    assert titles(DISK, **STEP) == [
         "macro step of 10 us",
         "macro step of 40 us",
         "detailed bearings",
@@ -52,6 +55,13 @@ def test_housings_out_of_line_are_needed() -> None:
     assert "housings that stand still" not in titles("rotor1-9000-150um")
 
 
+def test_components_in_a_bond_are_needed() -> None:
+    disk = load_scene(DISK)
+    assert "housing" not in tied(disk)
+    bond = BondSpec(Wire("spring.f", "housing.push"), velocity=Wire("housing.v", "spring.v2"))
+    assert {"housing", "spring"} <= tied(replace(disk, bond=(bond,)))
+
+
 def test_detailed_bearings_are_simplified() -> None:
     assert "simplified bearings" in titles("disk-cageless-detailed")
 
@@ -73,7 +83,7 @@ def test_every_variant_can_be_opened_and_keeps_the_scene(name: str) -> None:
 
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
-    scene = shortened(load_scene(DISK))
+    scene = shortened(load_scene(DISK).set(STEP))
     chosen = [v for v in variants(scene) if v.title != "detailed bearings"]  # slow to compile
     early = scene.set({"run.macro_step": 1.0})
     begun: list[str] = []
@@ -164,7 +174,7 @@ def test_the_command(
     first_two = lambda scene: variants(scene)[:2]  # noqa: E731
     monkeypatch.setattr("touchdown.master.studies.models.variants.variants", first_two)
     arguments = ("--models", "--repeat", "1", "--duration", "2 ms", "--quiet", "-o", str(tmp_path))
-    assert main(["compare", DISK, *arguments]) == 0
+    assert main(["compare", DISK, "--set", "run.macro_step=20 us", *arguments]) == 0
     shown = capsys.readouterr().out
     assert "largest orbit" in shown
     assert "macro step of 40 us" in shown

@@ -6,7 +6,7 @@ import json
 import math
 import shutil
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from xml.etree.ElementTree import fromstring
 
@@ -46,13 +46,19 @@ def compiled(folder: Path) -> Path:
 
 
 def hosted(
-    host: Path, folder: Path, commands: str, resources: str, environment: Mapping[str, str]
+    host: Path,
+    folders: Path | Sequence[Path],
+    commands: str,
+    resources: str,
+    environment: Mapping[str, str],
 ) -> subprocess.CompletedProcess[str]:
-    """Let the host do `commands` to the FMU in `folder`, in no other than this environment."""
-    guid = fromstring((folder / "modelDescription.xml").read_bytes()).attrib["guid"]
-    library = next((folder / "binaries" / "linux64").glob("*.so"))
+    """Let the host do `commands` to the FMUs in `folders`, in no other than this environment.
+
+    `resources` is the folder's URI with `{}` for that of the FMU.
+    """
+    folders = [folders] if isinstance(folders, Path) else folders
     return subprocess.run(
-        [host, library, guid, resources],
+        [host, *(word for folder in folders for word in _named(folder, resources))],
         input=commands,
         env=dict(environment),
         capture_output=True,
@@ -60,6 +66,13 @@ def hosted(
         timeout=300,
         check=False,
     )
+
+
+def _named(folder: Path, resources: str) -> tuple[str, str, str]:
+    """Library, GUID and resources of an unpacked FMU."""
+    guid = fromstring((folder / "modelDescription.xml").read_bytes()).attrib["guid"]
+    library = next((folder / "binaries" / "linux64").glob("*.so"))
+    return str(library), guid, resources.format(folder.as_uri())
 
 
 def references(folder: Path) -> dict[str, str]:

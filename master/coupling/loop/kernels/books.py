@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 
 from touchdown.master.coupling.loop.kernels import kernel
-from touchdown.modelkit.kernel import inlined
 
 TRIFLE = 1e-4  # of the energy lost by falling; what turns over less is not judged by its own measure
 MINOR = 0.1  # of what all connections turn over; likewise
@@ -47,7 +46,7 @@ def book(books: np.ndarray, signals: np.ndarray, done: int) -> None:
             _flow(b, signals)
 
 
-@inlined
+@kernel
 def _compare(b, signals):
     """Compare what both sides of a connection have stated (J) up to the end of a step."""
     at = b.statements
@@ -59,7 +58,7 @@ def _compare(b, signals):
     b.by_bearing, b.jumps, b.by_body = by_bearing, jumps, by_body
 
 
-@inlined
+@kernel
 def _flow(b, signals):
     """Add what a step to (x, y) (m) under the mean load (N), with the velocity at its end, turned over.
 
@@ -80,7 +79,7 @@ def _flow(b, signals):
     b.x, b.y, b.vx, b.vy = x, y, vx, vy
 
 
-@inlined
+@kernel
 def share_of(books, i, fall):
     """The residual of connection i over what it turned over; 0 where nothing was. fall: J, or 0."""
     turnover = 0.0

@@ -11,6 +11,7 @@ import numpy as np
 from touchdown.master.coupling.loop.kernels import kernel
 from touchdown.master.coupling.loop.kernels.books import book, worst_of
 from touchdown.master.coupling.loop.kernels.exchange import cut, scale
+from touchdown.master.coupling.loop.kernels.impacts import met
 from touchdown.master.coupling.loop.kernels.tables import (
     FETCH,
     GET,
@@ -20,7 +21,6 @@ from touchdown.master.coupling.loop.kernels.tables import (
     SET,
     STEP,
 )
-from touchdown.modelkit.kernel import inlined
 from touchdown.modelkit.kernel.address import (
     call_advance,
     call_exchange,
@@ -87,20 +87,20 @@ def pull(turn):
     return 0
 
 
-@inlined
+@kernel
 def _answer(status):
     """0 where a component that answered so can go on."""
     return 0 if status <= WARNING else status
 
 
-@inlined
+@kernel
 def note(plan, turn, call, status):
     """Note which component failed, and at what; True."""
     plan.failed, plan.call, plan.status = turn, call, status
     return True
 
 
-@inlined
+@kernel
 def exchange(plan, turns, parts, signals, number, time):
     """One step of `plan.span` (s) from `time` (s) by all components; whether one failed.
 
@@ -128,13 +128,16 @@ def exchange(plan, turns, parts, signals, number, time):
     return False
 
 
-@inlined
-def take(plan, turns, parts, books, signals):
+@kernel
+def take(plan, turns, parts, seats, books, signals):
     """One macro step, whole or divided, each part of it booked; whether it failed."""
-    plan.span = plan.length / plan.parts
-    for k in range(plan.parts):
-        time = plan.done * plan.length + k * plan.span
-        if exchange(plan, turns, parts, signals, plan.done * plan.parts + k, time):
+    begin, divided = plan.done * plan.length, plan.parts
+    if met(seats, signals, begin, plan.length):
+        plan.hit += 1
+        divided = max(divided, plan.impact_parts)
+    plan.span = plan.length / divided
+    for k in range(divided):
+        if exchange(plan, turns, parts, signals, plan.done * divided + k, begin + k * plan.span):
             return True
         plan.booked += 1
         book(books, signals, plan.booked)
@@ -168,6 +171,7 @@ def run(
     plan: np.ndarray,
     turns: np.ndarray,
     parts: np.ndarray,
+    seats: np.ndarray,
     books: np.ndarray,
     signals: np.ndarray,
     reads: np.ndarray,
@@ -181,7 +185,7 @@ def run(
     """
     p = plan[0]
     while p.done < p.until:
-        if take(p, turns, parts, books, signals):
+        if take(p, turns, parts, seats, books, signals):
             return True
         if p.done == p.until or not worst_of(books, p.fall)[1] <= p.limit:
             return False

@@ -60,6 +60,8 @@ PLAN = np.dtype(
         ("at_once", "i8"),  # whether all take their inputs before any steps
         ("length", "f8"),  # of a macro step, s
         ("parts", "i8"),  # that each is divided into
+        ("impact_parts", "i8"),  # that one is divided into in which a body is hit twice
+        ("hit", "i8"),  # how many of those there were
         ("done", "i8"),  # macro steps taken
         ("until", "i8"),  # where the stretch ends
         ("span", "f8"),  # of a part, s

@@ -45,6 +45,7 @@ class Both:
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.folder, self._patch = folder, monkeypatch
         self.stepped = 0  # macro steps that the last run took one by one
+        self.listening = True  # whether the master hears contact in bearings that report none: step by step
         take = MacroSteps.take
 
         def counting(steps: MacroSteps, now: Moment) -> None:
@@ -57,7 +58,7 @@ class Both:
         self, scene: Scene, path: Path, observing: Observing | None = None, in_process: bool = True
     ) -> Outcome:
         self.stepped = 0
-        with opened(scene, in_process) as system:
+        with opened(scene, in_process, listening=self.listening) as system:
             observers = [observing()] if observing else []
             outcome = simulate(scene, system, path, observers=observers)
         return replace(outcome, **UNLIKE)
@@ -138,6 +139,12 @@ def test_macro_steps_that_are_halved(scheme: str, both: Both, monkeypatch: pytes
     for name, value in (("WINDOW", 1e-3), ("WHIRL", 1e-3), ("OVER", 0.0), ("GOAL", 1e-12)):
         monkeypatch.setattr(shortening, name, value)
     assert both.compared(disk(run__scheme=scheme)).shorter_steps
+
+
+def test_macro_steps_that_are_divided_in_impacts(both: Both) -> None:
+    scene = load_scene("rotor1-9000").set({"run.duration": 8e-3, "run.impact_step": 5e-6})
+    scene = scene.set({f"amb_{end}.shutdown_time": 1e-3 for end in "AB"})
+    assert both.compared(scene).divided_in_impacts > 0
 
 
 # -- how a run ends ------------------------------------------------------------------------------------
@@ -230,6 +237,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
 )
 def test_an_fmu_whose_code_is_its_own(deed: str, said: str, library: Path, both: Both) -> None:
     scene = load_scene(str(scene_with(misbehaving(library, "step", deed))))
+    both.listening = False
     outcome = both.compared(scene)
     assert outcome.reason == said
     assert outcome.steps == (2 if said else 100)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from driver import WARM_UP, Answer, Drop, Watch, main
 from ecospy import EcosLib, EcosSimulation
 
-START_VALUES = "initialValues"  # of the package; ecos applies the set that it is told by name
-
 
 def drive(drop: Drop) -> Answer:
-    """The macro step is an argument: ecos does not read the package's."""
+    """The macro step is an argument: ecos does not read the package's. Nor is it told to set anything."""
     EcosLib.set_log_level("warn")
     simulation = EcosSimulation(drop.step, ssp_path=str(drop.path))
-    simulation.init(parameter_set=START_VALUES)
+    simulation.init()
     simulation.step(WARM_UP)
     watch = Watch()
     simulation.step(drop.steps - WARM_UP)

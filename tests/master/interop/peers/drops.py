@@ -11,6 +11,7 @@ from pathlib import Path
 from systems import AT, LEVITATED, dropped
 
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
+from touchdown.master.interop.packing import AS_IN_SCENE, Making
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
@@ -42,22 +43,28 @@ class Fall:
         contacts = [f"{b}.contact.{what}" for b in self.bearings for what in ("peak_force", "first_time")]
         return motion + contacts
 
+    @property
+    def crossing(self) -> list[str]:
+        """COMPONENT.VARIABLE of motion and loads at the bearings, which are connectors of a package."""
+        motion = [f"{journal}.{axis}" for journal in self.journals for axis in "xy"]
+        return motion + [f"{b}.journal.f{axis}" for b in self.bearings for axis in "xy"]
+
     def with_scheme(self, scheme: str) -> Scene:
         """The scene coupled by `scheme`."""
         return self.scene.set({"run.scheme": scheme})
 
-    def package(self, scheme: str, folder: Path) -> Path:
+    def package(self, scheme: str, folder: Path, making: Making = AS_IN_SCENE) -> Path:
         """An SSP package for tools that connect outputs only."""
-        return write_package(
-            self.with_scheme(scheme), folder / f"{self.scene.name}-{scheme}.ssp", True
-        ).path
+        path = folder / f"{self.scene.name}-{scheme}.ssp"
+        return write_package(self.with_scheme(scheme), path, True, making).path
 
-    def ours(self, in_process: bool = True) -> tuple[dict[str, float], Outcome]:
-        """What the project's own master gives at the same macro step, with its default scheme."""
-        system = open_system(self.scene, in_process)
+    def ours(self, in_process: bool = True, scheme: str | None = None) -> tuple[dict[str, float], Outcome]:
+        """What the project's own master gives at the same macro step, by its default or another scheme."""
+        scene = self.scene if scheme is None else self.with_scheme(scheme)
+        system = open_system(scene, in_process)
         try:
-            outcome = simulate(self.scene, system)
-            return {name: system.value(name) for name in self.wanted}, outcome
+            outcome = simulate(scene, system)
+            return {name: system.value(name) for name in [*self.wanted, *self.crossing]}, outcome
         finally:
             system.close()
 

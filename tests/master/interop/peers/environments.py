@@ -10,6 +10,7 @@ import ctypes
 import hashlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -33,6 +34,9 @@ class UnavailableError(Exception):
     """A peer that cannot be had here; says why."""
 
 
+INSTALLED = {"omsimulator": "ssp"}  # programs that are not on PyPI, and where their drivers run
+
+
 def title(peer: str) -> str:
     """Name and version, as on PyPI."""
     lines = (HERE / f"requirements-{REQUIREMENTS[peer]}.txt").read_text(encoding="utf-8").split()
@@ -46,11 +50,14 @@ def interpreter(peer: str) -> Path:
             ctypes.CDLL("libtbb.so.12")
         except OSError:
             raise UnavailableError("ecos needs Debian's libtbb12") from None
-    requirements = HERE / f"requirements-{REQUIREMENTS[peer]}.txt"
+    if peer in INSTALLED and shutil.which("OMSimulator") is None:
+        raise UnavailableError("OMSimulator is not on the PATH")
+    environment = (REQUIREMENTS | INSTALLED)[peer]
+    requirements = HERE / f"requirements-{environment}.txt"
     kernels = [f"{name}=={version(name)}" for name in KERNELS]
     content = f"{sys.version} {requirements.read_text(encoding='utf-8')} {kernels}"
     digest = hashlib.sha256(content.encode()).hexdigest()[:16]
-    folder = user_cache() / "peers" / f"{REQUIREMENTS[peer]}-{digest}"
+    folder = user_cache() / "peers" / f"{environment}-{digest}"
     python, complete = folder / "bin" / "python", folder / "complete"
     if not complete.is_file():
         make = [sys.executable, "-m", "venv", "--clear", "--without-pip", folder]

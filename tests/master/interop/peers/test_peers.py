@@ -7,10 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 from drops import FALLS, FREE, Error, Fall
-from environments import REQUIREMENTS, Found, UnavailableError, interpreter, run
+from environments import INSTALLED, REQUIREMENTS, Found, UnavailableError, interpreter, run
+
+from touchdown.master.interop.packing import Making
 
 pytestmark = pytest.mark.peers
 
@@ -86,6 +89,26 @@ def test_a_tool_that_steps_all_fmus_in_parallel(
     assert found.peak < PEAK.get(peer, 2e-3)
     assert found.journal < 0.05
     assert found.impact < 5.0
+
+
+@pytest.mark.parametrize("peer", [*HELD, *INSTALLED])
+@pytest.mark.parametrize("native", [False, True])
+def test_one_package_gives_the_same_numbers_everywhere(
+    peer: str, native: bool, falls: dict[str, Fall], tmp_path: Path
+) -> None:
+    """As the project's own master, where it steps all FMUs in parallel, too; the package is not edited.
+
+    A program has no Python in it, so FMUs in Python are linked to one for it.
+    """
+    fall = falls["disk"]
+    linked = peer in INSTALLED and not native
+    package = fall.package("jacobi-lead", tmp_path, Making(link_python=linked, native=native))
+    try:
+        found = run(peer, package, fall.crossing).values
+    except UnavailableError as reason:
+        pytest.skip(str(reason))
+    own, _ = fall.ours(scheme="jacobi-lead")
+    assert found == pytest.approx({name: own[name] for name in fall.crossing}, rel=1e-9)
 
 
 @pytest.mark.parametrize(("peer", "fall", "scheme"), PLAIN)

@@ -9,11 +9,11 @@ from systems import rotor_on
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.coupling.advisor import LONGEST, advise
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.schemes import SCHEMES
 from touchdown.master.scene.step_sizes import tidy
+from touchdown.master.studies.schemes.advisor import LONGEST, advise
 
 
 def test_the_contact_states_the_swing_of_its_journal() -> None:

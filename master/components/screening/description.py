@@ -11,6 +11,15 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Kind
 from touchdown.modelkit.variables import Causality, Variability
 
+STRUCTURAL = "structuralParameter"  # FMI 3.0's: sizes of arrays
+KINDS_2 = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.STRING, Kind.ENUMERATION)
+KINDS_3 = {  # FMI 3.0's types, and what they are here
+    **dict.fromkeys(("Float64", "Float32"), Kind.REAL),
+    **dict.fromkeys(("Int8", "Int16", "Int32", "Int64"), Kind.INTEGER),
+    **dict.fromkeys(("UInt8", "UInt16", "UInt32", "UInt64"), Kind.INTEGER),
+    **{kind.value: kind for kind in (Kind.BOOLEAN, Kind.STRING, Kind.ENUMERATION, Kind.BINARY, Kind.CLOCK)},
+}
+
 
 class DocumentTypeError(ValueError):
     """An XML file that declares a document type."""
@@ -39,6 +48,7 @@ def refuse_lies(path: Path, description: Any) -> None:
     identifier = description.coSimulation.modelIdentifier or ""
     if not re.fullmatch(r"[A-Za-z_]\w*", identifier, re.ASCII):
         raise TouchdownError(f"{path}: the modelIdentifier {identifier!r} is no name of a library")
+    third = description.fmiVersion.startswith("3.")
     names: set[str] = set()
     owners: dict[tuple[str, int], str] = {}
     for v in description.modelVariables:
@@ -48,7 +58,7 @@ def refuse_lies(path: Path, description: Any) -> None:
         names.add(v.name)
         if not 0 <= v.valueReference < 2**32:
             raise TouchdownError(f"{what} has the value reference {v.valueReference}; it must fit 32 bits")
-        _refuse_unknown(what, v)
+        _refuse_unknown(what, v, third)
         if v.causality in (Causality.PARAMETER, Causality.INPUT):
             other = owners.setdefault((v.type, v.valueReference), v.name)
             if other != v.name:
@@ -57,15 +67,13 @@ def refuse_lies(path: Path, description: Any) -> None:
                 )
 
 
-def _refuse_unknown(what: str, variable: Any) -> None:
-    """Raise TouchdownError where a variable is of a type, causality or variability that FMI 2.0 lacks."""
-    for kind, stated in (
-        (Kind, variable.type),
-        (Causality, variable.causality),
-        (Variability, variable.variability),
+def _refuse_unknown(what: str, variable: Any, third: bool) -> None:
+    """Raise TouchdownError where a variable is of a type, causality or variability that FMI lacks."""
+    for title, stated, known in (
+        ("type", variable.type, KINDS_3 if third else KINDS_2),
+        ("causality", variable.causality, [*Causality, STRUCTURAL] if third else Causality),
+        ("variability", variable.variability, Variability),
     ):
-        known = [str(one) for one in kind]
-        if stated is not None and stated not in known:
-            raise TouchdownError(
-                f"{what} has the {kind.__name__.lower()} {stated}; FMI 2.0 has {', '.join(known)}"
-            )
+        if stated is not None and stated not in list(map(str, known)):
+            version = "3.0" if third else "2.0"
+            raise TouchdownError(f"{what} has the {title} {stated}; FMI {version} has {', '.join(known)}")

@@ -1,0 +1,1 @@
+"""What is looked at before an FMU is loaded: its description, and its library."""

@@ -1,0 +1,69 @@
+"""numba's way from a function to LLVM code, without what kernels have no use for.
+
+Most of the time that a kernel takes to compile is numba's own, in Python: over a third of its passes look
+for what no kernel contains, and the type of each sum and product is found by trying dozens of candidates.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba.core import typed_passes, types, untyped_passes
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.registry import cpu_target
+from numba.core.utils import OPERATORS_TO_BUILTINS
+
+UNUSED = (  # `with`, branches on constants, literally(), functions that numba inlines; checks, reports
+    untyped_passes.WithLifting,
+    untyped_passes.RewriteSemanticConstants,
+    untyped_passes.DeadBranchPrune,
+    untyped_passes.InlineInlinables,
+    untyped_passes.FindLiterallyCalls,
+    untyped_passes.LiteralUnroll,
+    untyped_passes.LiteralPropagationSubPipelinePass,
+    typed_passes.InlineOverloads,
+    typed_passes.NoPythonSupportedFeatureValidation,
+    typed_passes.AnnotateTypes,
+    typed_passes.DumpParforDiagnostics,
+)
+NUMBERS = (types.Float, types.Integer, types.IntegerLiteral, types.Boolean)
+
+
+class _Typing:
+    """numba's typing context, which is asked but once what an operator makes of numbers of some types."""
+
+    def __init__(self, context: Any) -> None:
+        self._context = context
+        self._known: dict[Any, Any] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._context, name)
+
+    def resolve_function_type(self, function: Any, args: tuple[types.Type, ...], kws: Any) -> Any:
+        """The signature of `function` for arguments of these types."""
+        operation = function.typing_key if isinstance(function, types.Function) else None
+        if operation not in OPERATORS_TO_BUILTINS or any(type(of) not in NUMBERS for of in args):
+            return self._context.resolve_function_type(function, args, kws)
+        if (operation, args) not in self._known:
+            self._known[operation, args] = self._context.resolve_function_type(function, args, kws)
+        return self._known[operation, args]
+
+
+_TYPING = _Typing(cpu_target.typing_context)
+
+
+class FrontEnd(Compiler):
+    """Compiles into `code`."""
+
+    code: type[JITCodeLibrary] = JITCodeLibrary
+
+    def define_pipelines(self) -> Any:
+        state = self.state
+        state.typingctx = _TYPING
+        state.library = self.code(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        pipelines = super().define_pipelines()
+        for pipeline in pipelines:
+            pipeline.passes = [known for known in pipeline.passes if known[0] not in UNUSED]
+        return pipelines

@@ -1,0 +1,207 @@
+"""What FMUs answer to calls that no host should make: fmi2Error, in the call itself, and why in the log."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Alone = Callable[..., subprocess.CompletedProcess[str]]
+Native = Callable[[str], Path]
+
+DISCARD, ERROR = 2, 3  # fmi2Status
+
+CALLS = """
+import json, math
+from slave_driver import STEP, TOUCHING, Slave
+
+folder, other = sys.argv[1:]
+REAL, WHOLE, INPUT, OUTPUT = "clearance", "friction.kind", "journal.y", "contact.force"
+UNKNOWN = 123456789
+
+def status(call, *arguments):
+    try:
+        call(*arguments)
+    except Exception as error:
+        return error.status
+    return 0
+
+def new():
+    return Slave(folder)
+
+def initialising(name=REAL, value=3e-4):
+    slave = new()
+    slave.set({name: value})
+    slave.fmu.setupExperiment(startTime=0.0)
+    slave.fmu.enterInitializationMode()
+    return slave
+
+def running():
+    slave = new().start()
+    slave.fmu.doStep(0.0, STEP)
+    return slave
+
+def badly():
+    return initialising(REAL, -1)
+
+def chosen():
+    return initialising(WHOLE, 99)
+
+def fed(value):
+    slave = running()
+    slave.set({INPUT: value})
+    return slave
+
+def failed():
+    slave = running()
+    status(slave.fmu.doStep, STEP, -1.0)
+    return slave
+
+def ended():
+    slave = running()
+    slave.fmu.terminate()
+    return slave
+
+def of(slave, name):
+    return [slave.variables[name].valueReference]
+
+def bytes_of(slave):
+    return slave.fmu.serializeFMUstate(slave.fmu.getFMUstate())
+
+def strange():
+    return bytes_of(Slave(other).start())
+
+def changed(slave):
+    found = bytearray(bytes_of(slave))
+    found[len(found) // 2] ^= 1
+    return bytes(found)
+
+WRONG = {
+    "read an output before initialisation": (new, lambda s: s.fmu.getReal(of(s, OUTPUT))),
+    "read an unknown reference": (new, lambda s: s.fmu.getReal([UNKNOWN])),
+    "read an integer as real": (new, lambda s: s.fmu.getReal(of(s, WHOLE))),
+    "read a real as integer": (new, lambda s: s.fmu.getInteger(of(s, REAL))),
+    "read a real as boolean": (new, lambda s: s.fmu.getBoolean(of(s, REAL))),
+    "read a real as string": (new, lambda s: s.fmu.getString(of(s, REAL))),
+    "set an unknown reference": (new, lambda s: s.fmu.setReal([UNKNOWN], [1.0])),
+    "set an integer as real": (new, lambda s: s.fmu.setReal(of(s, WHOLE), [1.0])),
+    "set a real as integer": (new, lambda s: s.fmu.setInteger(of(s, REAL), [1])),
+    "set a real as boolean": (new, lambda s: s.fmu.setBoolean(of(s, REAL), [1])),
+    "set a real as string": (new, lambda s: s.fmu.setString(of(s, REAL), ["1"])),
+    "set an output": (new, lambda s: s.fmu.setReal(of(s, OUTPUT), [1.0])),
+    "set up at no time": (new, lambda s: s.fmu.setupExperiment(startTime=math.nan)),
+    "complete initialisation that was not entered": (new, lambda s: s.fmu.exitInitializationMode()),
+    "step a new one": (new, lambda s: s.fmu.doStep(0.0, STEP)),
+    "set up while initialising": (initialising, lambda s: s.fmu.setupExperiment(startTime=0.0)),
+    "enter initialisation twice": (initialising, lambda s: s.fmu.enterInitializationMode()),
+    "step while initialising": (initialising, lambda s: s.fmu.doStep(0.0, STEP)),
+    "read what a bad parameter makes": (badly, lambda s: s.fmu.getReal(of(s, OUTPUT))),
+    "complete with a bad parameter": (badly, lambda s: s.fmu.exitInitializationMode()),
+    "complete with a bad integer": (chosen, lambda s: s.fmu.exitInitializationMode()),
+    "complete with an input that is no number": (
+        lambda: initialising(INPUT, math.nan), lambda s: s.fmu.exitInitializationMode()),
+    "set up when running": (running, lambda s: s.fmu.setupExperiment(startTime=0.0)),
+    "enter initialisation when running": (running, lambda s: s.fmu.enterInitializationMode()),
+    "complete initialisation twice": (running, lambda s: s.fmu.exitInitializationMode()),
+    "set a fixed parameter": (running, lambda s: s.fmu.setReal(of(s, REAL), [1e-4])),
+    "set a fixed integer": (running, lambda s: s.fmu.setInteger(of(s, WHOLE), [1])),
+    "set an output when running": (running, lambda s: s.fmu.setReal(of(s, OUTPUT), [1.0])),
+    "set an unknown reference when running": (running, lambda s: s.fmu.setReal([UNKNOWN], [1.0])),
+    "read an unknown reference when running": (running, lambda s: s.fmu.getInteger([UNKNOWN])),
+    "set one of two wrongly": (running, lambda s: s.fmu.setReal(of(s, INPUT) + of(s, REAL), [0, 1])),
+    "step back": (running, lambda s: s.fmu.doStep(0.0, STEP)),
+    "leave a gap": (running, lambda s: s.fmu.doStep(3 * STEP, STEP)),
+    "step by nothing": (running, lambda s: s.fmu.doStep(STEP, 0.0)),
+    "step by less than nothing": (running, lambda s: s.fmu.doStep(STEP, -STEP)),
+    "step by no number": (running, lambda s: s.fmu.doStep(STEP, math.nan)),
+    "step for ever": (running, lambda s: s.fmu.doStep(STEP, math.inf)),
+    "step from no time": (running, lambda s: s.fmu.doStep(math.nan, STEP)),
+    "step with an input that is no number": (lambda: fed(math.nan), lambda s: s.fmu.doStep(STEP, STEP)),
+    "step with an infinite input": (lambda: fed(math.inf), lambda s: s.fmu.doStep(STEP, STEP)),
+    "step one that failed": (failed, lambda s: s.fmu.doStep(STEP, STEP)),
+    "step one that ended": (ended, lambda s: s.fmu.doStep(STEP, STEP)),
+    "cancel a step": (running, lambda s: s.fmu.cancelStep()),
+    "set an input's rate": (running, lambda s: s.fmu.setRealInputDerivatives(of(s, INPUT), [1], [0])),
+    "take another FMU's bytes": (running, lambda s: s.fmu.deSerializeFMUstate(strange())),
+    "take bytes that were cut": (running, lambda s: s.fmu.deSerializeFMUstate(bytes_of(s)[:-1])),
+    "take bytes that were changed": (running, lambda s: s.fmu.deSerializeFMUstate(changed(s))),
+    "take no bytes": (running, lambda s: s.fmu.deSerializeFMUstate(b"")),
+}
+
+found = {}
+for name, (prepared, call) in WRONG.items():
+    slave = prepared()
+    slave.messages.clear()
+    answer = status(call, slave)
+    said = slave.said
+    slave.fmu.reset()
+    again = slave.start().run(0, 1) != []
+    slave.free()
+    found[name] = [answer, said, again]
+print(json.dumps(found))
+"""
+
+TOO_LONG = """
+import json
+from slave_driver import STEP, TOUCHING, Slave
+slave = Slave(sys.argv[1]).start({**TOUCHING, "contact.stiffness": 1e12})
+state = slave.fmu.getFMUstate()
+answers = []
+for length in (1e3, STEP):
+    try:
+        slave.fmu.doStep(0.0, length)
+        answers.append(0)
+    except Exception as error:
+        answers.append(error.status)
+    slave.fmu.setFMUstate(state)
+print(json.dumps([answers, slave.said]))
+"""
+
+REASONS = {  # what the log says of some
+    "read an output before initialisation": "contact.force cannot be read before initialisation",
+    "read an integer as real": "friction.kind cannot be read as real",
+    "set a real as boolean": "clearance cannot be set as boolean",
+    "read an unknown reference": "value reference 123456789",
+    "complete with a bad parameter": "clearance = -1 m must be above 0 m",
+    "read what a bad parameter makes": "clearance = -1 m must be above 0 m",
+    "set a fixed parameter": "clearance cannot be set as real now; parameters are fixed",
+    "step back": "the last step ended at 2e-05 s",
+    "step one that failed": "stopped before: cannot step",
+    "take bytes that were changed": "not one of this FMU, or was changed",
+}
+
+
+def answered(done: subprocess.CompletedProcess[str]) -> Any:
+    """What a script printed last; its process must have ended well."""
+    assert done.returncode == 0, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return json.loads(done.stdout.splitlines()[-1])
+
+
+@pytest.fixture(scope="module", params=["python", "native"])
+def folders(request: pytest.FixtureRequest, unpacked: Mapping[str, Path]) -> tuple[Path, Path]:
+    """A bearing of each kind, and another FMU of that kind."""
+    if request.param == "python":
+        return unpacked["bushing"], unpacked["housing"]
+    native: Native = request.getfixturevalue("native")
+    return native("bushing"), native("housing")
+
+
+def test_a_wrong_call_is_answered_by_an_error(folders: tuple[Path, Path], alone: Alone):
+    """With its reason; and the instance can be reset, runs and is freed."""
+    found = answered(alone(CALLS, *folders))
+    assert len(found) > 30
+    assert {name: status for name, (status, _, _) in found.items() if status != ERROR} == {}
+    assert [name for name, (_, said, _) in found.items() if not said] == []
+    assert {name: found[name][1] for name, part in REASONS.items() if part not in found[name][1]} == {}
+    assert [name for name, (_, _, again) in found.items() if not again] == []
+
+
+def test_only_a_step_that_is_too_long_is_discarded(folders: tuple[Path, Path], alone: Alone):
+    """From the state before, a smaller one is taken."""
+    answers, said = answered(alone(TOO_LONG, folders[0]))
+    assert answers == [DISCARD, 0]
+    assert "take a smaller macro step" in said

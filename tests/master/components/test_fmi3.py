@@ -1,0 +1,125 @@
+"""FMUs of FMI 3.0 as components: arrays, types of numbers, what is refused; a probe changes nothing."""
+
+from __future__ import annotations
+
+import subprocess
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import platform_tuple
+from hosting import COMPILER
+from systems import history
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.interop.check import check_fmu
+from touchdown.master.interop.doctor import why_not
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.scene.file import load_scene, parse
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.wires import Wire
+
+pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+
+TWO = '<Dimension start="2"/>'
+DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="probe" instantiationToken="{{probe}}">
+<CoSimulation modelIdentifier="probe3"/>
+<UnitDefinitions><Unit name="m"><BaseUnit m="1"/></Unit></UnitDefinitions>
+<ModelVariables>
+<Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>
+<Float64 name="u" valueReference="1" causality="input" start="0 3" unit="m">{TWO}</Float64>
+<Float64 name="gain" valueReference="2" causality="parameter" variability="fixed" start="2"/>
+<Float64 name="y" valueReference="3" causality="output" initial="calculated">{TWO}</Float64>
+<Int32 name="n" valueReference="4" causality="output" initial="calculated"/>
+<UInt8 name="k" valueReference="5" causality="parameter" variability="fixed" start="7"/>
+<Binary name="raw" valueReference="6" causality="input"><Start value="00"/></Binary>
+</ModelVariables>
+<ModelStructure><Output valueReference="3"/><Output valueReference="4"/>
+<InitialUnknown valueReference="3"/><InitialUnknown valueReference="4"/></ModelStructure>
+</fmiModelDescription>"""
+
+
+@pytest.fixture(scope="module")
+def probe(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU of probe3.c."""
+    folder = tmp_path_factory.mktemp("fmi3")
+    library, source = folder / "probe3.so", Path(__file__).with_name("probe3.c")
+    assert COMPILER is not None
+    command = [COMPILER, "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-o", library, source]
+    subprocess.run(command, check=True)
+    with zipfile.ZipFile(folder / "probe.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", DESCRIPTION)
+        archive.write(library, f"binaries/{platform_tuple}/probe3.so")
+    return folder / "probe.fmu"
+
+
+def alone(probe: Path, **changes: object) -> Scene:
+    """The probe and nothing else."""
+    component = {"fmu": str(probe), **changes}
+    run = {"duration": 0.1, "macro_step": 0.01}
+    return parse({"components": {"probe": component}, "run": run}, "alone", probe.parent)
+
+
+def test_the_check_passes_it(probe: Path) -> None:
+    report = check_fmu(str(probe))
+    assert report.problems == []
+    assert "valid FMI 3.0 for co-simulation" in report.lines
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+def test_arrays_are_scalars_and_numbers_of_all_sizes_are_set(isolate: bool, probe: Path) -> None:
+    """Elements that are not set keep their start values."""
+    scene = alone(probe, isolate=isolate, set={"gain": 3.0, "u[1]": 5e-3, "k": 255})
+    with opened(scene) as system:
+        assert simulate(scene, system).reason == ""
+        found = [system.value(f"probe.{name}") for name in ("y[1]", "y[2]", "n", "k")]
+    assert found == pytest.approx([0.015, 9.0, 10, 255])
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+def test_a_probe_changes_no_bit_of_the_drop(isolate: bool, probe: Path) -> None:
+    """And it hears what its element was connected to."""
+    scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 0.0, "run.duration": 0.012})
+    listening = {**scene.components, "probe": ComponentSpec(str(probe), isolate=isolate)}
+    wires = (*scene.connect, Wire("rotor.A.y", "probe.u[2]"))
+    watched = Scene(**{**vars(scene), "components": listening, "connect": wires})
+    names = ["rotor.A.x", "rotor.A.y", "bearing.journal.fy"]
+    _, without, _ = history(scene, names, in_process=False)
+    _, values, _ = history(watched, [*names, "probe.y[2]", "probe.y[1]"], in_process=False)
+    assert without["bearing.journal.fy"].max() > 100.0
+    for name in names:
+        assert np.array_equal(values[name], without[name])
+    assert np.array_equal(values["probe.y[2]"], 2.0 * without["rotor.A.y"])
+    assert not values["probe.y[1]"].any()
+
+
+def test_a_step_that_ends_early_is_said(probe: Path) -> None:
+    scene = alone(probe).set({"run.duration": 2.0})
+    with opened(scene) as system:
+        reason = simulate(scene, system).reason
+    assert reason == "component probe: its FMU returned early at t = 1 s"
+
+
+def test_what_is_no_number_is_refused(probe: Path, tmp_path: Path) -> None:
+    with (
+        pytest.raises(TouchdownError, match=r"probe\.raw .*Binary"),
+        opened(alone(probe, set={"raw": 1.0})),
+    ):
+        pass
+    with pytest.raises(TouchdownError, match=r"component probe is FMI 3\.0; SSP 1\.0 packages"):
+        write_package(alone(probe), tmp_path / "probe.ssp")
+    assert "is FMI 3.0; only FMI 2.0 is tried" in why_not(probe)
+
+
+def test_types_that_fmi_3_does_not_have_are_named(probe: Path, tmp_path: Path) -> None:
+    """Also those of FMI 2.0."""
+    with zipfile.ZipFile(probe) as archive:
+        entries = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(tmp_path / "scheduled.fmu", "w") as archive:
+        for name, entry in entries.items():
+            archive.writestr(name, entry.replace(b"<CoSimulation", b"<ScheduledExecution"))
+    with pytest.raises(TouchdownError, match=r"scheduled execution only; FMI 2\.0 or 3\.0"):
+        check_fmu(str(tmp_path / "scheduled.fmu"))

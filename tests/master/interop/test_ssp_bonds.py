@@ -1,0 +1,91 @@
+"""What a scene says of bonds goes with its package: those that it declares, and how they cross."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import fields
+from pathlib import Path
+
+import bodies
+import pytest
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.names import HEART
+from touchdown.master.interop.ssp.read import RUN_KEYS
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.results.run import run_scene
+from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.scene import Scene
+
+FORCE, POSITION, VELOCITY = bodies.TWO
+RUN = {"macro_step": 1e-3, "duration": 0.01}
+LISTED = list(bodies.TWO)
+BY_NAME = [{"force": FORCE, "velocity": VELOCITY}]
+GEAR = [[*wire, 2.0, 0.0] for wire in bodies.TWO]
+
+
+@pytest.fixture(scope="module")
+def unitless(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    if bodies.COMPILER is None:
+        pytest.skip("needs a C compiler")
+    library = bodies.compiled(tmp_path_factory.mktemp("bodies"))
+    return bodies.fmu(library, "unitless", bodies.Kind(units=False))
+
+
+def two(path: Path, bond: object, **run: object) -> Scene:
+    return bodies.scene(path, bodies.oscillator(), (), bond=bond, run={**RUN, **run})
+
+
+def exchange(scene: Scene, folder: Path) -> object:
+    return run_scene(scene, folder, pictures=False).summary["exchange"]
+
+
+@pytest.mark.parametrize("bond", [LISTED, BY_NAME, GEAR], ids=["listed", "by name", "gear"])
+@pytest.mark.parametrize("way", ["auto", "contact", "hold"])
+def test_values_cross_as_in_the_scene(unitless: Path, bond: object, way: str, tmp_path: Path) -> None:
+    """Nothing but the declaration tells, as the FMUs state no units."""
+    scene = two(unitless, bond, bonds=way)
+    told = exchange(scene, tmp_path / "scene")
+    assert f"s1.f on s2.f_in by {'smooth' if way == 'auto' else way}" in str(told)
+    again = find_scene(str(write_package(scene, tmp_path / "again.ssp").path))
+    assert exchange(again, tmp_path / "again") == told
+
+
+def test_names_of_components_and_variables_are_those_of_the_package(unitless: Path, tmp_path: Path) -> None:
+    """Components are called by identifiers there, variables as in the scene."""
+    first, second = bodies.oscillator().values()
+    bond = [{"force": ["1st.push", "s2.f_in"], "position": ["s2.x", "1st.place"]}]
+    scene = bodies.scene(unitless, {"1st": first, "s2": second}, (), bond=bond, run=RUN)
+    scene = scene.with_names("1st", {"push": "f", "place": "x2"})
+    again = find_scene(str(write_package(scene, tmp_path / "again.ssp").path))
+    told = str(exchange(scene, tmp_path / "scene"))
+    assert "1st.push on s2.f_in by smooth" in told
+    assert exchange(again, tmp_path / "again") == told.replace("1st", "x1st")
+
+
+def test_all_of_how_to_run_goes_along() -> None:
+    """But for times, which the structure tells, and for what belongs to a computer."""
+    elsewhere = {"duration", "macro_step", "call_timeout"}
+    assert {field.name for field in fields(RunSpec)} - elsewhere == set(RUN_KEYS)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('force="s2.f_in"', 'force="s2.gone"', r"a Bond names s2\.gone, to which nothing is connected"),
+        ('force="s2.f_in"', "", "a Bond has no force"),
+        ('velocity="s1.v2"', "", r"the Bond of s2\.f_in has no position or velocity"),
+    ],
+)
+def test_a_broken_bond_is_named(unitless: Path, old: str, new: str, expected: str, tmp_path: Path) -> None:
+    whole, broken = write_package(two(unitless, BY_NAME), tmp_path / "whole.ssp").path, tmp_path / "b.ssp"
+    with zipfile.ZipFile(whole) as archive, zipfile.ZipFile(broken, "w") as other:
+        for name in archive.namelist():
+            content = archive.read(name)
+            if name == HEART:
+                assert old.encode() in content
+                content = content.replace(old.encode(), new.encode())
+            other.writestr(name, content)
+    with pytest.raises(TouchdownError, match=expected):
+        find_scene(str(broken))

@@ -1,0 +1,217 @@
+"""SSP packages as other tools write them: systems in systems, their connectors, SSP 2.0, masters' steps."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from systems import history
+
+from touchdown.fmus.build import cached
+from touchdown.fmus.recipes import recipe
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.names import HEART, NAMESPACES
+from touchdown.master.scene.scene import Scene
+
+ROOT = " ".join(f'xmlns:{prefix}="{uri}"' for prefix, uri in NAMESPACES.items())
+UNITS = """<ssd:Units>
+<ssc:Unit name="mm"><ssc:BaseUnit m="1" factor="0.001"/></ssc:Unit>
+<ssc:Unit name="m"><ssc:BaseUnit m="1"/></ssc:Unit>
+<ssc:Unit name="rpm"><ssc:BaseUnit rad="1" s="-1" factor="0.10471975511965977"/></ssc:Unit>
+</ssd:Units>"""
+
+
+def connector(name: str, kind: str, unit: str = "", real: str = "Real") -> str:
+    stated = f' unit="{unit}"' if unit else ""
+    return f'<ssd:Connector name="{name}" kind="{kind}"><ssc:{real}{stated}/></ssd:Connector>'
+
+
+def connection(start: str, end: str, inside: str = "") -> str:
+    """Of ELEMENT:CONNECTOR, or CONNECTOR of the system itself."""
+    ends = ""
+    for key, text in (("start", start), ("end", end)):
+        element, _, name = text.rpartition(":")
+        ends += f' {key}Element="{element}"'  # some tools leave it out, others empty
+        ends += f' {key}Connector="{name}"'
+    return f"<ssd:Connection{ends}>{inside}</ssd:Connection>"
+
+
+def bound(real: str = "Real", mapping: str = "", **values: str) -> str:
+    """Parameter bindings with these values; __ in a name is a dot."""
+    parameters = "".join(
+        f'<ssv:Parameter name="{name.replace("__", ".")}"><ssv:{real} {given}/></ssv:Parameter>'
+        for name, given in values.items()
+    )
+    return (
+        "<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>"
+        f'<ssv:ParameterSet version="1.0" name="values"><ssv:Parameters>{parameters}</ssv:Parameters>'
+        f"</ssv:ParameterSet></ssd:ParameterValues>{mapping}</ssd:ParameterBinding></ssd:ParameterBindings>"
+    )
+
+
+def system(name: str, elements: str, connections: str, connectors: str = "", bindings: str = "") -> str:
+    return (
+        f'<ssd:System name="{name}"><ssd:Connectors>{connectors}</ssd:Connectors>{bindings}'
+        f"<ssd:Elements>{elements}</ssd:Elements><ssd:Connections>{connections}</ssd:Connections></ssd:System>"
+    )
+
+
+def component(name: str, fmu: str, more: str = "") -> str:
+    return f'<ssd:Component name="{name}" source="resources/{fmu}.fmu">{more}</ssd:Component>'
+
+
+SHAFT = system(
+    "shaft.line",
+    component("rotor", "rigid_rotor", bound(mass='value="2"')),
+    connection("rotor:A.x", "x")
+    + connection("height", "rotor:A.y")  # ends may stand in either order
+    + connection("fx", "rotor:A.fx")
+    + connection("fy", "rotor:A.fy")
+    + connection("at", "rotor:y"),
+    connector("x", "output", "mm")
+    + connector("height", "output")
+    + connector("fx", "input")
+    + connector("fy", "input")
+    + connector("at", "parameter", "mm"),
+    bound(rotor__gravity='value="1"', rotor__mass='value="3"'),
+)
+WHOLE = system(
+    "whole",
+    SHAFT + component("bearing", "bushing"),
+    connection("shaft.line:x", "bearing:journal.x", '<ssc:LinearTransformation offset="1.0"/>')
+    + connection("shaft.line:height", "bearing:journal.y")
+    + connection("bearing:journal.fx", "shaft.line:fx")
+    + connection("bearing:journal.fy", "shaft.line:fy")
+    + connection("start", "shaft.line:at")
+    + connection("spin", "bearing:journal.omega"),
+    connector("start", "parameter", "m")
+    + connector("spin", "input", "rpm")
+    + connector("nowhere", "parameter")
+    + connector("open", "input"),
+    bound(
+        start='value="-0.25" unit="mm"',
+        nowhere='value="7"',
+        **{"shaft.line__rotor__gravity": 'value="1.62"'},
+    ),
+)
+Pack = Callable[..., Scene]
+
+
+@pytest.fixture
+def pack(tmp_path: Path) -> Pack:
+    def make(whole: str = WHOLE, version: str = "1.0", more: str = UNITS) -> Scene:
+        """The scene that a package of the system is read as."""
+        path = tmp_path / "others.ssp"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr(
+                HEART,
+                f'<ssd:SystemStructureDescription {ROOT} version="{version}" name="others">{whole}{more}'
+                '<ssd:DefaultExperiment stopTime="0.004"/></ssd:SystemStructureDescription>',
+            )
+            for fmu in ("rigid_rotor", "bushing"):
+                archive.writestr(f"resources/{fmu}.fmu", cached(recipe(fmu)).read_bytes())
+        return find_scene(str(path))
+
+    return make
+
+
+def test_systems_in_systems_are_flattened(pack: Pack) -> None:
+    """Names are joined, ports recognised, values of outer systems above those of inner ones."""
+    scene = pack()
+    assert list(scene.components) == ["bearing", "shaft_line_rotor"]
+    shaft = {"mass": 3.0, "gravity": 1.62, "y": -0.25e-3}
+    assert scene.components["shaft_line_rotor"].set == pytest.approx(shaft)
+    wires = {(w.source, w.target): w.scale for w in scene.connect}
+    assert set(wires) == {
+        ("shaft_line_rotor.A.x", "bearing.journal.x"),
+        ("shaft_line_rotor.A.y", "bearing.journal.y"),
+        ("bearing.journal.fx", "shaft_line_rotor.A.fx"),
+        ("bearing.journal.fy", "shaft_line_rotor.A.fy"),
+    }
+    assert wires["shaft_line_rotor.A.x", "bearing.journal.x"] == pytest.approx((1.0, 1.0))  # m to mm to m
+    assert wires["shaft_line_rotor.A.y", "bearing.journal.y"] is None
+    with opened(scene) as system:
+        assert system.order == ["bearing", "shaft_line_rotor"]
+
+
+def test_a_value_on_a_connector_of_the_system_is_converted_on_its_way(pack: Pack) -> None:
+    given = WHOLE.replace('name="start"><ssv', 'name="spin"><ssv')
+    given = given.replace('value="-0.25" unit="mm"', 'value="60"')
+    assert given != WHOLE
+    spun = pack(given).components["bearing"].set
+    assert spun == pytest.approx({"journal.omega": 60 * 0.10471975511965977})
+
+
+def test_a_system_in_a_system_moves_as_one_that_is_flat(pack: Pack) -> None:
+    """To the last bit, through a contact, where nothing is converted on the way."""
+    flat = system(
+        "flat",
+        component("rotor", "rigid_rotor", bound(y='value="-0.00025"')) + component("bearing", "bushing"),
+        connection("rotor:A.x", "bearing:journal.x")
+        + connection("rotor:A.y", "bearing:journal.y")
+        + connection("bearing:journal.fx", "rotor:A.fx")
+        + connection("bearing:journal.fy", "rotor:A.fy"),
+    )
+    nested = WHOLE.replace('<ssc:LinearTransformation offset="1.0"/>', "")
+    nested = nested.replace(
+        'name="x" kind="output"><ssc:Real unit="mm"/>', 'name="x" kind="output"><ssc:Real/>'
+    )
+    inner, run = "shaft_line_rotor", {"run.stop_residual": 100.0}
+    usual = {f"{inner}.mass": 1.65, f"{inner}.gravity": 9.81}
+    names = ["A.x", "A.y", "A.fy"]
+    _, ours, _ = history(pack(flat).set(run), [f"rotor.{n}" for n in names], in_process=False)
+    _, theirs, _ = history(pack(nested).set(usual | run), [f"{inner}.{n}" for n in names], in_process=False)
+    assert ours["rotor.A.fy"].max() > 10.0
+    for name in names:
+        assert (ours[f"rotor.{name}"] == theirs[f"{inner}.{name}"]).all()
+
+
+@pytest.mark.parametrize("inside", ["", '<ssm:ParameterMapping version="1.0"/>'])
+def test_an_empty_mapping_leaves_names_as_they_are(inside: str, pack: Pack) -> None:
+    mapping = f"<ssd:ParameterMapping>{inside}</ssd:ParameterMapping>"
+    whole = system("w", component("rotor", "rigid_rotor", bound(mapping=mapping, mass='value="2"')), "")
+    assert pack(whole).components["rotor"].set == {"mass": 2.0}
+
+
+def test_entries_of_a_template_map_nothing(pack: Pack) -> None:
+    entries = '<ssm:MappingEntry source="" target="speed"/><ssm:MappingEntry source="m" target="mass"/>'
+    mapping = f'<ssm:ParameterMapping version="1.0">{entries}</ssm:ParameterMapping>'
+    values = bound(mapping=f"<ssd:ParameterMapping>{mapping}</ssd:ParameterMapping>", m='value="2"')
+    whole = system("w", component("rotor", "rigid_rotor", values), "")
+    assert pack(whole).components["rotor"].set == {"mass": 2.0}
+
+
+def test_ssp_2_is_read_with_types_of_fmi_3(pack: Pack) -> None:
+    typed = bound("Float64", mass='value="2"').replace("1.0", "2.0")
+    spin = connector("spin", "input", "rpm", "Float64")
+    whole = system("w", component("rotor", "rigid_rotor", typed), "", spin)
+    assert pack(whole, "2.0").components["rotor"].set == {"mass": 2.0}
+
+
+@pytest.mark.parametrize(
+    ("told", "step"),
+    [
+        ('<oms:SimulationInformation><oms:FixedStepMaster description="oms-ma" stepSize="1e-4"/>', 1e-4),
+        ('<oms:SimulationInformation name="m" method="oms_ma" fixedStepSize="2e-4">', 2e-4),
+        ('<oms:SimulationInformation><oms:VariableStepMaster maximumStepSize="3e-4"/>', 3e-4),
+        ("<oms:SimulationInformation>", 2e-5),
+    ],
+)
+def test_omsimulators_step_is_taken(told: str, step: float, pack: Pack) -> None:
+    annotation = (
+        '<ssd:Annotations><ssc:Annotation type="org.openmodelica"><oms:Annotations>'
+        f"{told}</oms:SimulationInformation></oms:Annotations></ssc:Annotation></ssd:Annotations></ssd:System>"
+    )
+    whole = system("w", component("rotor", "rigid_rotor"), "").replace("</ssd:System>", annotation)
+    assert pack(whole).run.macro_step == step
+
+
+def test_a_binding_for_nothing_is_named_with_its_system(pack: Pack) -> None:
+    with pytest.raises(
+        TouchdownError, match=r"a binding of shaft\.line sets router\.gravity, which is neither"
+    ):
+        pack(WHOLE.replace('name="rotor.gravity"', 'name="router.gravity"'))

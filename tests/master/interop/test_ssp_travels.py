@@ -1,0 +1,181 @@
+"""One package for every tool: names, annotations, and FMUs that start from its values by themselves."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from pathlib import Path
+from xml.etree.ElementTree import Element, fromstring
+
+import numpy as np
+import pytest
+from fmpy import read_model_description
+from fmpy.ssp.simulation import do_step, instantiate_fmu
+from fmpy.ssp.ssd import find_components, get_connections, read_ssd
+from hosting import COMPILER
+from systems import history
+
+from touchdown.fmus.build import cached
+from touchdown.fmus.recipes import recipe
+from touchdown.master.cli import main
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.interop.packing import Making
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.describe import identifiers
+from touchdown.master.interop.ssp.names import HEART, NAMESPACES
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.scene.file import parse
+from touchdown.master.scene.scene import Scene
+
+STEP, STEPS = 1e-4, 110  # s; the disk hits its bearing in the 72nd
+WATCHED = ["rotor.A.x", "rotor.A.y", "rotor.A.omega", "bearing.journal.fx", "bearing.journal.fy"]
+
+
+def dropped(bearing: str = "simplified_caged") -> Scene:
+    """A disk, faster and in a narrower bearing than by default, dropped at once."""
+    scene = find_scene("disk-caged-simplified").swap(bearing=bearing)
+    settings = {"rotor.speed": "12000 rpm", "bearing.clearance": 0.25e-3, "bearing.friction.kind": 0}
+    run = {"run.duration": STEPS * STEP, "run.macro_step": STEP, "run.scheme": "jacobi-lead"}
+    return scene.set({"amb.shutdown_time": 0.0, **settings, **run})
+
+
+def stepped_by_fmpy(package: Path, folder: Path) -> dict[str, list[float]]:
+    """The package in fmpy's runner, which reads none of its values, but for that runner's first inputs.
+
+    It hands 0 to every input in the first step; here inputs begin as the FMUs have them.
+    """
+    with zipfile.ZipFile(package) as archive:
+        archive.extractall(folder)
+    system = read_ssd(str(package)).system
+    components, connections = find_components(system), get_connections(system)
+    for component in components:
+        instantiate_fmu(component, str(folder), 0.0)
+        described = read_model_description(component.unzipdir, validate=False).modelVariables
+        starts = {variable.name: variable.start for variable in described}
+        for connector in component.connectors:
+            connector.value = float(starts[connector.name] or 0.0)
+    found: dict[str, list[float]] = {name: [] for name in WATCHED}
+    for k in range(STEPS):
+        for component in components:
+            do_step(component, k * STEP, STEP)
+        for source, target in connections:
+            target.value = source.value
+        for component in components:
+            for connector in component.connectors:
+                if connector.kind == "output":
+                    found.get(f"{component.name}.{connector.name}", []).append(connector.value)
+    for component in components:
+        component.fmu.terminate()
+        component.fmu.freeInstance()
+    return found
+
+
+@pytest.mark.parametrize(("bearing", "native"), [("simplified_caged", False), ("bushing", True)])
+def test_a_tool_that_sets_nothing_runs_the_same_drop(bearing: str, native: bool, tmp_path: Path) -> None:
+    if native and COMPILER is None:
+        pytest.skip("no C compiler")
+    scene = dropped(bearing)
+    package = write_package(scene, tmp_path / "disk.ssp", True, Making(native=native)).path
+    found = stepped_by_fmpy(package, tmp_path / "unpacked")
+    _, values, _ = history(scene, WATCHED, in_process=True)
+    assert np.max(values["bearing.journal.fy"]) > 100.0
+    assert values["rotor.A.omega"][0] == pytest.approx(1256.637, rel=1e-3)
+    for name in WATCHED:
+        size = np.max(np.abs(values[name]))
+        assert np.max(np.abs(np.array(found[name]) - values[name])) <= 1e-9 * size, name
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of the changed disk."""
+    return write_package(dropped(), tmp_path_factory.mktemp("travels") / "my-disk.ssp", True).path
+
+
+@pytest.fixture(scope="module")
+def root(package: Path) -> Element:
+    """Its structure."""
+    with zipfile.ZipFile(package) as archive:
+        return fromstring(archive.read(HEART))
+
+
+def attribute(root: Element, path: str, name: str) -> str:
+    """An attribute of the element at `path`."""
+    element = root.find(path, NAMESPACES)
+    assert element is not None
+    return element.get(name, "")
+
+
+def test_annotations_lie_where_each_tool_reads_them(root: Element) -> None:
+    """OMSimulator takes the system's first annotation, and none at the root or in components."""
+    assert root.find("ssd:Annotations", NAMESPACES) is None
+    assert root.find(".//ssd:Component/ssd:Annotations", NAMESPACES) is None
+    first = "ssd:System/ssd:Annotations/ssc:Annotation[1]"
+    assert attribute(root, first, "type") == "org.openmodelica"
+    information = f"{first}/oms:Annotations/oms:SimulationInformation"
+    assert attribute(root, information, "method") == "oms_ma"
+    assert float(attribute(root, information, "fixedStepSize")) == STEP
+    assert attribute(root, f"{information}/oms:FixedStepMaster", "description") == "oms-ma"
+    assert float(attribute(root, f"{information}/oms:FixedStepMaster", "stepSize")) == STEP
+    algorithm = "ssd:DefaultExperiment/ssd:Annotations//osp:FixedStepAlgorithm"
+    assert float(attribute(root, algorithm, "baseStepSize")) == STEP
+
+
+def test_names_are_identifiers(root: Element, tmp_path: Path) -> None:
+    """Also those of components, wherever they are told."""
+    assert root.get("name") == attribute(root, "ssd:System", "name") == "disk_caged_simplified"
+    scene = parse(
+        {
+            "zero": "mag-net.shutdown_time",
+            "components": {"2nd": {"fmu": "rigid_rotor"}, "mag-net": {"fmu": "amb"}},
+            "attach": [["mag-net.journal", "2nd.amb"]],
+            "run": {"duration": 1e-3, "record": ["2nd.A"]},
+        },
+        "hyphen-ated",
+        tmp_path,
+    )
+    again = find_scene(str(write_package(scene, tmp_path / "named.ssp").path))
+    assert (list(again.components), again.zero) == (["x2nd", "mag_net"], "mag_net.shutdown_time")
+    assert again.run.record == ("x2nd.A",)
+    _, ours, _ = history(scene, ["2nd.A.y"], in_process=False)
+    _, theirs, _ = history(again, ["x2nd.A.y"], in_process=False)
+    assert np.array_equal(ours["2nd.A.y"], theirs["x2nd.A.y"])
+    assert identifiers(["a-b", "a_b", "a b"]) == {"a-b": "a_b_2", "a_b": "a_b", "a b": "a_b_3"}
+
+
+def test_texts_follow_what_was_set(package: Path, root: Element) -> None:
+    """The structure's title and the FMUs' tables do; a run of the package has the scene's title."""
+    title, _, changes = attribute(root, "ssd:System", "description").partition(", but with ")
+    told = "rotor.speed = 12000 rpm, amb.shutdown_time = 0 s, bearing.clearance = 0.00025 m and 1 more"
+    assert (title, changes) == (dropped().title, told)
+    again = find_scene(str(package))
+    assert again.title == title
+    own = {name: spec.own for name, spec in dropped().components.items()}
+    assert {name: spec.own for name, spec in again.components.items()} == own
+    with zipfile.ZipFile(package) as archive:
+        fmu = io.BytesIO(archive.read("resources/simplified_caged.fmu"))
+    page = zipfile.ZipFile(fmu).read("documentation/index.html").decode()
+    assert "<td>clearance</td><td>0.00025</td>" in page
+
+
+def test_an_fmu_that_starts_as_its_model_does_is_that_of_the_model() -> None:
+    own = recipe("bushing")
+    assert own.starting_from({}) is own
+    assert own.starting_from({"journal.x": 0.0}) is own
+    other = own.starting_from({"clearance": 0.25e-3})
+    assert (other.name, other.identifier) == (own.name, own.identifier)
+    assert other.content != own.content
+    with pytest.raises(KeyError, match=r"journal\.fx"):
+        own.starting_from({"journal.fx": 1.0})
+
+
+def test_fmus_given_as_files_are_said_to_stay_as_they_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    swap = ["--swap", f"bearing={cached(recipe('bushing'))}", "--set", "run.duration=1e-3"]
+    assert main(["ssp", "disk-caged-simplified", *swap, "-o", str(tmp_path / "disk.ssp")]) == 0
+    assert "FMUs given as files start from their own: bearing" in capsys.readouterr().out
+
+
+def test_native_and_linked_is_refused() -> None:
+    with pytest.raises(TouchdownError, match="native or linked to a Python; choose one"):
+        Making(link_python=True, native=True)

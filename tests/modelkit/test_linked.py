@@ -1,0 +1,114 @@
+"""Kernels that other kernels call: how often they are compiled, and what of it becomes machine code."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+
+from touchdown.modelkit.kernel.linked import KernelDispatcher
+
+RECORD = np.dtype([("short", "f8", (2,)), ("long", "f8", (5,))])
+
+
+def kernel(function: Any) -> Any:
+    """A kernel whose machine code is not kept."""
+    return KernelDispatcher(function, targetoptions={"nopython": True, "error_model": "numpy"})
+
+
+def linked(called: Any) -> list[tuple[Any, ...]]:
+    """The types of arguments that a kernel was compiled for to be called by others."""
+    return list(called._linked)
+
+
+@kernel
+def part(values: Any, which: int) -> Any:
+    return values[which] + 0.5
+
+
+@kernel
+def negative(x: float) -> float:
+    return -x
+
+
+@kernel
+def applied(law: Any, x: float) -> float:
+    return law(x)
+
+
+@kernel
+def total(m: Any) -> float:
+    return part(m.short, 0) + part(m.short, 1) + part(m.long, 4) + applied(negative, 3.0)
+
+
+def record() -> Any:
+    m = np.zeros(1, RECORD)
+    m["short"], m["long"] = (1.0, 2.0), np.arange(5.0)
+    return m[0]
+
+
+def test_numbers_and_lengths_are_no_reason_to_compile_again() -> None:
+    assert total(record()) == 1.5 + 2.5 + 4.5 - 3.0
+    assert len(linked(part)) == 1
+    assert str(linked(part)[0][1]) == "int64"
+
+
+def test_only_what_python_calls_becomes_machine_code() -> None:
+    total(record())
+    assert isinstance(part, Dispatcher)
+    assert len(total.overloads) == 1
+    assert not part.overloads
+    assert not applied.overloads
+    assert part(np.array([7.0]), 0) == 7.5
+    assert len(part.overloads) == 1
+
+
+def test_what_is_called_is_in_the_code_that_calls_it() -> None:
+    total(record())
+    (compiled,) = total.overloads.values()
+    outside = {f.name for f in compiled.library._final_module.functions if f.linkage.name == "external"}
+    assert not [name for name in outside if "applied" in name or "negative" in name]
+
+
+def test_a_kernel_may_call_itself() -> None:
+    @kernel
+    def factorial(n: int) -> int:
+        if n < 2:
+            return 1
+        return n * factorial(n - 1)
+
+    assert factorial(6) == 720
+
+
+STEPPED = """
+import sys
+from touchdown.modelkit.kernel import tried
+if sys.argv[1] == "plain":
+    tried.NUMBA = ((0, 1), (0, 1))
+from touchdown.modelkit.kernel.machine_code import KernelCache
+KernelCache.active = False
+from touchdown.bearings.housing import MODEL
+from touchdown.modelkit.instance import Instance
+instance = Instance(MODEL)
+instance.memory["u"]["seat"]["fx"] = 100.0
+instance.start(0.0)
+for k in range(20):
+    instance.step(k * 1e-4, 1e-4)
+print(type(MODEL.advance).__name__, instance.words.tobytes().hex())
+"""
+
+
+def test_where_numba_is_another_one_it_compiles_as_it_does_with_the_same_results() -> None:
+    """Each way in a process of its own."""
+    answers = [
+        subprocess.run(
+            [sys.executable, "-c", STEPPED, way], check=True, capture_output=True, text=True
+        ).stdout.split()
+        for way in ("plain", "linked")
+    ]
+    assert [answer[0] for answer in answers] == ["CPUDispatcher", "KernelDispatcher"]
+    assert answers[0][1] == answers[1][1]
+    assert set(answers[0][1]) != {"0"}
