@@ -30,8 +30,8 @@ def with_errors(library: bytes) -> bytes:
     (table,) = struct.unpack_from("<Q", library, 40)
     size, count = struct.unpack_from("<2H", library, 58)
     sections = [_SECTION.unpack_from(library, table + i * size) for i in range(count)]
-    symbols = next(s for s in sections if s[1] == _DYNSYM)
-    names = _names(library, symbols, sections[symbols[6]])
+    tables = [s for s in sections if s[1] == _DYNSYM]
+    names = _names(library, tables[0], sections[tables[0][6]]) if tables else []
     if THROWN not in names or BASE not in names:
         return library
     thrown = names.index(THROWN) << 32 | _GLOB_DAT
