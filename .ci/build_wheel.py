@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from numba.core.registry import cpu_target
+from observed import WAYS
 
 import touchdown
 from touchdown.fmus import recipes
@@ -29,7 +30,6 @@ from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.kernel.shipped import MADE_FOR, made_for, plain_processor, plainer
 
 ROOT = Path(__file__).resolve().parents[1]
-WAYS = {"fmus": [], "in process": ["--in-process"]}
 ANY_BEARING = "disk-caged-simplified"  # the scene for bearings that no scene has
 PASSES = 3
 

@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+WAYS: dict[str, list[str]] = {"fmus": [], "in process": ["--in-process"]}  # to run drops, as options
 KINDS = (".nbc", ".fmu", ".sha256")
 DURATION = "12 ms"  # after the shutdown; a disk lands after 8 ms
 

@@ -18,15 +18,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from observed import WAYS
 
 OBSERVED = Path(__file__).with_name("observed.py")
-WAYS = {"fmus": [], "in process": ["--in-process"]}
-LEFT_OUT = (
-    "TOUCHDOWN_CACHE",
-    "PYTHONPATH",
-    "XDG_CACHE_HOME",
-    "MPLCONFIGDIR",
-)  # what would help, of this one
+LEFT_OUT = ("TOUCHDOWN_CACHE", "PYTHONPATH", "XDG_CACHE_HOME", "MPLCONFIGDIR")  # would help, of this one
 
 
 def main() -> int:

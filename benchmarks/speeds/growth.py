@@ -96,11 +96,8 @@ def seats(folder: Path, count: int) -> Scene:
     held = [touchdown.Station(f"S{k}", k + 1) for k in range(STATIONS)]
     shaft = touchdown.Rotor("Shaft", (STATIONS - 1) * (steel,), stations=held, levitated_at=["S0", "S7"])
     places = [round(k * (STATIONS - 1) / max(count - 1, 1)) for k in range(count)]
-    pairs = [
-        f'["bearing_{k}.journal", "rotor.S{k}"], ["bearing_{k}.housing", "housing_{k}.seat"]'
-        for k in places
-    ]
-    text = SEATED.format(count=count, attach=", ".join(pairs), rotor=shaft.save(folder / "shaft.toml"))
+    attach = ", ".join(ATTACH.format(k=k) for k in places)
+    text = SEATED.format(count=count, attach=attach, rotor=shaft.save(folder / "shaft.toml"))
     path = folder / f"seats-{count}.toml"
     path.write_text(text + "".join(SEAT.format(k=k) for k in places), encoding="utf-8")
     return load_scene(str(path))

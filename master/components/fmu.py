@@ -228,24 +228,14 @@ class FmuComponent(LoadedFmu):
 
     ENDING = ("fmi2Terminate", "fmi2FreeInstance")
     STATES = ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
-
-    def __init__(
-        self,
-        name: str,
-        path: Path,
-        cache: Path,
-        origin: str = "",
-        told: Callable[[str], object] = untold,
-    ) -> None:
-        super().__init__(name, path, cache, origin, told)
-        self._bind_functions()
-        self._in: tuple[int, int, int] = (0, 0, 0)
-        self._out: tuple[int, int, int] = (0, 0, 0)
+    _in: tuple[int, int, int] = (0, 0, 0)  # places and number of what it takes: references, values
+    _out: tuple[int, int, int] = (0, 0, 0)  # and gives
 
     def _load(self) -> Any:
         self._fmu = self._wrapped(FMU2Slave)
         self._callbacks = self._make_callbacks()
         self._instantiate(_resources(self.folder, self.description))
+        self._bind_functions()
         return self._fmu
 
     def _instantiate(self, resources: str) -> None:

@@ -20,6 +20,7 @@ from touchdown.master.components.contract import (
     MODE_LOAD,
     MODE_MOTION,
     MOTION,
+    MOUNTED,
     NEEDED,
     POSITION,
     REACH,
@@ -105,6 +106,11 @@ class Attachment:
     def load(self, variable: str) -> str:
         """COMPONENT.VARIABLE of what the bearing gives, such as bearing.journal.fx."""
         return self.bearing_end.full(variable)
+
+    @property
+    def on_journal(self) -> bool:
+        """Whether it is a journal that the bearing holds here, not what it is mounted in."""
+        return self.bearing_port != MOUNTED
 
     @property
     def reach(self) -> str:
@@ -214,14 +220,9 @@ def hit_together(
     attachments: Iterable[Attachment], components: Mapping[str, Component]
 ) -> tuple[Attachment, ...]:
     """Those of bodies that two bearings or more can hit, which say how far off that is."""
-    telling = [a for a in attachments if REACH in components[a.bearing].variables and _turns(a, components)]
+    telling = [a for a in attachments if REACH in components[a.bearing].variables and a.on_journal]
     bodies = [a.body for a in telling]
     return tuple(a for a in telling if bodies.count(a.body) > 1)
-
-
-def _turns(a: Attachment, components: Mapping[str, Component]) -> bool:
-    """Whether it is a journal that is attached, not the housing."""
-    return a.bearing_end.own("omega") in components[a.bearing].variables
 
 
 def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component]) -> Iterable[Connection]:

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.components.contract import MOUNTED
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.ledger.heard import told_by_master
 from touchdown.master.coupling.simulation import Outcome, energy_scale
@@ -69,11 +68,7 @@ ENERGIES = (
 
 def touchdown_seats(system: Readable) -> list[Attachment]:
     """Attachments at which a journal can touch down, with the name of the bearing's report."""
-    return [
-        a
-        for a in system.attachments
-        if f"{a.bearing}.contact.first_time" in system and a.bearing_port != MOUNTED
-    ]
+    return [a for a in system.attachments if f"{a.bearing}.contact.first_time" in system and a.on_journal]
 
 
 def is_heard(system: Readable, a: Attachment) -> bool:

@@ -154,9 +154,7 @@ class Crossing:
         points = (*self._samples, *self.past.pushed)
         course = self._course(points)
         given = work(course, told) + work(self._course(points, lacking=True), told)
-        if (
-            self.bond.position is None
-        ):  # it moved on its own; its first values made up for what it was behind
+        if self.bond.position is None:  # it moved by itself; its first hold made up for what it was behind
             return given + course.mean(0.0, 1.0) * self.past.behind
         return given + (self._samples[0].force + 0.5 * lacking) * missed
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from touchdown.master.components.component import Component, Kind, Variable
-from touchdown.master.components.contract import MOUNTED
+from touchdown.master.components.contract import FORCE, MOUNTED, POSITION
 from touchdown.master.coupling.connections import Attachment
 from touchdown.modelkit.variables import Causality, Variability
 
@@ -94,11 +94,11 @@ class Heard(Component):
         self._bearing.bind(inputs, outputs, names)
         self.inputs, self.outputs = self._bearing.inputs, outputs
         place = {name: k for k, name in enumerate(inputs)}
-        self._journal = [place[f"{self._port}.{axis}"] for axis in "xy"]
-        middle = [f"{MOUNTED}.{axis}" for axis in "xy"]
+        self._journal = [place[f"{self._port}.{axis}"] for axis in POSITION]
+        middle = [f"{MOUNTED}.{axis}" for axis in POSITION]
         self._middle = [place[name] for name in middle] if all(name in place for name in middle) else []
-        self._speed = [place[n] for axis in "xy" if (n := f"{self._port}.v{axis}") in place]
-        self._force = [list(names).index(f"{self._port}.f{axis}") for axis in "xy"]
+        self._speed = [place[n] for axis in POSITION if (n := f"{self._port}.v{axis}") in place]
+        self._force = [list(names).index(f"{self._port}.{force}") for force in FORCE]
 
     def step(self, time: float, step: float) -> None:
         self._bearing.step(time, step)
@@ -213,7 +213,7 @@ def heard(components: Mapping[str, Component], attachments: Sequence[Attachment]
     for a in attachments:
         bearing = listened[a.bearing]
         silent = REPORT not in bearing.variables and not any(p in bearing.variables for p in POWERED)
-        if bearing.foreign and silent and a.bearing_port != MOUNTED:
+        if bearing.foreign and silent and a.on_journal:
             listened[a.bearing] = Heard(bearing, a.bearing_port)
     return listened
 

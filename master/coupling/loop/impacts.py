@@ -48,6 +48,8 @@ class Impacts:
 
     def parts_of(self, time: float, step: float) -> int:
         """Into how many parts the macro step of `step` (s) from `time` (s) is to be divided."""
+        if not len(self.seats):  # nor is the kernel fetched, or compiled, for the run's first step
+            return 1
         self.follow()
         if not met(self.seats, self._signals, time, step):
             return 1

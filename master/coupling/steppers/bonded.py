@@ -40,7 +40,7 @@ class Bonded(GaussSeidel):
         _require_single_steps(system)
         place = {name: k for k, name in enumerate(system.order)}
         self._crossings = [Crossing(b, self.way, place[b.taker] < place[b.giver]) for b in system.bonds]
-        self.ramped = self.way.held or not all(c.any_step for c in system.components.values())
+        self.ramped = self.way.held or not system.divisible
         for crossing in self._crossings:
             crossing.trusted = self.ramped
         super().__init__(system, run)

@@ -91,14 +91,16 @@ def read(folder: Path, where: str) -> Structure:
         raise TouchdownError(f"{where} has no System")
     stop, macro_step = _experiment(root, where)
     note = _annotation(system, SCENE_ANNOTATION, "touchdown:Scene")
-    if note is None:  # older packages have it at the root
+    if note is None:  # older packages have it at the root, others' have none
         note = _annotation(root, SCENE_ANNOTATION, "touchdown:Scene")
+    if note is None:
+        note = Element(xml.tag("touchdown:Scene"))
     return Structure(
         root=_node(system, folder, where, root.get("name") or folder.name),
         units=xml.unit_definitions(root, "ssd:Units", where),
         stop=stop,
         macro_step=macro_step or _masters_step(system, where),
-        scene={} if note is None else dict(note.attrib),
+        scene=dict(note.attrib),
         names=_names(note, where),
         changed=_changed(note, where),
         bonds=_bonds(note, where),
@@ -253,25 +255,25 @@ def _annotation(element: Element, kind: str, path: str) -> Element | None:
     return None
 
 
-def _names(note: Element | None, where: str) -> dict[str, dict[str, str]]:
+def _names(note: Element, where: str) -> dict[str, dict[str, str]]:
     names: dict[str, dict[str, str]] = {}
-    for name in xml.children(note, "touchdown:Name") if note is not None else ():
+    for name in xml.children(note, "touchdown:Name"):
         component, here, own = (xml.required(name, key, where) for key in ("component", "name", "own"))
         names.setdefault(component, {})[here] = own
     return names
 
 
-def _changed(note: Element | None, where: str) -> dict[str, list[str]]:
+def _changed(note: Element, where: str) -> dict[str, list[str]]:
     changed: dict[str, list[str]] = {}
-    for element in xml.children(note, "touchdown:Changed") if note is not None else ():
+    for element in xml.children(note, "touchdown:Changed"):
         component, name = (xml.required(element, key, where) for key in ("component", "name"))
         changed.setdefault(component, []).append(name)
     return changed
 
 
-def _bonds(note: Element | None, where: str) -> list[dict[str, str]]:
+def _bonds(note: Element, where: str) -> list[dict[str, str]]:
     bonds: list[dict[str, str]] = []
-    for element in xml.children(note, "touchdown:Bond") if note is not None else ():
+    for element in xml.children(note, "touchdown:Bond"):
         motion = {kind: told for kind in ("position", "velocity") if (told := element.get(kind))}
         bonds.append({"force": xml.required(element, "force", where), **motion})
         if not motion:

@@ -61,11 +61,11 @@ def write_package(
 
 def _places(paths: Mapping[str, Path]) -> dict[str, tuple[str, bytes]]:
     """By component: its FMU's place in the package, and the FMU. Equal FMUs are packed once."""
+    contents = {name: path.read_bytes() for name, path in paths.items()}
     places: dict[bytes, str] = {}
-    for path in paths.values():
-        content = path.read_bytes()
+    for component, path in paths.items():
+        content = contents[component]
         names = (f"{RESOURCES}/{path.stem}{f'_{n}' if n > 1 else ''}.fmu" for n in count(1))
         if content not in places:
             places[content] = next(name for name in names if name not in places.values())
-    contents = {name: path.read_bytes() for name, path in paths.items()}
     return {name: (places[content], content) for name, content in contents.items()}
