@@ -51,8 +51,10 @@ REPORTED = {
     "touchdown.master.api.rotor",
 }
 """What describes rotor files may read them; nothing of it is co-simulation."""
-RATED = {"touchdown.master.report"}
-"""What reports on bearings may read how they are rated, arithmetic beside the simulation."""
+RATED = {
+    *("touchdown.master.report", "touchdown.master.studies.machine", "touchdown.master.api.machines"),
+}
+"""What tells of bearings may read the catalogue and their ratings, arithmetic beside the simulation."""
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 MOST = 12  # entries of a folder
 
@@ -93,7 +95,11 @@ def test_a_package_imports_only_what_it_may(package: str) -> None:
     allowed = LAYERS[package] | {f"{OWN}.{package}"}
     for module, path in modules(package).items():
         here = allowed | ({"touchdown.rotor"} if within(module, REPORTED) else set())
-        here |= {"touchdown.bearings.rating"} if within(module, RATED) else set()
+        here |= (
+            {"touchdown.bearings.rating", "touchdown.bearings.catalogue"}
+            if within(module, RATED)
+            else set()
+        )
         extra = {
             name
             for name in imports(path)
