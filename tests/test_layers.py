@@ -48,7 +48,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
 }
 REPORTED = {
     *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
-    "touchdown.master.api.rotor",
+    *("touchdown.master.api.rotor", "touchdown.master.studies.machine"),
 }
 """What describes rotor files may read them; nothing of it is co-simulation."""
 RATED = {

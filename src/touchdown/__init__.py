@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from touchdown.master.api.fmus import build, check
-    from touchdown.master.api.machines import catalogue
+    from touchdown.master.api.machines import catalogue, new
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
@@ -47,6 +47,7 @@ __all__ = [
     "check",
     "compare",
     "load",
+    "new",
     "register_scheme",
     "run",
     "scenes",
@@ -58,6 +59,7 @@ _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
+    "new": "master.api.machines",
     "Rotor": "master.api.rotor",
     "run": "master.api.run",
     "load": "master.api.scenes",
