@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import partial
@@ -13,6 +14,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
@@ -42,6 +44,7 @@ def run_scene(
         scratch = Scratch()
         folder = scratch.path
     with interrupts_noted(), claimed(folder) as results:
+        compile_ahead(scene, in_process, _told if progress else lambda what: None)
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:
@@ -61,6 +64,10 @@ def run_scene(
             system.close()
     warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def _told(what: str) -> None:
+    print(what, file=sys.stderr, flush=True)
 
 
 def _begin(results: ResultsFolder, scene: Scene) -> None:

@@ -34,7 +34,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.ended import Ended
-    from touchdown.master.components.library import foreign
+    from touchdown.master.components.library.sources import foreign
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
     from touchdown.master.results.whirl.evidence import evidence, hint
