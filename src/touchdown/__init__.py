@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from touchdown.master.api.fmus import build, check
+    from touchdown.master.api.machines import catalogue
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
@@ -42,6 +43,7 @@ __all__ = [
     "Unbalance",
     "__version__",
     "build",
+    "catalogue",
     "check",
     "compare",
     "load",
@@ -55,6 +57,7 @@ __all__ = [
 _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
+    "catalogue": "master.api.machines",
     "Rotor": "master.api.rotor",
     "run": "master.api.run",
     "load": "master.api.scenes",
