@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import run
@@ -44,6 +45,7 @@ __all__ = [
     "build",
     "check",
     "compare",
+    "figure",
     "load",
     "register_scheme",
     "run",
@@ -53,6 +55,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "figure": "master.api.figures",
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "Rotor": "master.api.rotor",

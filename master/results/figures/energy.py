@@ -9,10 +9,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.ending import Finished
-from touchdown.master.results.figures.style import BLACK, BLUE, COLOURS, TIME, WIDTH, sized, thinned
+from touchdown.master.results.figures.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    SKY,
+    TIME,
+    WIDTH,
+    YELLOW,
+    sized,
+    thinned,
+)
 from touchdown.master.results.summary import energy_total
 
-PALETTE = (*COLOURS, BLACK, "#56b4e9", "#e69f00")  # one per component
+PALETTE = (*COLOURS, BLACK, SKY, YELLOW)  # one per component
 MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pairs repeat late
 STYLES = {"kinetic": "-", "potential": "--", "dissipated": ":"}
 SMALL = 1e-3  # of the largest change; less is named, not drawn
