@@ -9,7 +9,7 @@ from touchdown.master.studies.dissertation.exhibits.registry import entry
 
 
 def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool = False) -> Exhibit:
-    """A figure or table of the source as it comes out here: its picture, and rows beside the source's values.
+    """A figure or table of the source as it comes out here: its picture, and rows beside its values.
 
     name: such as 25 or "table7"; `touchdown figure` lists them. Returns `figure` (matplotlib's; None for
     some tables), `rows` (each with what, source, ours, deviation, verdict) and `notes` (what is assumed).

@@ -52,7 +52,7 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
 
 
 def draw_along(axes: Axes, component: Teller, kind: str, kept: bool) -> None:
-    """Stress of a kind [MPa] along the axis [mm]: both planes at the kept instant, and the run's largest."""
+    """Stress of a kind [MPa] along the axis [mm]: both planes at the kept instant, the run's largest."""
     position = 1e3 * np.array(along(component, "position")[1])
     envelope = MPA * np.array(along(component, f"peak_{kind}")[1])
     if len(envelope) == len(position):

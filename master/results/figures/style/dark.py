@@ -36,7 +36,8 @@ def darkened(figure: FigureBase) -> FigureBase:
 
 def dark(colour: Any) -> Rgba:
     """The colour on dark ground that stands for one on light ground, as transparent as it is."""
-    *rgb, alpha = to_rgba(colour)
+    *channels, alpha = to_rgba(colour)
+    rgb = channels[0], channels[1], channels[2]
     known = ON_DARK.get(to_hex(rgb))
     if known is not None:
         return to_rgba(known, alpha)
@@ -70,7 +71,9 @@ def _darken(artist: Artist) -> None:
             _darken(artist.arrow_patch)
     elif isinstance(artist, Axis):  # for ticks to come
         given = artist.get_tick_params()
-        chosen = {key: dark(given[key]) for key in ("color", "labelcolor", "grid_color") if key in given}
+        chosen: dict[str, Any] = {
+            key: dark(given[key]) for key in ("color", "labelcolor", "grid_color") if key in given
+        }
         artist.set_tick_params(**chosen)
 
 

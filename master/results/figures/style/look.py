@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from cycler import cycler
 from matplotlib import rc_context
@@ -14,7 +15,7 @@ from touchdown.master.results.figures.style.palette import BLACK, COLOURS, WHITE
 
 MARGIN = 0.1  # inch around a figure's panels, for labels at their ends
 EDGE, FAINT = "#808080", "#dddddd"
-LOOK = {
+LOOK: dict[Any, Any] = {
     "figure.facecolor": WHITE,
     "savefig.facecolor": "auto",
     "axes.facecolor": WHITE,
@@ -44,7 +45,7 @@ LOOK = {
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """Figures and axes made meanwhile have the look of the project's pictures, whatever the user's own is."""
+    """Figures and axes made meanwhile have the look of the project's pictures, not the user's own."""
     with rc_context(LOOK):
         yield
 

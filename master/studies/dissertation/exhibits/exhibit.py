@@ -42,6 +42,11 @@ class Row:
         return float(self.ours) / float(self.source) - 1.0  # pyright: ignore[reportArgumentType]
 
     @property
+    def within(self) -> str:
+        """Up to which deviation it agrees, as text; nothing where it is no question of a number."""
+        return "" if self.deviation is None else f"{100.0 * self.near:.3g} %"
+
+    @property
     def agrees(self) -> bool | None:
         """Whether they agree; None where there is nothing to compare."""
         if self.source is None or self.ours is None:

@@ -15,14 +15,15 @@ PICTURES = Path("pictures", "reproduction")  # beside the page
 DPI = 80
 HEAD = """# The source's figures and tables
 
-Every figure and table of O. Halminen, *Multibody models for examination of touchdown bearing systems* (LUT,
-2016) that the models here can give, beside the values that its text states; what it shows in a picture alone
-has no value to compare. A number agrees within the share in brackets, or inside the source's range. Nothing
-is tuned to agree; what a deviation hinges on stands beside it, and is explained in [physics.md](physics.md).
+Every figure and table of O. Halminen, *Multibody models for examination of touchdown bearing systems*
+(LUT, 2016) that the models here can give, beside the values that its text states; what it shows in a
+picture alone has no value to compare. A number agrees where it is as near as the column "within" says, or
+in the source's range. What a deviation hinges on, and what was fitted, stands beside it;
+[physics.md](physics.md) explains the models and the source's errata.
 
 This page is made by `touchdown figure all -o docs`; `touchdown figure 25` makes one of them anew.
 """
-COLUMNS = ("quantity", "source", "here", "deviation", "verdict")
+COLUMNS = ("quantity", "source", "here", "deviation", "within", "verdict")
 
 
 def listing() -> str:
@@ -40,9 +41,9 @@ def text(entry: Entry, exhibit: Exhibit) -> str:
     for line in cells:
         columns = [
             line[0].ljust(widths[0]),
-            *(c.rjust(w) for c, w in zip(line[1:4], widths[1:], strict=True)),
+            *(c.rjust(w) for c, w in zip(line[1:-1], widths[1:], strict=True)),
         ]
-        lines.append(f"  {'  '.join(columns)}  {line[4]}".rstrip())
+        lines.append(f"  {'  '.join(columns)}  {line[-1]}".rstrip())
     return "\n".join([*lines, *(f"  assumed: {note}" for note in exhibit.notes)])
 
 
@@ -58,7 +59,7 @@ def write(entry: Entry, exhibit: Exhibit, folder: Path) -> list[Path]:
 
 
 def write_page(exhibits: Mapping[Entry, Exhibit | TouchdownError], folder: Path) -> Path:
-    """The page with all `exhibits`, or why there is none, and its pictures, in `folder`; returns its path."""
+    """The page of all `exhibits`, or of why one is missing, and its pictures; returns its path."""
     pictures = folder / PICTURES
     with writing_to(folder):
         pictures.mkdir(parents=True, exist_ok=True)
@@ -78,12 +79,11 @@ def _save(exhibit: Exhibit, path: Path) -> None:
 
 
 def _cells(row: Row) -> tuple[str, ...]:
-    return (row.what, shown(row.source), shown(row.ours), percent(row.deviation), row.verdict)
+    return (row.what, *map(shown, (row.source, row.ours)), percent(row.deviation), row.within, row.verdict)
 
 
-def _record(row: Row) -> dict[str, object]:
-    return dict(zip(COLUMNS, (row.what, shown(row.source), shown(row.ours), row.deviation, row.verdict),
-                    strict=True))  # fmt: skip
+def _record(row: Row) -> Mapping[str, object]:
+    return dict(zip(COLUMNS, _cells(row), strict=True)) | {"deviation": row.deviation}
 
 
 def _overview(exhibits: Mapping[Entry, Exhibit | TouchdownError]) -> str:

@@ -84,7 +84,7 @@ ABSENT: Mapping[str, str] = {
     "16": "a sketch of how the rotor was measured",
     "21": "a sketch of the models' contacts; they are counted with Table 6",
 }
-"""Figures that no model gives, and why. Parts a and b of Fig 13 are measurements, as two rows of Table 2."""
+"""Figures that no model gives, and why."""
 
 
 def heading(name: str) -> str:

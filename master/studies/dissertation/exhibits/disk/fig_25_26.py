@@ -1,4 +1,4 @@
-"""Figs 25 and 26: circumferential speeds of ring, balls and cage, each as half of the inner race's (4.2)."""
+"""Figs 25 and 26: circumferential speeds of ring, balls and cage, as half of the inner race's (4.2)."""
 
 from __future__ import annotations
 
@@ -53,14 +53,26 @@ def _rows(runs: Pair, range_b: Span, height_c: float) -> list[Row]:
         pendulum = figure_of(run, "pendulum_frequency_Hz")
         low, high = _ring_once_spun_up(run)
         rows += [
-            Row(f"{name}: ring reaches the rotor's speed [s]", 0.1, figure_of(run, "ring_sync_time_s"),
-                near=NEAR_SYNC),
-            Row(f"{name}: half the inner race's speed, once spun up [m/s]", range_b, (low, high),
-                why=RUN_DOWN if high > range_b[1] else ""),
-            Row(f"{name}: range of all speeds in the last 50 ms [m/s]", (0.0, height_c), _spread(run),
-                why="a ball that rolls freely at the top falls behind"),
+            Row(
+                f"{name}: ring reaches the rotor's speed [s]",
+                0.1,
+                figure_of(run, "ring_sync_time_s"),
+                near=NEAR_SYNC,
+            ),
+            Row(
+                f"{name}: half the inner race's speed, once spun up [m/s]",
+                range_b,
+                (low, high),
+                why=RUN_DOWN if high > range_b[1] else "",
+            ),
+            Row(
+                f"{name}: range of all speeds in the last 50 ms [m/s]",
+                (0.0, height_c),
+                _spread(run),
+                why="a ball that rolls freely at the top falls behind",
+            ),
             Row(f"{name}: pendulum, to and fro [s]", 0.036, None if pendulum is None else 1.0 / pendulum),
-        ]  # fmt: skip
+        ]
     return rows
 
 

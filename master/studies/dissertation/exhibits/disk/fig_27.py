@@ -23,9 +23,18 @@ def fig_27(drops: Drops) -> Exhibit:
         source = SOURCE[model]
         within_one = (source - 1.0, source + 1.0)
         rows += [
-            Row(f"{model}: loaded balls after 5 s", source, figure_of(run, "loaded_balls_end"),
-                near=1.0 / source, why=ONE),
-            Row(f"{model}: loaded balls, mean of the last second", within_one,
-                figure_of(run, "loaded_balls_mean"), why="the source's count, more or less one"),
-        ]  # fmt: skip
+            Row(
+                f"{model}: loaded balls after 5 s",
+                source,
+                figure_of(run, "loaded_balls_end"),
+                near=1.0 / source,
+                why=ONE,
+            ),
+            Row(
+                f"{model}: loaded balls, mean of the last second",
+                within_one,
+                figure_of(run, "loaded_balls_mean"),
+                why="the source's count, more or less one",
+            ),
+        ]
     return Exhibit(figure, rows)

@@ -82,9 +82,14 @@ def _rows(name: str, run: Result, speed: float, f: np.ndarray, v: np.ndarray) ->
     rows = [
         Row(f"{name}: rotor speed [rpm]", SOURCE_RPM, speed, near=0.01, why=NEVER_SLOWS),
         Row(f"{name}: first line [Hz]", 28.0, pendulum, near=1.0 / 28.0),
-        Row(f"{name}: multiples of it that stand out, of {HARMONICS}", HARMONICS, seen, near=0.1,
-            why="the others drown between taller lines"),
-    ]  # fmt: skip
+        Row(
+            f"{name}: multiples of it that stand out, of {HARMONICS}",
+            HARMONICS,
+            seen,
+            near=0.1,
+            why="the others drown between taller lines",
+        ),
+    ]
     if name == "detailed":
         rows.append(_fourth(heights))
     return rows

@@ -45,8 +45,13 @@ def fig_33(drops: Drops) -> Exhibit:
     """Detailed, without a cage."""
     exhibit = _exhibit(drops, CAGELESS, "detailed")
     touches = _share(_run(drops, CAGELESS, "detailed"), "neighbours.force")
-    none = Row("balls on each other in the last 50 ms", NEVER, touches, holds=touches == NEVER,
-               why="a ball that the others push round the unloaded arc" if touches != NEVER else "")  # fmt: skip
+    none = Row(
+        "balls on each other in the last 50 ms",
+        NEVER,
+        touches,
+        holds=touches == NEVER,
+        why="a ball that the others push round the unloaded arc" if touches != NEVER else "",
+    )
     return exhibit._replace(rows=[*exhibit.rows, none])
 
 
@@ -67,12 +72,16 @@ def _rows(run: Result) -> list[Row]:
     at = float(time[np.argmax(force)])
     pendulum = figure_of(run, "pendulum_frequency_Hz")
     return [
-        Row("rotor on ring, when the force is largest", "first contact", f"{1e3 * (at - first):.2f} ms after it",
-            holds=at - first < FIRST),
+        Row(
+            "rotor on ring, when the force is largest",
+            "first contact",
+            f"{1e3 * (at - first):.2f} ms after it",
+            holds=at - first < FIRST,
+        ),
         Row("rotor on ring, largest force [N]", None, figure_of(run, "peak_contact_force_N")),
         Row("worst ball in the first contact [N]", None, figure_of(run, BALL)),
         Row("one swing of the pendulum [s]", 0.018, None if pendulum is None else 0.5 / pendulum),
-    ]  # fmt: skip
+    ]
 
 
 def _ratio(drops: Drops, kind: str) -> Row:

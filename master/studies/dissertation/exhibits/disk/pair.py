@@ -49,6 +49,6 @@ def stacked(
 ) -> Figure:
     """A figure with the picture of the detailed model above that of the simplified one; inch."""
     figure = sheet(width, height)
-    for part, run in zip(figure.subfigures(2, 1), runs, strict=True):
+    for part, run in zip(figure.subfigures(2, 1, squeeze=False).flat, runs, strict=True):
         draw(part, finished(run), seats_of(run)[0])
     return figure

@@ -9,8 +9,8 @@ from touchdown.master.studies.dissertation.exhibits.whirls import orbit_sheets, 
 from touchdown.master.studies.dissertation.fig_14 import DURATION, SOURCE, SPEEDS
 
 NOTES = [
-    f"verdicts over {PHASES} phases of the unbalance; `touchdown compare-rotors` counts finer. The pictures "
-    "are of 9000 rpm and the first phase",
+    f"verdicts over {PHASES} phases of the unbalance; `touchdown compare-rotors` counts finer",
+    "the pictures are of 9000 rpm and the first phase",
     "the source does not state the speed: both of its rig's are counted",
     "rolling resistance of the balls, 0.011, fitted to the run-down of Fig 15",
 ]

@@ -67,6 +67,11 @@ def _whirl(run: Result) -> list[Row]:
     late = run.recording.time > 0.75 * run.recording.time[-1]
     return [
         Row("case 3b: largest displacement at the NDE [um]", (BEYOND, np.inf), float(np.max(radius))),
-        Row("case 3b: distance that the whirl keeps, last quarter [um]", RADIUS, float(np.median(radius[late])),
-            near=0.15, why="the drag that keeps the whirl alive is an assumption, and decides how far it grows"),
-    ]  # fmt: skip
+        Row(
+            "case 3b: distance that the whirl keeps, last quarter [um]",
+            RADIUS,
+            float(np.median(radius[late])),
+            near=0.15,
+            why="the drag that keeps the whirl alive is an assumption, and decides how far it grows",
+        ),
+    ]

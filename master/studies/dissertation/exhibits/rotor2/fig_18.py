@@ -22,8 +22,10 @@ def fig_18(drops: Drops) -> Exhibit:
     disc = max(shaft.points, key=lambda point: point.polar_inertia)
     rows = [Row(f"node of the {what}", node, shaft.node(name)) for what, (name, node) in NODES.items()]
     rows.append(Row("node of the axial magnetic bearing's disc", 4, disc.node))
-    rows += [Row(f"node in the middle of {name}, laminations", (low, high), shaft.node(name))
-             for name, (low, high) in MAGNETS.items()]  # fmt: skip
+    rows += [
+        Row(f"node in the middle of {name}, laminations", (low, high), shaft.node(name))
+        for name, (low, high) in MAGNETS.items()
+    ]
     rows += [
         Row("mass [kg]", 106.0, shaft.mass, near=0.005, why=FITTED),
         Row("polar inertia [kg.m2]", 0.4, shaft.polar_inertia, near=0.005, why=FITTED),

@@ -33,13 +33,24 @@ def fig_19(drops: Drops) -> Exhibit:
     towards = shaft.centre_of_mass / length
     rows = [
         Row("bending stress at the ends", "zero", f"{ends:.1g} of the largest", holds=ends < ZERO),
-        Row("bending stress in the motor's part", "low", f"{inside:.2f} of the largest", holds=inside < 0.5),
-        Row("centre of mass", "on the NDE side", f"at {towards:.2f} of the length from the NDE",
-            holds=towards < 0.5, why="of the surrogate, whose lengths are fitted" if towards >= 0.5 else ""),
-        Row("bearings' nodes give way", "not equally", f"NDE {sag_a:.2f}, DE {sag_b:.2f} um on the housings' springs",
-            holds=abs(sag_a - sag_b) > 0.1 * max(sag_a, sag_b)),
+        Row(
+            "bending stress in the motor's part", "low", f"{inside:.2f} of the largest", holds=inside < 0.5
+        ),
+        Row(
+            "centre of mass",
+            "on the NDE side",
+            f"at {towards:.2f} of the length from the NDE",
+            holds=towards < 0.5,
+            why="of the surrogate, whose lengths are fitted" if towards >= 0.5 else "",
+        ),
+        Row(
+            "bearings' nodes give way",
+            "not equally",
+            f"NDE {sag_a:.2f}, DE {sag_b:.2f} um on the housings' springs",
+            holds=abs(sag_a - sag_b) > 0.1 * max(sag_a, sag_b),
+        ),
         Row("largest bending stress [MPa]", None, 1e-6 * largest),
-    ]  # fmt: skip
+    ]
     return Exhibit(figure, rows, ["the picture holds the seats rigidly; lengths and diameters are fitted"])
 
 

@@ -45,8 +45,12 @@ def _where(case: str, told: Ending) -> Row:
     """At which node the vertical bending stress is largest."""
     nodes, values = along(told.components["rotor"], "bending_y")
     node = nodes[int(np.argmax(np.abs(values)))]
-    return Row(f"case {case}: node of the largest vertical bending stress", FIRST_HALF, node,
-               why='"at the NDE side, near where the lamination ends"')  # fmt: skip
+    return Row(
+        f"case {case}: node of the largest vertical bending stress",
+        FIRST_HALF,
+        node,
+        why='"at the NDE side, near where the lamination ends"',
+    )
 
 
 def _grows(endings: Mapping[str, Ending]) -> list[Row]:

@@ -24,8 +24,12 @@ def table_2(drops: Drops) -> Exhibit:
         for k, source in enumerate(BENDING)
     ]
     rows += [
-        Row(f"bending mode {k + 1}, measured [Hz]", measured, ours[k],
-            why="the source's own model differs as much: it is symmetric, the rotor is not quite")
+        Row(
+            f"bending mode {k + 1}, measured [Hz]",
+            measured,
+            ours[k],
+            why="the source's own model differs as much: it is symmetric, the rotor is not quite",
+        )
         for k, measured in enumerate(MEASURED)
-    ]  # fmt: skip
+    ]
     return Exhibit(figure, rows)
