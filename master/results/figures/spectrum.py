@@ -70,7 +70,8 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
     made: list[Spectrum] = []
     for start in windows(time):
         part = (time >= start) & (time <= start + LENGTH)
-        label = f"{RPM * np.mean(omega[part]):.1f} rpm ({start:.2f} s to {start + LENGTH:.2f} s)"
+        speed = RPM * float(np.mean(omega[part]))
+        label = f"{start:.2f} s to {start + LENGTH:.2f} s after the shutdown, {speed:.0f} rpm"
         made.append((label, *velocity_spectrum(time, x, start, LENGTH, POINTS)))
     return made
 

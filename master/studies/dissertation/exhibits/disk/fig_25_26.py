@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
+from functools import partial
 
-from touchdown.master.results.figures.motion import speeds
+import numpy as np
+from matplotlib.figure import Figure
+
 from touchdown.master.results.result import Result
+from touchdown.master.studies.dissertation.exhibits.disk.circumferential import circumferential
 from touchdown.master.studies.dissertation.exhibits.disk.pair import (
     CAGED,
     CAGELESS,
+    LAST,
     Pair,
     column,
     ending_part,
@@ -26,7 +30,7 @@ RUN_DOWN = "the source's rotor has slowed to 8450 rpm (Fig 28), which takes a dr
 def fig_25(drops: Drops) -> Exhibit:
     """The bearing without a cage: (b) shows 5.1 to 5.57 m/s, (c) a height of 0.065 m/s."""
     runs = pair(drops, CAGELESS)
-    return Exhibit(stacked(runs, speeds, 17.5, 12.0), _rows(runs, (5.1, 5.57), 0.065))
+    return Exhibit(_figure(runs, 0.15, (5.1, 5.57)), _rows(runs, (5.1, 5.57), 0.065))
 
 
 def fig_26(drops: Drops) -> Exhibit:
@@ -44,7 +48,13 @@ def fig_26(drops: Drops) -> Exhibit:
             why="" if smaller else "damping and friction law of the simplified model's rolling moment",
         )
     )
-    return Exhibit(stacked(runs, speeds, 17.5, 12.0), rows)
+    return Exhibit(_figure(runs, 0.2, (5.1, 5.7)), rows)
+
+
+def _figure(runs: Pair, spin_up: float, limits: Span) -> Figure:
+    """The source's three views: the spin-up (s), all, and the end."""
+    spans = (0.0, spin_up), (0.0, 5.0), (5.0 - LAST, 5.0)
+    return stacked(runs, partial(circumferential, spans=spans, once_spun_up=limits), 17.5, 10.5)
 
 
 def _rows(runs: Pair, range_b: Span, height_c: float) -> list[Row]:
