@@ -30,7 +30,7 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.summary import RPM, relative_orbit
 
 UM = 1e6
-ROTOR = "rotor"
+ROTOR, ROLLING = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,11 @@ class Turn:
 GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so that what coincides is seen
     (
         "rotor, ring",
-        (Turn("ring.omega", "inner ring", ORANGE, width=2.0), Turn(ROTOR, "rotor", BLACK, line="--")),
+        (
+            Turn("ring.omega", "inner ring", ORANGE, width=2.0),
+            Turn(ROLLING, "as the ring would without slip", BLUE, line="--"),
+            Turn(ROTOR, "rotor", BLACK, line="--"),
+        ),
     ),
     (
         "round the axis",
@@ -120,7 +124,7 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             if _is_whole(span, time) and len(spans) > 1:
                 _zoom(axes, [values[time >= spun_up] for _, values in shown])
         row[0].set_ylabel(f"{title} [rpm]")
-        row[-1].legend(*_reversed_legend(row[-1]), loc="lower right")
+        row[0].legend(*_reversed_legend(row[0]), loc="lower right")
     for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
         head.set_title(_title(span, spans, _is_whole(span, time), len(spans) > 1))
         foot.set_xlabel(TIME)
@@ -132,11 +136,20 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
     """Those of `turns` that were recorded, with their values (rpm)."""
     shown: list[tuple[Turn, np.ndarray]] = []
     for turn in turns:
-        name = a.motion("omega") if turn.variable == ROTOR else f"{a.bearing}.{turn.variable}"
+        of_rotor = turn.variable in (ROTOR, ROLLING)
+        name = a.motion("omega") if of_rotor else f"{a.bearing}.{turn.variable}"
         if name in run.recording:
-            radius = 0.5 * run.system.value(f"{a.bearing}.{turn.on}") if turn.on else 1.0
-            shown.append((turn, RPM * run.recording[name] / radius))
+            shown.append((turn, RPM * run.recording[name] / _radius(run, a, turn)))
     return shown
+
+
+def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
+    """What a variable is divided by to be a spin: a radius (m) of a speed in m/s, or how much slower it is."""
+    value = run.system.value
+    if turn.variable == ROLLING:
+        journal = value(f"{a.bearing}.journal_radius")
+        return (journal + value(f"{a.bearing}.clearance")) / journal
+    return 0.5 * value(f"{a.bearing}.{turn.on}") if turn.on else 1.0
 
 
 def _draw_speeds(

@@ -57,7 +57,7 @@ def spectrum(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     rate, count = 1.0 / interval(time), samples(time, LENGTH)
     figure.suptitle(
         f"{run.scene.title}: horizontal velocity of the inner ring\n"
-        f"sampled at {rate / 1e3:g} kHz, windows of {LENGTH:g} s ({count} values), Hann, "
+        f"sampled at {rate / 1e3:g} kHz, windows of {LENGTH:.4g} s ({count} values), Hann, "
         f"padded with zeros to {max(POINTS, count)}"
     )
     return list(panels)
