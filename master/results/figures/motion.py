@@ -50,7 +50,7 @@ GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so tha
         "rotor, ring",
         (
             Turn("ring.omega", "inner ring", ORANGE, width=2.0),
-            Turn(ROLLING, "as the ring would without slip", BLUE, line="--"),
+            Turn(ROLLING, "inner ring without slip", BLUE, line="--"),
             Turn(ROTOR, "rotor", BLACK, line="--"),
         ),
     ),
@@ -144,7 +144,7 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
 
 
 def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
-    """What a variable is divided by to be a spin: a radius (m) of a speed in m/s, or how much slower it is."""
+    """By what a variable is divided to be the spin: the radius (m) of a speed in m/s, or a ratio."""
     value = run.system.value
     if turn.variable == ROLLING:
         journal = value(f"{a.bearing}.journal_radius")

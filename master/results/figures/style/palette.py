@@ -19,7 +19,7 @@ ON_DARK: Mapping[str, str] = {
     ORANGE: "#f0803c",
     GREEN: "#2fc79b",
     PURPLE: "#dd9fc2",
-    GREY: "#9aa0a6",
+    GREY: "#7a7f85",
     SKY: "#9bd3f5",
     YELLOW: "#f5c451",
     BLACK: LIGHT_INK,

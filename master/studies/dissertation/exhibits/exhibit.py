@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 Span = tuple[float, float]  # smallest and largest
 Value = float | Span | str
 AGREES, DIFFERS, UNCOMPARED = "agrees", "differs", "no value to compare"
+UNEXPLAINED = "unexplained"
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class Row:
 
     what: str  # with its unit
     source: Value | None  # None: only in the source's picture
-    ours: Value | None
+    ours: Value | None  # None: it did not happen
     near: float = 0.05  # of the source's value
     holds: bool | None = None  # for what is no number, whether they say the same
     why: str = ""  # what a deviation hinges on, or what the value assumes
@@ -64,10 +65,11 @@ class Row:
     def verdict(self) -> str:
         """Whether they agree, and why not."""
         if self.agrees is None:
-            return f"{UNCOMPARED}: {self.why or 'the source has it in its picture alone'}"
+            missing = "the source has it in its picture alone" if self.source is None else UNEXPLAINED
+            return f"{UNCOMPARED}: {self.why or missing}"
         if self.agrees:
             return f"{AGREES}; {self.why}" if self.why else AGREES
-        return f"{DIFFERS}: {self.why or 'unexplained'}"
+        return f"{DIFFERS}: {self.why or UNEXPLAINED}"
 
 
 class Exhibit(NamedTuple):

@@ -22,7 +22,7 @@ from touchdown.master.studies.dissertation.exhibits.disk.pair import (
 from touchdown.master.studies.dissertation.exhibits.drops import Drops, figure_of
 from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row, Span
 
-BODIES = ("speed.rotor", "speed.ring", "speed.ball", "speed.orbit", "speed.cage")
+BODIES = ("speed.rotor", "speed.ring", "speed.ball", "speed.orbit", "speed.cage", "hardest.speed")
 NEAR_SYNC = 0.5  # "circa 0.1 s"
 RUN_DOWN = "the source's rotor has slowed to 8450 rpm (Fig 28), which takes a drag that it does not state"
 
