@@ -19,7 +19,7 @@ from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation.ensemble import NO_LIMIT, PHASE, SEATS, phases
 
-PHASES = 8  # of the unbalance, over which verdicts are counted
+PHASES = 6  # of the unbalance, over which verdicts are counted
 
 
 @dataclass(frozen=True)

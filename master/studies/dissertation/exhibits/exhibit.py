@@ -96,6 +96,8 @@ def shown(value: Value | None) -> str:
     if value is None:
         return "-"
     if isinstance(value, tuple):
+        if math.isinf(value[1]):
+            return f"above {value[0]:.4g}"
         return " to ".join(f"{end:.4g}" for end in value)
     return value if isinstance(value, str) else f"{value:.4g}"
 

@@ -6,6 +6,7 @@ from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation.readings import ASSUMPTIONS, READINGS, SOURCE
 
+BELOW = " (below)"  # what `touchdown compare-rotors` prints there
 CASES = tuple(SOURCE)  # "1", "2", "3a", "3b"
 WHIRLING = {case: not SOURCE[case][-1].startswith("no") for case in CASES}
 
@@ -22,5 +23,5 @@ def as_printed(case: str) -> Scene:
 
 def notes() -> list[str]:
     """What the source's reading assumes, and why."""
-    told = [f"{' '.join(a.about.split())}; because: {a.because}" for a in ASSUMPTIONS]
+    told = [f"{' '.join(a.about.split())}; because: {a.because.removesuffix(BELOW)}" for a in ASSUMPTIONS]
     return ["the rotor is a surrogate: the lengths and diameters of Fig 18 cannot be read", *told]
