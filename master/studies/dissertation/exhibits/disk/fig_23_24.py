@@ -7,7 +7,15 @@ import numpy as np
 from touchdown.master.results.ending import housing_port
 from touchdown.master.results.figures.motion import paths
 from touchdown.master.results.result import Result
-from touchdown.master.studies.dissertation.exhibits.disk.pair import CAGED, CAGELESS, column, pair, stacked
+from touchdown.master.studies.dissertation.exhibits.disk.pair import (
+    CAGED,
+    CAGELESS,
+    NEAR_HZ,
+    SWINGS,
+    column,
+    pair,
+    stacked,
+)
 from touchdown.master.studies.dissertation.exhibits.drops import Drops, figure_of, seats_of
 from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
 
@@ -58,6 +66,6 @@ def _cage(run: Result) -> float:
 def _pendulum(runs: tuple[Result, Result]) -> list[Row]:
     names = ("detailed", "simplified")
     return [
-        Row(f"{name}: pendulum [Hz]", 28.0, figure_of(run, "pendulum_frequency_Hz"), near=0.06)
+        Row(f"{name}: pendulum [Hz]", 28.0, figure_of(run, "pendulum_frequency_Hz"), NEAR_HZ, why=SWINGS)
         for name, run in zip(names, runs, strict=True)
     ]

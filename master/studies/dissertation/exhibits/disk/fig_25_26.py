@@ -13,6 +13,8 @@ from touchdown.master.studies.dissertation.exhibits.disk.pair import (
     CAGED,
     CAGELESS,
     LAST,
+    NEAR_HZ,
+    SWINGS,
     Pair,
     column,
     ending_part,
@@ -24,6 +26,7 @@ from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row,
 
 BODIES = ("speed.rotor", "speed.ring", "speed.ball", "speed.orbit", "speed.cage", "hardest.speed")
 NEAR_SYNC = 0.5  # "circa 0.1 s"
+RINGS_SWING = "the ring swings with the pendulum; how fast that dies away hangs on the damping"
 RUN_DOWN = "the source's rotor has slowed to 8450 rpm (Fig 28), which takes a drag that it does not state"
 
 
@@ -79,11 +82,21 @@ def _rows(runs: Pair, range_b: Span, height_c: float) -> list[Row]:
                 f"{name}: range of all speeds in the last 50 ms [m/s]",
                 (0.0, height_c),
                 _spread(run),
-                why="a ball that rolls freely at the top falls behind",
+                why=RINGS_SWING,
             ),
-            Row(f"{name}: pendulum, to and fro [s]", 0.036, None if pendulum is None else 1.0 / pendulum),
+            Row(
+                f"{name}: pendulum, to and fro [s]",
+                0.036,
+                None if pendulum is None else 1.0 / pendulum,
+                near=NEAR_HZ,
+                why=SWINGS,
+            ),
         ]
     return rows
+
+
+def _period(frequency: float | None) -> float | None:
+    return None if frequency is None else 1.0 / frequency
 
 
 def _ring_once_spun_up(run: Result) -> Span:

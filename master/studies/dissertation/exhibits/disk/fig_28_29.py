@@ -11,12 +11,23 @@ from touchdown.master.results.figures.spectrum import HARMONICS, LOW, RPM, spect
 from touchdown.master.results.figures.style import BLUE, GREY, ORANGE, sheet
 from touchdown.master.results.result import Result
 from touchdown.master.results.spectra import LENGTH, POINTS, lines, velocity_spectrum, windows
-from touchdown.master.studies.dissertation.exhibits.disk.pair import CAGELESS, Pair, column, pair, stacked
+from touchdown.master.studies.dissertation.exhibits.disk.pair import (
+    CAGELESS,
+    NEAR_HZ,
+    SWINGS,
+    Pair,
+    column,
+    pair,
+    stacked,
+)
 from touchdown.master.studies.dissertation.exhibits.drops import Drops, figure_of, seats_of
 from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
 
 SOURCE_RPM = 8450.0
-NEVER_SLOWS = "the stated models lose 25 to 50 rpm in 5 s; a drag of 6 mN m (rotor.drag) slows it as much"
+NEVER_SLOWS = "the stated models lose 25 to 50 rpm in 5 s; a drag (rotor.drag) would slow it as much"
+LOPSIDED = (
+    "a swing alike to both sides has odd multiples alone; what makes the source's lopsided is not stated"
+)
 SUPPORT = (700.0, 1500.0)  # Hz, where the housing's mode is looked for
 STANDS_OUT = 3.0  # times the median beside it: a multiple of the pendulum that can be seen
 """Of the first HARMONICS multiples, those that do are counted."""
@@ -81,13 +92,13 @@ def _rows(name: str, run: Result, speed: float, f: np.ndarray, v: np.ndarray) ->
     seen = sum(height > STANDS_OUT * floor for height, floor in zip(heights, floors, strict=True))
     rows = [
         Row(f"{name}: rotor speed [rpm]", SOURCE_RPM, speed, near=0.01, why=NEVER_SLOWS),
-        Row(f"{name}: first line [Hz]", 28.0, pendulum, near=1.0 / 28.0),
+        Row(f"{name}: first line [Hz]", 28.0, pendulum, near=NEAR_HZ, why=SWINGS),
         Row(
             f"{name}: multiples of it that stand out, of {HARMONICS}",
             HARMONICS,
             seen,
             near=0.1,
-            why="the others drown between taller lines",
+            why=LOPSIDED,
         ),
     ]
     if name == "detailed":
@@ -102,7 +113,7 @@ def _fourth(heights: Sequence[float]) -> Row:
         "the 4th is the tallest",
         ours,
         holds=heights[3] > max(heights[1:3]),
-        why="the pendulum's amplitude decides, which falls with time",
+        why=LOPSIDED,
     )
 
 

@@ -10,6 +10,8 @@ from touchdown.master.results.result import Result
 from touchdown.master.studies.dissertation.exhibits.disk.pair import (
     CAGED,
     CAGELESS,
+    NEAR_HZ,
+    SWINGS,
     column,
     ending_part,
     pair,
@@ -71,6 +73,7 @@ def _rows(run: Result) -> list[Row]:
     first = figure_of(run, "first_contact_time_s") or 0.0
     at = float(time[np.argmax(force)])
     pendulum = figure_of(run, "pendulum_frequency_Hz")
+    swing = None if pendulum is None else 0.5 / pendulum
     return [
         Row(
             "rotor on ring, when the force is largest",
@@ -80,7 +83,7 @@ def _rows(run: Result) -> list[Row]:
         ),
         Row("rotor on ring, largest force [N]", None, figure_of(run, "peak_contact_force_N")),
         Row("worst ball in the first contact [N]", None, figure_of(run, BALL)),
-        Row("one swing of the pendulum [s]", 0.018, None if pendulum is None else 0.5 / pendulum),
+        Row("one swing of the pendulum [s]", 0.018, swing, NEAR_HZ, why=SWINGS),
     ]
 
 

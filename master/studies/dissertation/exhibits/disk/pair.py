@@ -17,6 +17,8 @@ from touchdown.master.studies.dissertation.bearings import SCENES
 from touchdown.master.studies.dissertation.exhibits.drops import Drops, finished, seats_of
 
 CAGELESS, CAGED = "cageless", "caged"
+SWINGS = "28 Hz is that of small swings: the wider a pendulum swings, the slower"
+NEAR_HZ = 1.0 / 28.0  # 1 Hz of the pendulum's 28
 LAST = 0.05  # s, the source's closest view of the end
 
 

@@ -10,7 +10,7 @@ from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
 
 MEMBERS = 3
 DURATION = 5.0  # s
-NEAR = 0.05
+NEAR = 0.03
 CHAOTIC = {"ball and ball", "ball and cage"}
 NEAR_CHAOTIC = 0.3  # of the ensemble's median
 

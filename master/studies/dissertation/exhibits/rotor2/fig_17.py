@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from touchdown.master.results.result import Result
@@ -12,42 +10,30 @@ from touchdown.master.studies.dissertation.exhibits.drops import PHASES, Drops, 
 from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
 from touchdown.master.studies.dissertation.exhibits.rotor2.cases import (
     CASES,
-    WHIRLING,
     as_printed,
     as_read,
     notes,
+    printed_row,
+    reading_row,
 )
-from touchdown.master.studies.dissertation.exhibits.whirls import (
-    SETTLES,
-    WHIRLS,
-    orbit_sheets,
-    verdict_row,
-)
+from touchdown.master.studies.dissertation.exhibits.whirls import orbit_sheets
 
-FITTED = "as the source reads"
 BEYOND, RADIUS = 750.0, 1100.0  # um, in case 3b
-AS_PRINTED = "with the offsets, the friction and no drag as printed nothing whirls"
 DRAG = "the drag that keeps the whirl alive is an assumption, and decides how far it grows"
-ASSUMED = "offsets, and in case 3b a drag, are assumed so that it does"
 NDE = 0  # the first seat, A
 
 
 def fig_17(drops: Drops) -> Exhibit:
     """The four cases as the source reads them, drawn; and as printed, counted."""
-    readings = {FITTED: as_read, "as printed": as_printed}
-    scenes = {(case, how): at_phases(scene(case)) for how, scene in readings.items() for case in CASES}
-    drops.of([scene for members in scenes.values() for scene in members])
-    rows: list[Row] = []
-    for (case, how), members in scenes.items():
-        source = WHIRLS if WHIRLING[case] else SETTLES
-        row = verdict_row(f"case {case}, {how}", source, drops.of(members), why=AS_PRINTED)
-        fitted = WHIRLING[case] and how == FITTED
-        rows.append(replace(row, why=ASSUMED) if fitted else row)
-    first = {case: drops.of(scenes[case, FITTED])[0] for case in CASES}
-    rows += [_bounce(case, first[case]) for case in ("1", "2")]
-    rows += _whirl(first["3b"])
+    read, printed = ({case: at_phases(scene(case)) for case in CASES} for scene in (as_read, as_printed))
+    drops.of([scene for members in (*read.values(), *printed.values()) for scene in members])
+    runs = {case: drops.of(members) for case, members in read.items()}
+    rows = [reading_row(case, members) for case, members in runs.items()]
+    rows += [printed_row(case, drops.of(members)) for case, members in printed.items()]
+    rows += [_bounce(case, runs[case][0]) for case in ("1", "2")]
+    rows += _whirl(runs["3b"][0])
     told = [*notes(), f"verdicts over {PHASES} phases of the unbalance; the pictures are of the first"]
-    return Exhibit(orbit_sheets(list(first.values()), 2), rows, told)
+    return Exhibit(orbit_sheets([members[0] for members in runs.values()], 2), rows, told)
 
 
 def _bounce(case: str, run: Result) -> Row:
@@ -71,12 +57,13 @@ def _whirl(run: Result) -> list[Row]:
     seat = seats_of(run)[NDE]
     x, y = (run.recording[seat.motion(axis)] for axis in "xy")
     radius = 1e6 * np.hypot(x, y)
+    largest = float(np.max(radius))
     late = run.recording.time > 0.75 * run.recording.time[-1]
     return [
         Row(
             "case 3b: largest displacement at the NDE [um]",
             (BEYOND, np.inf),
-            float(np.max(radius)),
+            largest,
             why=DRAG,
         ),
         Row(

@@ -13,8 +13,8 @@ from touchdown.master.studies.dissertation.exhibits.rotor2.cases import (
     as_printed,
     as_read,
     notes,
+    reading_row,
 )
-from touchdown.master.studies.dissertation.exhibits.whirls import SETTLES, WHIRLS, verdict_row
 from touchdown.master.studies.dissertation.first_peak import WAIT
 from touchdown.master.studies.dissertation.readings import READINGS, SOURCE
 from touchdown.master.studies.dissertation.table_4 import (
@@ -26,9 +26,8 @@ from touchdown.master.studies.dissertation.table_4 import (
     medians,
 )
 
-NEAR = {"1": 0.5, "2": 0.5}  # of the source's value
-NEAR_WHIRL = 1.0  # the order of magnitude: a whirl's planes are the instant's
-WHIRL_STRESS = "how a whirl's stress lies in the planes is the instant's"
+NEAR = 0.5  # of the source's value
+WHIRL_STRESS = "how a whirl's stress lies in the planes is the instant's; in 3b the drag decides how much"
 WHOLE = "the later and larger peak, with all modes, friction and offsets as printed"
 
 
@@ -38,13 +37,12 @@ def table_4(drops: Drops) -> Exhibit:
     rows: list[Row] = []
     for case in CASES:
         for header, source, ours in zip(HEADERS, SOURCE[case][:4], medians(figures[case]), strict=True):
-            near = NEAR.get(case, NEAR_WHIRL)
             rows.append(
                 Row(
                     f"case {case}: {header} [MPa]",
                     source,
                     ours,
-                    near,
+                    NEAR,
                     why=WHIRL_STRESS if WHIRLING[case] else "",
                 )
             )
@@ -52,12 +50,7 @@ def table_4(drops: Drops) -> Exhibit:
         runs = drops.of(at_phases(as_printed(case)))
         largest = median(numbers([run.summary for run in runs], COLUMNS[0]))
         rows.append(Row(f"case {case} as printed: {HEADERS[0]} [MPa]", SOURCE[case][0], largest, why=WHOLE))
-        source = WHIRLS if WHIRLING[case] else SETTLES
-        rows.append(
-            verdict_row(
-                f"case {case}, as the source reads: whirl", source, drops.of(at_phases(as_read(case)))
-            )
-        )
+        rows.append(reading_row(case, drops.of(at_phases(as_read(case)))))
     return Exhibit(None, rows, [*notes(), f"medians over {PHASES} phases of the unbalance"])
 
 
