@@ -30,7 +30,7 @@ def fig_23(drops: Drops) -> Exhibit:
         Row(f"{name}: {RINGS}", (0.0, 6.0), _together(run))
         for name, run in zip(runs._fields, runs, strict=True)
     ]
-    return Exhibit(stacked(runs, paths, 15.6, 10.8), [*rows, *_pendulum(runs)])
+    return Exhibit(stacked(runs, paths, 15.6, (5.4, 5.4)), [*rows, *_pendulum(runs)])
 
 
 def fig_24(drops: Drops) -> Exhibit:
@@ -43,7 +43,7 @@ def fig_24(drops: Drops) -> Exhibit:
     cage = Row(
         "detailed: cage, farthest from its middle [um]", 20.0, _cage(runs.detailed), near=0.3, why=RATTLE
     )
-    return Exhibit(stacked(runs, paths, 15.6, 16.0), [*rows, cage, *_pendulum(runs)])
+    return Exhibit(stacked(runs, paths, 15.6, (11.0, 5.4)), [*rows, cage, *_pendulum(runs)])
 
 
 def _together(run: Result) -> float | None:

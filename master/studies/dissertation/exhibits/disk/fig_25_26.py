@@ -57,7 +57,7 @@ def fig_26(drops: Drops) -> Exhibit:
 def _figure(runs: Pair, spin_up: float, limits: Span) -> Figure:
     """The source's three views: the spin-up (s), all, and the end."""
     spans = (0.0, spin_up), (0.0, 5.0), (5.0 - LAST, 5.0)
-    return stacked(runs, partial(circumferential, spans=spans, once_spun_up=limits), 17.5, 10.5)
+    return stacked(runs, partial(circumferential, spans=spans, once_spun_up=limits), 17.5, (5.2, 5.2))
 
 
 def _rows(runs: Pair, range_b: Span, height_c: float) -> list[Row]:

@@ -69,7 +69,7 @@ def fig_29(drops: Drops) -> Exhibit:
         start = windows(run.recording.time)[0]
         ((peak, _),) = lines(*_spectrum(run, start), *SUPPORT, 1)
         rows.append(Row(f"{name}: tallest line from 700 to 1500 Hz [Hz]", 972.0, peak, why=ONE_MASS))
-    return Exhibit(stacked(runs, spectrum, 13.0, 19.0), [*rows, *_bearing_frequencies(runs.detailed)])
+    return Exhibit(stacked(runs, spectrum, 13.0, (7.5, 7.5)), [*rows, *_bearing_frequencies(runs.detailed)])
 
 
 def _spectrum(run: Result, start: float) -> tuple[np.ndarray, np.ndarray]:

@@ -47,10 +47,14 @@ def ending_part(run: Result, length: float = LAST) -> np.ndarray:
 
 
 def stacked(
-    runs: Pair, draw: Callable[[FigureBase, Finished, Attachment], object], width: float, height: float
+    runs: Pair,
+    draw: Callable[[FigureBase, Finished, Attachment], object],
+    width: float,
+    heights: tuple[float, float],
 ) -> Figure:
     """A figure with the picture of the detailed model above that of the simplified one; inch."""
-    figure = sheet(width, height)
-    for part, run in zip(figure.subfigures(2, 1, squeeze=False).flat, runs, strict=True):
+    figure = sheet(width, sum(heights))
+    parts = figure.subfigures(2, 1, squeeze=False, height_ratios=heights).flat
+    for part, run in zip(parts, runs, strict=True):
         draw(part, finished(run), seats_of(run)[0])
     return figure
