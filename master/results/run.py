@@ -7,6 +7,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 from tqdm.auto import tqdm
 
@@ -23,18 +24,21 @@ from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
 from touchdown.master.scene.scene import Scene
 
+Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
+
 
 def run_scene(
     scene: Scene,
     folder: Path | None,
     in_process: bool = False,
     csv: bool = False,
-    pictures: bool = True,
+    pictures: Pictures = True,
     progress: bool = False,
 ) -> Result:
     """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
-    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for.
+    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for;
+    pictures="dark" are on a dark ground.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
@@ -110,7 +114,7 @@ def _warnings(outcome: Outcome) -> list[str]:
     return said
 
 
-def _show(run: Finished, folder: Path, csv: bool, pictures: bool) -> list[Path]:
+def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Path]:
     """On request result.csv and pictures, which are returned."""
     if csv:
         write_csv(run.recording, folder / TABLE)
@@ -118,7 +122,7 @@ def _show(run: Finished, folder: Path, csv: bool, pictures: bool) -> list[Path]:
         return []
     from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
 
-    return draw_all(run, folder)
+    return draw_all(run, folder, dark=pictures == "dark")
 
 
 def make_writable(folder: Path) -> None:

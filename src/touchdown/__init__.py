@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
     from touchdown.master.api.machines import catalogue
     from touchdown.master.api.rotor import Rotor
@@ -46,6 +47,7 @@ __all__ = [
     "catalogue",
     "check",
     "compare",
+    "figure",
     "load",
     "register_scheme",
     "run",
@@ -55,6 +57,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "figure": "master.api.figures",
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
