@@ -59,7 +59,7 @@ class Rotor(Shaft):
     """
 
     def __post_init__(self) -> None:
-        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at"):
+        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at", "supports"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
 
     @classmethod

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Unbalance
+    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Support, Unbalance
 
     __version__: str
 
@@ -38,6 +38,7 @@ __all__ = [
     "Scheme",
     "Station",
     "Stepper",
+    "Support",
     "TouchdownError",
     "Unbalance",
     "__version__",
@@ -72,6 +73,7 @@ _HOMES = {
     "Element": "rotor.beams.shaft",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",
+    "Support": "rotor.beams.shaft",
     "Unbalance": "rotor.beams.shaft",
 }
 
