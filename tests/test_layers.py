@@ -36,7 +36,20 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
         *("amb", "housing", "catalogue", "rolling", "contact", "seat"),
     ),
-    "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
+    "rotor": (
+        *(
+            "portrait",
+            "flexible",
+            "rigid",
+            "file",
+            "imports",
+            "statics",
+            "motion",
+            "modal",
+            "beams",
+            "drag",
+        ),
+    ),
     "modelkit": (
         *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
         *("variables", "units", "status", "refusals"),
@@ -47,7 +60,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
 }
 REPORTED = {
-    *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
+    *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
     "touchdown.master.api.rotor",
 }
 """What describes rotor files may read them; nothing of it is co-simulation."""

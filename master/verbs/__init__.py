@@ -10,11 +10,11 @@ from touchdown.master.verbs.studies import (
     compare_bearings,
     compare_modes,
     compare_rotors,
-    rotor,
     stability,
     sweep,
     verdict,
 )
+from touchdown.master.verbs.studies.rotors import import_rotor, rotor
 from touchdown.master.verbs.verb import Verb
 
 ALL: tuple[Verb, ...] = (
@@ -24,6 +24,7 @@ ALL: tuple[Verb, ...] = (
     sweep.VERB,
     verdict.VERB,
     rotor.VERB,
+    import_rotor.VERB,
     compare.VERB,
     compare_bearings.VERB,
     compare_rotors.VERB,

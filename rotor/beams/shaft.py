@@ -42,7 +42,7 @@ def cowper(poisson: float, ratio: float) -> float:
 
 
 class Spread(NamedTuple):
-    """How a cone differs from a cylinder of its middle section: factors, and where its middle of mass is."""
+    """How a cone differs from a cylinder of its middle section: factors, and its centre of mass."""
 
     mass: float = 1.0
     square: float = 1.0  # on mass length^2 / 12, about the centre of mass
@@ -183,7 +183,7 @@ class Element:
 
     @property
     def diametral_inertia_per_length(self) -> float:
-        """Rotary inertia about a diameter, with sleeve and layers (kg m); the polar one is twice as large."""
+        """Rotary inertia about a diameter, with sleeve and layers (kg m); the polar one is twice that."""
         own = self.density * self.second_moment + self.sleeve_density * self._sleeve_second_moment
         return own + sum(layer.diametral_inertia_per_length for layer in self.layers)
 
@@ -264,7 +264,8 @@ class Element:
 
 def split(element: Element, count: int) -> list[Element]:
     """`element` as `count` equally long ones, of cones with the diameters that it has there."""
-    return [element.between(k / count, (k + 1) / count) for k in range(count)]
+    length = element.length / count
+    return [element.between(k / count, (k + 1) / count).stretched(length) for k in range(count)]
 
 
 @dataclass(frozen=True)

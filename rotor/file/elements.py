@@ -115,7 +115,7 @@ def _element(t: Table, materials: dict[str, Material]) -> Element:
 
 
 def _part(t: Table, materials: dict[str, Material], length: float, beneath: Element | None) -> Element:
-    """A core, or a layer on what is `beneath` it: its bore, where nothing is said, is that one's outside."""
+    """A core, or a layer on what is `beneath` it, whose outside is its bore where nothing is said."""
     bore = 0.0 if beneath is None else beneath.outer_diameter
     outer, inner = diameters_of(t, inner_default=bore)
     outer_end = t.quantity("outer_diameter_end", "m", default=outer)

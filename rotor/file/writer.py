@@ -98,7 +98,7 @@ def _elements(elements: tuple[Element, ...], cores: Names, sleeves: Names) -> It
 
 
 def _part(part: Element, materials: Names, bore: float | None) -> Iterator[str]:
-    """What an element's core and its layers have in common; `bore` is an inner diameter that goes unsaid."""
+    """What an element's core and layers have in common; `bore` is an inner diameter that goes unsaid."""
     yield f"outer_diameter = {_quantity(part.outer_diameter, 'm')}"
     if part.outer_diameter_end is not None:
         yield f"outer_diameter_end = {_quantity(part.outer_diameter_end, 'm')}"
@@ -126,7 +126,12 @@ def _unbalance(unbalance: Unbalance) -> Iterator[str]:
 
 def _support(support: Support) -> Iterator[str]:
     yield f"\n[[support]]\nnode = {support.node}"
-    for name, unit in (("stiffness", "N/m"), ("stiffness_y", "N/m"), ("damping", "N.s/m"), ("damping_y", "N.s/m")):
+    for name, unit in (
+        ("stiffness", "N/m"),
+        ("stiffness_y", "N/m"),
+        ("damping", "N.s/m"),
+        ("damping_y", "N.s/m"),
+    ):
         value = getattr(support, name)
         if value is not None:
             yield f"{name} = {_quantity(value, unit)}"

@@ -189,7 +189,7 @@ MISTAKES = {
     "poisson": (
         "poisson = 0.3",
         "poisson = 0.6",
-        ("material.steel.poisson = 0.6", "at least 0 and below 0.5"),
+        ("material.steel.poisson = 0.6", "at least -0.9 and below 0.5"),
     ),
     "poisson with a unit": ("poisson = 0.3", 'poisson = "0.3 m"', ("poisson = '0.3 m'", "without unit")),
     "damping": ("damping_ratio = 0.01", "damping_ratio = -1", ("damping_ratio = -1", "at least 0")),
