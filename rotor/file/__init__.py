@@ -43,8 +43,7 @@ cone (over all of its count), and layers, cylinders or cones around it that are 
     layers = [{ outer_diameter = "50 mm", outer_diameter_end = "60 mm", material = "bronze" }]
 
 [[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an unbalance angle; [[support]] with
-node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports: a scene brings bearings of its
-own.
+node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a scene has bearings).
 Every physical quantity is text with a unit.
 """
 

@@ -56,10 +56,14 @@ def diameters_of(table: Table, inner_default: float | None = None) -> tuple[floa
 
 
 def _check_inside(table: Table, inner: float, outer: float, end: str) -> None:
-    if inner >= outer:
-        name = f"outer_diameter{end}" if f"outer_diameter{end}" in table.values else "outer_diameter"
-        where = f"inner_diameter{end}" if f"inner_diameter{end}" in table.values else "inner_diameter"
-        raise table.error(where, f"must be below {name} = {table.values[name]!r}")
+    """Of the diameters at one end, which two fields say, or what is beneath a layer."""
+    if inner < outer:
+        return
+    outside = f"outer_diameter{end}" if f"outer_diameter{end}" in table.values else "outer_diameter"
+    for bore in (f"inner_diameter{end}", "inner_diameter"):
+        if bore in table.values:
+            raise table.error(bore, f"must be below {outside} = {table.values[outside]!r}")
+    raise table.error(outside, "must be above what it sits on")
 
 
 def elements_of(top: Table, materials: dict[str, Material]) -> tuple[Element, ...]:

@@ -7,8 +7,8 @@ side of +y; here (3.19) holds.
 
 Shear (3.22): factor V / A of the core, with V = EI N''' q as in (3.10), V = M'. The factor is 4/3 for a
 solid section only; 4/3 (ro^2 + ro ri + ri^2) / (ro^2 + ri^2) for a hollow one. Where a sleeve or a layer
-carries a part of the moment, the core has the share of V that it has of EI. Of a cone the stresses are
-those of the sections at its ends.
+carries a part of the moment, the core has the share of V that it has of EI. A cone's moment is that of its
+middle section, whose shape functions it has; its stresses are those of the sections at its ends.
 
 Stresses of the two planes are the same matrices times the real (x) and imaginary (y) coordinates.
 """
@@ -71,7 +71,7 @@ def stress_rows(shaft: Shaft) -> tuple[np.ndarray, np.ndarray]:
         N = beam.shapes(core, np.array([0.0, element.length]))
         for end in (0, 1):
             section = core.section(end)
-            bending[2 * i + end, dofs] = bending_per_moment(section) * section.EI * N.curvature[end]
+            bending[2 * i + end, dofs] = bending_per_moment(section) * core.EI * N.curvature[end]
             shear[2 * i + end, dofs] = shear_per_force(section) * core.EI * N.third[end]
     return bending, shear
 
