@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.rotor.beams.shaft import Element
+from touchdown.rotor.beams.element import Element
 
 CYLINDER = np.polynomial.legendre.leggauss(4)  # exact for the sixth degree of N^T N
 CONE = np.polynomial.legendre.leggauss(5)  # and of the eighth, with the second degree of the area

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from touchdown.rotor.beams.shaft import MOST_NODES, Element, split
+from touchdown.rotor.beams.element import Element, split
+from touchdown.rotor.beams.shaft import MOST_NODES
 from touchdown.rotor.file.table import RotorFileError, Table
 
 DIAMETERS = ("outer_diameter", "inner_diameter", "outer_diameter_end", "inner_diameter_end")

@@ -13,7 +13,8 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 
 from touchdown.modelkit.units import SCALES, to_si
-from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, Station, Support, Unbalance
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Support, Unbalance
 from touchdown.rotor.file.parser import parse
 from touchdown.rotor.file.table import RotorFileError
 

@@ -15,14 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.rotor.beams.shaft import (
-    MOST_STATIONS,
-    Element,
-    PointMass,
-    Shaft,
-    Station,
-    Support,
-)
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import MOST_STATIONS, PointMass, Shaft, Station, Support
 from touchdown.rotor.imports.mistakes import ImportedRotorError
 
 LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")

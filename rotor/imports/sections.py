@@ -23,7 +23,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from touchdown.modelkit.units import UnitError, to_si
-from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, Station, Unbalance, split
+from touchdown.rotor.beams.element import Element, split
+from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Unbalance
 from touchdown.rotor.imports.mistakes import ImportedRotorError
 
 UNITS = {  # column: SI unit; those of text and of pure numbers are not here

@@ -43,13 +43,13 @@ class Whirl:
     @property
     def frequencies(self) -> np.ndarray:
         """Damped whirl frequencies (M,), Hz."""
-        return self.roots.imag / (2.0 * np.pi)
+        return np.imag(self.roots) / (2.0 * np.pi)
 
     @property
     def damping_ratios(self) -> np.ndarray:
         """Share of critical damping (M,); 0 for what does not swing and is not damped."""
         size = np.abs(self.roots)
-        return np.divide(-self.roots.real, size, out=np.zeros_like(size), where=size > 0.0)
+        return np.divide(-np.real(self.roots), size, out=np.zeros_like(size), where=size > 0.0)
 
 
 def supported_whirl(basis: Basis, speed: float, supports: Sequence[Support]) -> Whirl:
@@ -72,9 +72,9 @@ def supported_whirl(basis: Basis, speed: float, supports: Sequence[Support]) -> 
         C[n:, n:] += (s.damping if s.damping_y is None else s.damping_y) * tie
     system = np.block([[np.zeros_like(K), np.eye(2 * n)], [-K, -C]])
     roots, vectors = np.linalg.eig(system)
-    swinging = roots.imag > 0.0
+    swinging = np.imag(roots) > 0.0
     roots, x, y = roots[swinging], vectors[:n, swinging], vectors[n : 2 * n, swinging]
-    turning = -2.0 * np.sum(np.conj(x) * y, axis=0).imag
+    turning = -2.0 * np.imag(np.sum(np.conj(x) * y, axis=0))
     sense = turning / np.sum(np.abs(x) ** 2 + np.abs(y) ** 2, axis=0)
     order = np.argsort(np.abs(roots))
     return Whirl(roots[order], sense[order])

@@ -21,7 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.shaft import Element, Shaft
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.modes import Basis, residual_flexibility
 
 

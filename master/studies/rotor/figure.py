@@ -13,7 +13,8 @@ from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
-from touchdown.rotor.beams.shaft import Element, Shaft
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
 

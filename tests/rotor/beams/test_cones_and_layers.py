@@ -10,7 +10,8 @@ import pytest
 
 from touchdown.rotor.beams import beam
 from touchdown.rotor.beams.assembly import assemble, tilt, translation
-from touchdown.rotor.beams.shaft import Element, Shaft, split
+from touchdown.rotor.beams.element import Element, split
+from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.stresses import stress_rows
 from touchdown.rotor.statics import at_rest
