@@ -36,7 +36,20 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
         *("catalogue", "rating", "surroundings", "rolling", "contact", "seat"),
     ),
-    "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
+    "rotor": (
+        *(
+            "portrait",
+            "flexible",
+            "rigid",
+            "file",
+            "imports",
+            "statics",
+            "motion",
+            "modal",
+            "beams",
+            "drag",
+        ),
+    ),
     "modelkit": (
         *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
         *("variables", "units", "status", "refusals"),
@@ -49,7 +62,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
 RATED = {"touchdown.master.report", "touchdown.master.studies.machine", "touchdown.master.api.machines"}
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.rotor": {
-        *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
+        *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
         "touchdown.master.api.rotor",
     },
     "touchdown.bearings.rating": RATED,

@@ -12,11 +12,11 @@ from touchdown.master.verbs.studies import (
     compare_modes,
     compare_rotors,
     figure,
-    rotor,
     stability,
     sweep,
     verdict,
 )
+from touchdown.master.verbs.studies.rotors import import_rotor, rotor
 from touchdown.master.verbs.verb import Verb
 
 ALL: tuple[Verb, ...] = (
@@ -27,6 +27,7 @@ ALL: tuple[Verb, ...] = (
     sweep.VERB,
     verdict.VERB,
     rotor.VERB,
+    import_rotor.VERB,
     compare.VERB,
     compare_bearings.VERB,
     compare_rotors.VERB,

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Unbalance
+    from touchdown.rotor.beams.element import Element
+    from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
 
     __version__: str
 
@@ -40,6 +41,7 @@ __all__ = [
     "Scheme",
     "Station",
     "Stepper",
+    "Support",
     "TouchdownError",
     "Unbalance",
     "__version__",
@@ -75,9 +77,10 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Element": "rotor.beams.shaft",
+    "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",
+    "Support": "rotor.beams.shaft",
     "Unbalance": "rotor.beams.shaft",
 }
 

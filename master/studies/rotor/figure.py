@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
@@ -143,7 +144,7 @@ class _Window:
 
 def _window(shaft: Shaft) -> _Window:
     length = MM * float(shaft.positions()[-1])
-    radius = 0.5 * MM * max(max(e.outer_diameter, e.sleeve_diameter) for e in shaft.elements)
+    radius = 0.5 * MM * max(e.widest for e in shaft.elements)
     radius = max(radius, *(0.5 * MM * _disc(point, shaft)[0] for point in shaft.points), 0.0)
     half = max(0.52 * length, BEYOND * radius / HIGHEST)
     reach = max(BEYOND * radius, FLATTEST * half)
@@ -160,11 +161,13 @@ def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
     """Outlines of the elements and discs in mm, to scale; places by name."""
     position = MM * shaft.positions()
     for at, e in zip(position, shaft.elements, strict=False):
+        for layer in reversed(e.layers):
+            _cone(axes, at, layer, 0, SLEEVE)
         if e.sleeve_diameter:
-            _box(axes, at, e.length, e.sleeve_diameter, SLEEVE)
-        _box(axes, at, e.length, e.outer_diameter, CORE)
-        if e.inner_diameter:
-            _box(axes, at, e.length, e.inner_diameter, "white")
+            _cone(axes, at, replace(e, outer_diameter=e.sleeve_diameter), 0, SLEEVE)
+        _cone(axes, at, e, 0, CORE)
+        if any(e.diameters(end)[1] for end in (0.0, 1.0)):
+            _cone(axes, at, e, 1, "white")
     _draw_points(axes, shaft)
     axes.axhline(0.0, color=EDGE, lw=0.5, ls="-.")
     axes.set_ylabel("radius [mm]")
@@ -192,9 +195,17 @@ def _names(axes: Axes, shaft: Shaft) -> None:
         axes.annotate(", ".join(names), (x, 1.02), xycoords=place, ha="center", fontsize="small")
 
 
-def _box(axes: Axes, at: float, length: float, diameter: float, colour: str) -> None:
-    corner = (at, -0.5 * MM * diameter)
-    axes.add_patch(Rectangle(corner, MM * length, MM * diameter, facecolor=colour, edgecolor=EDGE, lw=0.6))
+def _cone(axes: Axes, at: float, e: Element, which: int, colour: str) -> None:
+    """Outside (`which` = 0) or bore (1) of a cylinder or cone that begins at `at` (mm)."""
+    _outline(axes, at, e.length, (e.diameters(0.0)[which], e.diameters(1.0)[which]), colour)
+
+
+def _outline(axes: Axes, at: float, length: float, diameters: tuple[float, float], colour: str) -> None:
+    """Of a body of revolution from `at` (mm) on, with diameters at its ends; its lengths in m."""
+    first, second = (0.5 * MM * diameter for diameter in diameters)
+    end = at + MM * length
+    corners = [(at, -first), (at, first), (end, second), (end, -second)]
+    axes.add_patch(Polygon(corners, facecolor=colour, edgecolor=EDGE, lw=0.6))
 
 
 def _supports(axes: Axes, shaft: Shaft) -> None:
@@ -202,7 +213,7 @@ def _supports(axes: Axes, shaft: Shaft) -> None:
     position = MM * shaft.positions()
     for node in sorted(set(seats(shaft))):
         touching = shaft.elements[max(node - 2, 0) : node]
-        radius = 0.5 * MM * max(max(e.outer_diameter, e.sleeve_diameter) for e in touching)
+        radius = 0.5 * MM * max(e.widest for e in touching)
         axes.plot(position[node - 1], -radius, marker=6, color=GREEN, ms=11)
 
 
@@ -226,7 +237,7 @@ def _draw_points(axes: Axes, shaft: Shaft) -> None:
     for point in shaft.points:
         at, diameter, width = position[point.node - 1], *_disc(point, shaft)
         if diameter > 0.0:
-            _box(axes, at - 0.5 * MM * width, width, diameter, DISC)
+            _outline(axes, at - 0.5 * MM * width, width, (diameter, diameter), DISC)
         else:
             axes.plot(at, 0.0, "D", color=EDGE, ms=5)
 
