@@ -43,7 +43,7 @@ CONTENTS = {  # pages in the order of the site
         *("own-machine", "bearings", "results", "systems", "elsewhere", "native", "rotors", "coupling"),
         *("bonds", "api"),
     ),
-    "Background": ("physics", "stability", "speed", "peers"),
+    "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),
 }

@@ -11,11 +11,12 @@ from touchdown.master.verbs.studies import (
     compare_bearings,
     compare_modes,
     compare_rotors,
-    rotor,
+    figure,
     stability,
     sweep,
     verdict,
 )
+from touchdown.master.verbs.studies.rotors import import_rotor, rotor
 from touchdown.master.verbs.verb import Verb
 
 ALL: tuple[Verb, ...] = (
@@ -27,10 +28,12 @@ ALL: tuple[Verb, ...] = (
     sweep.VERB,
     verdict.VERB,
     rotor.VERB,
+    import_rotor.VERB,
     compare.VERB,
     compare_bearings.VERB,
     compare_rotors.VERB,
     compare_modes.VERB,
+    figure.VERB,
     stability.VERB,
     build.VERB,
     ssp.VERB,

@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
     from touchdown.master.api.machines import catalogue, new
     from touchdown.master.api.rotor import Rotor
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Unbalance
+    from touchdown.rotor.beams.element import Element
+    from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
 
     __version__: str
 
@@ -39,6 +41,7 @@ __all__ = [
     "Scheme",
     "Station",
     "Stepper",
+    "Support",
     "TouchdownError",
     "Unbalance",
     "__version__",
@@ -46,6 +49,7 @@ __all__ = [
     "catalogue",
     "check",
     "compare",
+    "figure",
     "load",
     "new",
     "register_scheme",
@@ -56,6 +60,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "figure": "master.api.figures",
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
@@ -74,9 +79,10 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Element": "rotor.beams.shaft",
+    "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",
+    "Support": "rotor.beams.shaft",
     "Unbalance": "rotor.beams.shaft",
 }
 

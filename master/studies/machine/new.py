@@ -198,7 +198,7 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
         around = shaft.elements[max(node - 2, 0) : node]
-        thickest = max(element.outer_diameter for element in around)
+        thickest = max(element.widest for element in around)
         if thickest > bearing.bore:
             notes.append(
                 f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
