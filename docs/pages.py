@@ -39,7 +39,10 @@ PATH = re.compile(
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
-    "Use": ("results", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
+    "Use": (
+        *("own-machine", "bearings", "results", "systems", "elsewhere", "native", "rotors", "coupling"),
+        *("bonds", "api"),
+    ),
     "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),

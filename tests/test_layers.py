@@ -63,7 +63,7 @@ RATED = {"touchdown.master.report", "touchdown.master.studies.machine", "touchdo
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
-        "touchdown.master.api.rotor",
+        *("touchdown.master.api.rotor", "touchdown.master.studies.machine"),
     },
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,

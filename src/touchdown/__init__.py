@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
-    from touchdown.master.api.machines import catalogue
+    from touchdown.master.api.machines import catalogue, new
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
@@ -51,6 +51,7 @@ __all__ = [
     "compare",
     "figure",
     "load",
+    "new",
     "register_scheme",
     "run",
     "scenes",
@@ -63,6 +64,7 @@ _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
+    "new": "master.api.machines",
     "Rotor": "master.api.rotor",
     "run": "master.api.run",
     "load": "master.api.scenes",

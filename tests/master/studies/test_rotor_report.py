@@ -53,6 +53,17 @@ def test_lines_start_at_the_frequencies_at_rest_and_split(found: Portrait) -> No
     np.testing.assert_allclose(found.forward[0], found.forward[3])
 
 
+def test_a_support_that_would_have_to_pull_is_said(tmp_path: Path) -> None:
+    """Seats at 100 and 150 mm of a shaft of 400 mm, of which 200 mm are the middle: 2 G up, G down."""
+    path = shaft_file(tmp_path, "[stations]\nA = 3\nB = 4\n")
+    shaft = find(str(path))
+    text = report_text(portrait(shaft, 5, [SPEED]))
+    assert f"  A would have to pull the rotor down with {9.81 * shaft.mass:.4g} N: " in text
+    assert "B would have to pull" not in text
+    path = shaft_file(tmp_path, "[stations]\nA = 1\nB = 9\n")
+    assert "pull" not in report_text(portrait(find(str(path)), 5, [SPEED]))
+
+
 def test_a_free_rotor_tilts_forwards_by_the_ratio_of_its_inertias(found: Portrait) -> None:
     ratio = found.shaft.polar_inertia / found.shaft.diametral_inertia
     assert found.forward[0, 1] == pytest.approx(300.0 * ratio, rel=1e-2)
