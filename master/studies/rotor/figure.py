@@ -103,7 +103,7 @@ def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
         axes.set_ylabel("critical speed, forward [rpm]")
         axes.grid(True, which="major", color=GREY, lw=0.3)
         if axes.get_legend_handles_labels()[0]:
-            axes.legend(loc="upper left", fontsize="small")
+            axes.legend(loc="lower right", fontsize="small")
     figure.suptitle(f"{portrait.shaft.title}: undamped critical speeds")
     return list(panels[:, 0])
 

@@ -169,9 +169,8 @@ def _held(portrait: Portrait) -> list[str]:
         sense = (
             "planar" if abs(held.sense[k]) < PLANAR else "forward" if held.sense[k] > 0.0 else "backward"
         )
-        lines.append(
-            f"  {k + 1:<12}  {held.frequencies[k]:12.2f}  {round(held.damping_ratios[k], 4) + 0.0:14.4f}  {sense:>14}"
-        )
+        damping = round(held.damping_ratios[k], 4) + 0.0  # never -0
+        lines.append(f"  {k + 1:<12}  {held.frequencies[k]:12.2f}  {damping:14.4f}  {sense:>14}")
     return [*lines, ""]
 
 
