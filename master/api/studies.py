@@ -6,6 +6,7 @@ import math
 import tempfile
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -58,8 +59,8 @@ def sweep(
     array([0.0002 , 0.00025])
     """
     design = designed(variations)
-    where_run = {"cluster": jobs} if isinstance(jobs, str) else {"jobs": jobs}
-    running = SweepRunning(**where_run, in_process=in_process)
+    running = SweepRunning(in_process=in_process)
+    running = replace(running, cluster=jobs) if isinstance(jobs, str) else replace(running, jobs=jobs)
     kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
     with kept as where, bar_over(len(design), "runs", not progress) as bar:
         return sweep_study.sweep(as_scene(scene), design, Path(where), running, bar.update)

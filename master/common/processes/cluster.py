@@ -6,14 +6,11 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from threading import Lock
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.processes.pool import INTERRUPTED, TaskOutcome, tried
-
-if TYPE_CHECKING:
-    from distributed import Client
 
 PATIENCE = 30.0  # s, for a scheduler to answer
 AHEAD = 2  # tasks that a worker's thread is given at a time: one waits while one runs
@@ -49,7 +46,7 @@ def run_on_cluster(
 
 
 @contextmanager
-def _connected(address: str) -> Generator[Client]:
+def _connected(address: str) -> Generator[Any]:
     """A client of the scheduler; what it was given and has not done is cancelled at the end."""
     try:
         from distributed import Client
@@ -58,7 +55,7 @@ def _connected(address: str) -> Generator[Client]:
             "a Dask cluster needs the package distributed; install touchdown-cosim[dask]"
         ) from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client: Any = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise TouchdownError(
             f"no Dask scheduler answers at {address}: {' '.join(str(error).split())}; "
@@ -71,7 +68,7 @@ def _connected(address: str) -> Generator[Client]:
 
 
 def _outcomes(
-    client: Client, work: Callable[[Any], Value], tasks: Sequence[Any]
+    client: Any, work: Callable[[Any], Value], tasks: Sequence[Any]
 ) -> Iterator[tuple[int, TaskOutcome[Value]]]:
     """The place of every task, and how it ended, as they end."""
     from distributed import as_completed
@@ -85,7 +82,7 @@ def _outcomes(
         return future
 
     first = max(AHEAD, AHEAD * sum(client.nthreads().values()))
-    ended = as_completed([submit(place) for place in islice(places, first)], loop=client.loop)
+    ended: Any = as_completed([submit(place) for place in islice(places, first)], loop=client.loop)
     for future in ended:
         place = under_way.pop(future)
         yield place, _outcome(client, future)
@@ -99,7 +96,7 @@ def _one_by_one(work: Callable[[Any], Value], task: Any) -> TaskOutcome[Value]:
         return tried(work, task)
 
 
-def _outcome(client: Client, future: Any) -> TaskOutcome[Any]:
+def _outcome(client: Any, future: Any) -> TaskOutcome[Any]:
     """What came of a task: an exception is the cluster's, those of the task are in its outcome."""
     from distributed import KilledWorker
 

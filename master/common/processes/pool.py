@@ -178,9 +178,10 @@ class _Crew(Generic[Value]):
                 self._busy.append(worker)
                 place = self._waiting.popleft()
                 worker.give(place, self._tasks[place])
-            sources = {source: w for w in self._busy for source in (w.pipe, w.process.sentinel)}
-            for worker in {id(sources[s]): sources[s] for s in connection.wait(list(sources))}.values():
-                yield from self._hear(worker)
+            stirred = connection.wait([s for w in self._busy for s in (w.pipe, w.process.sentinel)])
+            for worker in list(self._busy):
+                if worker.pipe in stirred or worker.process.sentinel in stirred:
+                    yield from self._hear(worker)
 
     def _hear(self, worker: _Worker) -> Iterator[tuple[int, TaskOutcome[Value]]]:
         place = worker.place

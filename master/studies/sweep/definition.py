@@ -6,9 +6,9 @@ programs. Two sweeps are the same where all that changes a number is.
 
 from __future__ import annotations
 
+import fnmatch
 import hashlib
 import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -128,18 +128,9 @@ def origins(scene: Scene) -> dict[str, str]:
 
 def _targets(scene: Scene, design: Design) -> list[tuple[str, ...]]:
     """By column: the settings that its name means. Raises TouchdownError where it means none."""
-    known: list[str] = []
-    if any("*" in name for name in design.names):
-        with opened(scene, in_process=True) as system:
-            known = [
-                f"{component}.{variable.name}"
-                for component, it in system.components.items()
-                for variable in it.variables.values()
-                if variable.settable and variable.kind in SETTABLE
-            ]
     targets: list[tuple[str, ...]] = []
     for name in design.names:
-        settings = [one for part in name.split(",") for one in _matching(part.strip(), known)]
+        settings = [one for part in name.split(",") for one in _matching(scene, part.strip())]
         targets.append(tuple(dict.fromkeys(settings)))
     every = [setting for settings in targets for setting in settings]
     if twice := [setting for setting in every if every.count(setting) > 1]:
@@ -147,15 +138,34 @@ def _targets(scene: Scene, design: Design) -> list[tuple[str, ...]]:
     return targets
 
 
-def _matching(name: str, known: Sequence[str]) -> list[str]:
-    """The settings that a name with * for anything means; another name means itself."""
-    if "*" not in name:
-        return [name]
-    pattern = re.compile(".*".join(re.escape(part) for part in name.split("*")))
-    found = [one for one in known if pattern.fullmatch(one)]
+def _matching(scene: Scene, name: str) -> list[str]:
+    """The settings that a name with * or ? means; another name means itself."""
+    component, dot, variable = name.partition(".")
+    components = fnmatch.filter(scene.components, component) if _is_pattern(component) else [component]
+    if not _is_pattern(variable):
+        found = [f"{one}{dot}{variable}" for one in components]
+        known = [f"{one}{dot}{variable}" for one in scene.components]
+    else:
+        known = [full for full in _settable(scene) if full.partition(".")[0] in components]
+        found = fnmatch.filter(known, name)
     if not found:
         raise TouchdownError(f"no component has a setting {name}; {one_of(name, known)}")
     return found
+
+
+def _is_pattern(name: str) -> bool:
+    return "*" in name or "?" in name
+
+
+def _settable(scene: Scene) -> list[str]:
+    """All numbers of all components that can be set."""
+    with opened(scene, in_process=True) as system:
+        return [
+            f"{name}.{variable.name}"
+            for name, component in system.components.items()
+            for variable in component.variables.values()
+            if variable.settable and variable.kind in SETTABLE
+        ]
 
 
 def _unit(system: System, setting: str) -> str | None:

@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.several import several
@@ -138,7 +139,9 @@ def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, o
     """A design as it is, values of settings as a grid, rows of settings as a table."""
     if isinstance(variations, Design):
         return variations
-    return Design.grid(variations) if isinstance(variations, Mapping) else Design.table(variations)
+    if isinstance(variations, Mapping):
+        return Design.grid(cast(Mapping[str, object], variations))
+    return Design.table(variations)
 
 
 def _values(given: Mapping[str, object]) -> dict[str, Sequence[object]]:

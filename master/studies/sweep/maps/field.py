@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.whirl.unbalance import ANGLE
@@ -12,7 +12,7 @@ from touchdown.master.studies.sweep.definition import Definition
 from touchdown.master.studies.sweep.journal import Member
 from touchdown.master.studies.sweep.report import column as column_of
 
-Place = tuple[object, ...]  # values of the axes: numbers in the unit of their labels, or words
+Place = tuple[Any, ...]  # values of the axes: numbers in the unit of their labels, or words
 Value = TypeVar("Value")
 
 
@@ -24,7 +24,7 @@ class Field(Generic[Value]):
     spots: dict[Place, Value]
     together: str  # what else varies, in words, or ""
 
-    def along(self, axis: int) -> list[object]:
+    def along(self, axis: int) -> list[Any]:
         """The values on an axis, numbers in their order, words in that of the members."""
         values = list(dict.fromkeys(place[axis] for place in self.spots))
         numbers = [value for value in values if isinstance(value, float)]

@@ -62,7 +62,7 @@ def _cells(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
         return
     middle = 0.5 * (np.nanmin(grid) + np.nanmax(grid))
     for (y, x), value in np.ndenumerate(grid):
-        told = "–" if np.isnan(value) else f"{value:.3g}"
+        told = "–" if np.isnan(value) else f"{value:.4g}"
         colour = "white" if value < middle else BLACK
         axes.text(x, y, told, ha="center", va="center", fontsize=7, color=colour)
 

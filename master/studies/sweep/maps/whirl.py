@@ -19,6 +19,7 @@ from touchdown.master.studies.sweep.maps.paper import cells, labelled, legend_be
 COLOURS: Mapping[Kind, str] = {Kind.SETTLES: "#dddddd", Kind.TRANSIENT: BLUE, Kind.SUSTAINED: ORANGE}
 HATCHES = {Kind.SUSTAINED: "////"}  # told apart in grey, too
 MARKERS = {Kind.SETTLES: "o", Kind.TRANSIENT: "s", Kind.SUSTAINED: "^"}
+FILLED = 0.96  # of a cell; the rest parts it from the next
 MOST_TOLD = 100  # cells with their numbers in words
 
 Kinds = Counter[Kind]  # how many drops of each
@@ -42,7 +43,11 @@ def whirl_map(axes: Axes, field: Field[list[Member]]) -> Axes:
     else:
         _lines(axes, found)
     labelled(axes, found)
-    title = f"part of the drops that whirl, {CONFIDENCE:.0%} interval" if several else "whirl of every drop"
+    title = (
+        f"part of the drops that whirl, {100.0 * CONFIDENCE:.0f} % interval"
+        if several
+        else "whirl of every drop"
+    )
     if found.together:
         title += f"\neach place over {found.together}"
     axes.set_title(title, fontsize="medium")
@@ -57,11 +62,11 @@ def _cells(axes: Axes, field: Field[Kinds]) -> None:
     """A cell per place, filled from the left by the parts of its verdicts."""
     told = len(field.spots) <= MOST_TOLD
     for x, y, kinds in cells(axes, field):
-        left = x - 0.5
+        left = x - 0.5 * FILLED
         for one in reversed(Kind):
-            width = kinds[one] / kinds.total() if kinds.total() else 0.0
+            width = FILLED * kinds[one] / kinds.total() if kinds.total() else 0.0
             fill = {"facecolor": COLOURS[one], "hatch": HATCHES.get(one), "edgecolor": "#ffffff80"}
-            axes.add_patch(Rectangle((left, y - 0.5), width, 1.0, lw=0, **fill))
+            axes.add_patch(Rectangle((left, y - 0.5 * FILLED), width, FILLED, lw=0, **fill))
             left += width
         if told and kinds.total() != 1:
             box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
@@ -73,7 +78,7 @@ def _told(kinds: Kinds) -> str:
     if not kinds.total():
         return "no verdict"
     part = _share(kinds)
-    return f"{part.value:.0%}\n{100.0 * part.low:.0f}–{100.0 * part.high:.0f} %"
+    return f"{100.0 * part.value:.0f} %\n{100.0 * part.low:.0f}–{100.0 * part.high:.0f} %"
 
 
 def _share(kinds: Kinds, sustained: bool = False) -> Share:
