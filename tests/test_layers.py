@@ -24,7 +24,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
         "touchdown.modelkit",
         "touchdown.fmus",
         *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
-        *("numpy", "scipy", "pandas", "xarray"),
+        *("numpy", "scipy", "pandas", "xarray", "distributed"),
     },
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it

@@ -19,19 +19,21 @@ if TYPE_CHECKING:
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
-    from touchdown.master.api.studies import compare, sweep, verdict
+    from touchdown.master.api.studies import compare, merge, sweep, verdict
     from touchdown.master.common.ended import Ended
     from touchdown.master.common.errors import TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
+    from touchdown.master.studies.sweep.design import Design
     from touchdown.rotor.beams.element import Element
     from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
 
     __version__: str
 
 __all__ = [
+    "Design",
     "Element",
     "Ended",
     "PointMass",
@@ -51,6 +53,7 @@ __all__ = [
     "compare",
     "figure",
     "load",
+    "merge",
     "new",
     "register_scheme",
     "run",
@@ -71,6 +74,7 @@ _HOMES = {
     "scenes": "master.api.scenes",
     "register_scheme": "master.api.schemes",
     "compare": "master.api.studies",
+    "merge": "master.api.studies",
     "sweep": "master.api.studies",
     "verdict": "master.api.studies",
     "Ended": "master.common.ended",
@@ -79,6 +83,7 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
+    "Design": "master.studies.sweep.design",
     "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",
