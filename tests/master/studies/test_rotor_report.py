@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.patches import Rectangle
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
-from touchdown.master.studies.rotor.figure import campbell, modes, rest
+from touchdown.master.studies.rotor.figure import campbell, drawing, modes, rest
 from touchdown.master.studies.rotor.report import TO_REST, report, report_text
+from touchdown.rotor.beams.shaft import PointMass
 from touchdown.rotor.file import find, shipped
 from touchdown.rotor.portrait import Portrait, portrait
 
@@ -113,7 +116,7 @@ def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
     sleeves = sum(e.sleeve_diameter > 0.0 for e in shaft.elements)
     for axes in figure.axes:
         assert axes.get_ylabel() == "radius [mm]"
-        assert len(axes.patches) == len(shaft.elements) + sleeves
+        assert len(axes.patches) == len(shaft.elements) + sleeves + len(shaft.points)
         box = axes.get_window_extent()
         (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
         assert (right - left) / box.width == pytest.approx((high - low) / box.height, rel=1e-3)
@@ -212,3 +215,23 @@ def test_a_broken_file_is_answered_in_a_line(tmp_path: Path) -> None:
     with pytest.raises(TouchdownError, match=r"plain\.toml: stations\.A = 99 is not a node") as caught:
         report(str(path), tmp_path)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("rotor", "diameter", "width"), [("rotor_I", 56.7, 20.8), ("rotor_II", 177.7, 13.7)]
+)
+def test_a_disc_is_drawn_as_large_as_its_file_has_it(rotor: str, diameter: float, width: float) -> None:
+    """From its inertias: the shaft keeps no diameters of discs."""
+    shaft = find(rotor)
+    point = max(shaft.points, key=lambda one: one.polar_inertia)
+    (axes,) = drawing(sheet(), shaft)
+    boxes = [box for box in axes.patches if isinstance(box, Rectangle)]
+    disc = max(boxes, key=lambda box: box.get_height() / max(box.get_width(), 1.0))
+    assert (disc.get_height(), disc.get_width()) == pytest.approx((diameter, width))
+    assert disc.get_x() + 0.5 * width == pytest.approx(1e3 * shaft.positions()[point.node - 1])
+
+
+def test_a_mass_without_inertias_is_a_mark() -> None:
+    shaft = replace(find("rotor_I"), points=(PointMass(5, 1.0),))
+    (axes,) = drawing(sheet(), shaft)
+    assert any(line.get_marker() == "D" for line in axes.lines)
