@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from touchdown.master.api.scenes import PathLike, as_scene
+from touchdown.master.results.folder.reopened import reopened
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.scene import Scene
@@ -36,3 +37,16 @@ def run(
     return run_scene(
         as_scene(scene), None if folder is None else Path(folder), in_process, csv, pictures, progress
     )
+
+
+def open_result(folder: PathLike) -> Result:
+    """What a run left in a folder, read back: as `run` returned it, its recording read when it is asked for.
+
+    Raises TouchdownError where the folder is not that of a run that is over.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> kept = touchdown.run(scene, "runs/kept", in_process=True).folder
+    >>> touchdown.open_result(kept).summary["completed"]
+    True
+    """
+    return reopened(Path(folder))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from touchdown.master.api.fmus import build, check
     from touchdown.master.api.rotor import Rotor
-    from touchdown.master.api.run import run
+    from touchdown.master.api.run import open_result, run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
     from touchdown.master.api.studies import compare, sweep, verdict
@@ -45,6 +45,7 @@ __all__ = [
     "check",
     "compare",
     "load",
+    "open_result",
     "register_scheme",
     "run",
     "scenes",
@@ -56,6 +57,7 @@ _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "Rotor": "master.api.rotor",
+    "open_result": "master.api.run",
     "run": "master.api.run",
     "load": "master.api.scenes",
     "scenes": "master.api.scenes",

@@ -47,11 +47,11 @@ def zooms(time: np.ndarray, first: float) -> list[tuple[float, float]]:
     return list(dict.fromkeys(spans))
 
 
-def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """At most MOST_POINTS points of a line (n,): each stretch's smallest and largest value."""
-    if len(x) <= MOST_POINTS:
+def thinned(x: np.ndarray, y: np.ndarray, most: int = MOST_POINTS) -> tuple[np.ndarray, np.ndarray]:
+    """At most `most` points of a line (n,): each stretch's smallest and largest value."""
+    if len(x) <= most:
         return x, y
-    size = -(-len(x) // (MOST_POINTS // 2))
+    size = -(-len(x) // (most // 2))
     count = len(x) // size
     blocks = y[: count * size].reshape(count, size)
     index = np.sort(np.stack([blocks.argmin(1), blocks.argmax(1)], 1), axis=1)

@@ -15,6 +15,7 @@ from touchdown.master.results.result import RECORDING
 
 LOCK = ".touchdown.lock"
 SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
+ENDING = "ending.json"  # the components as they ended
 MARK = "member.json"  # of a finished member of a sweep
 RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
 
@@ -84,9 +85,10 @@ def _left(folder: Path) -> Iterator[Path]:
     yield folder / MARK
     yield from pictures
     yield folder / TABLE
+    yield folder / ENDING
     recording = (folder / RECORDING).resolve()  # a link stays
     yield recording
-    for path in (folder / SUMMARY, folder / SCENE, folder / TABLE, recording, *pictures):
+    for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):
         yield partial(path)
 
 

@@ -1,0 +1,55 @@
+"""A scene read back from the values that `Scene.resolved` gives, as a run leaves them in scene.json."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.wires import BondSpec, Wire
+
+
+def restored(values: Mapping[str, Any]) -> Scene:
+    """The scene whose `resolved()` gives `values`, lists taken as tuples and paths as text.
+
+    Raises TouchdownError, KeyError or TypeError where they are not such values.
+    """
+    parts = dict(values)
+    return Scene(
+        **parts
+        | {
+            "components": {name: _component(part) for name, part in parts["components"].items()},
+            "attach": _pairs(parts["attach"]),
+            "sense": _pairs(parts["sense"]),
+            "connect": tuple(_wire(wire) for wire in parts["connect"]),
+            "bond": tuple(_bond(*bond) for bond in parts["bond"]),
+            "energy_scale": tuple(parts["energy_scale"]),
+            "own": tuple(parts["own"]),
+            "run": with_changes(RunSpec(), parts["run"]),
+            "folder": Path(parts["folder"]),
+        }
+    )
+
+
+def _component(values: Mapping[str, Any]) -> ComponentSpec:
+    return ComponentSpec(**{**values, "own": tuple(values["own"])})
+
+
+def _pairs(pairs: Sequence[Sequence[str]]) -> tuple[tuple[str, str], ...]:
+    return tuple((first, second) for first, second in pairs)
+
+
+def _wire(wire: Sequence[Any]) -> Wire:
+    source, target, scale = wire
+    return Wire(source, target, scale and (scale[0], scale[1]))
+
+
+def _bond(force: Any, position: Any, velocity: Any, motion: Sequence[Any]) -> BondSpec:
+    return BondSpec(
+        _wire(force),
+        position and _wire(position),
+        velocity and _wire(velocity),
+        tuple(_wire(wire) for wire in motion),
+    )
