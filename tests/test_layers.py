@@ -34,7 +34,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "bearings": (
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
-        *("amb", "housing", "catalogue", "rolling", "contact", "seat"),
+        *("catalogue", "rating", "surroundings", "rolling", "contact", "seat"),
     ),
     "rotor": (*("portrait", "flexible", "rigid", "file", "statics", "motion", "modal", "beams", "drag"),),
     "modelkit": (
@@ -51,6 +51,8 @@ REPORTED = {
     "touchdown.master.api.rotor",
 }
 """What describes rotor files may read them; nothing of it is co-simulation."""
+RATED = {"touchdown.master.report"}
+"""What reports on bearings may read how they are rated, arithmetic beside the simulation."""
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 MOST = 12  # entries of a folder
 
@@ -91,6 +93,7 @@ def test_a_package_imports_only_what_it_may(package: str) -> None:
     allowed = LAYERS[package] | {f"{OWN}.{package}"}
     for module, path in modules(package).items():
         here = allowed | ({"touchdown.rotor"} if within(module, REPORTED) else set())
+        here |= {"touchdown.bearings.rating"} if within(module, RATED) else set()
         extra = {
             name
             for name in imports(path)
