@@ -17,10 +17,8 @@ LINK = "http://www.w3.org/1999/xlink"
 STYLE = {
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "touchdown",  # the same picture has the same names inside
-    "font.size": 9.5,
-    "axes.titlesize": 10.5,
-    "axes.titleweight": "normal",
-    "figure.titlesize": 11,
+    "axes.titlesize": "medium",
+    "figure.titlesize": "medium",
     "legend.framealpha": 0.75,
     "legend.edgecolor": GREY,
     "axes.spines.top": False,
@@ -45,36 +43,39 @@ _FONT = re.compile(r"font: ([\d.]+)px [^;]*")
 _REFERENCE = re.compile(r"url\(#([^)]+)\)")
 
 
-def inline(draw: Callable[[Figure], object], name: str, alt: str) -> str:
+def inline(draw: Callable[[Figure], object], name: str, alt: str, font: float = 9.5) -> str:
     """What `draw` puts on an empty figure, as an SVG element for a page.
 
-    name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words.
+    name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words;
+    font: size of text (pt), larger for pictures that a page shows smaller than they are drawn.
     """
     written = StringIO()
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context({**STYLE, "font.size": font}):
         figure = sheet()
         figure.patch.set_visible(False)
         draw(figure)
         for axes in figure.axes:
             axes.patch.set_visible(False)
         figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
-    root = ElementTree.fromstring(written.getvalue().partition("<svg")[1] + written.getvalue().partition("<svg")[2])
-    return _for_page(root, name, alt)
+    text = written.getvalue()
+    return _for_page(ElementTree.fromstring(text[text.index("<svg") :]), name, alt)
 
 
 def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:
     ElementTree.register_namespace("", SVG)
     ElementTree.register_namespace("xlink", LINK)
-    for part in root.findall(f"{{{SVG}}}metadata"):
-        root.remove(part)
+    for part in [*root.findall(f"{{{SVG}}}metadata"), *root.findall(f"{{{SVG}}}defs")]:
+        if part.tag.endswith("metadata") or part.find(f"{{{SVG}}}style") is not None:
+            root.remove(part)
     used = _used(root)
     for element in root.iter():
         _renamed(element, used, name)
         _coloured(element)
-    width, height = root.attrib.pop("width"), root.attrib.pop("height")
+    width = root.attrib.pop("width")
+    root.attrib.pop("height")
     root.set("role", "img")
     root.set("aria-label", alt)
-    root.set("style", f"max-width: {_pixels(width):.0f}px; aspect-ratio: {_pixels(width):.0f} / {_pixels(height):.0f}")
+    root.set("style", f"max-width: {_pixels(width):.0f}px")
     return ElementTree.tostring(root, encoding="unicode")
 
 

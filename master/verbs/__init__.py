@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.master.verbs import run, scenes
+from touchdown.master.verbs import report, run, scenes
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
 from touchdown.master.verbs.studies import (
     advise,
@@ -20,6 +20,7 @@ from touchdown.master.verbs.verb import Verb
 ALL: tuple[Verb, ...] = (
     scenes.VERB,
     run.VERB,
+    report.VERB,
     advise.VERB,
     sweep.VERB,
     verdict.VERB,

@@ -107,7 +107,7 @@ def _displacement(subject: Subject, a: Attachment) -> Series:
     return series(chart, f"Displacement of the journal at {seat} from its housing.")
 
 
-def accepted(subject: Subject) -> list[Block]:
+def test_figures(subject: Subject) -> list[Block]:
     """The figures that a drop test can be held against."""
     if subject.first_contact is None:
         raise Absent("nothing touched, so that there is nothing a drop test could be held against.")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from touchdown.bearings import rating
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.blocks import Absent, Block, Lacking, Series, Table
 from touchdown.master.report.chapters.charts import series
@@ -72,8 +73,9 @@ def balls(subject: Subject) -> list[Block]:
     ]
     chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
     blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
-    found = {subject.name(a): one for a in loaded if isinstance(one := rated(subject, a), Rated)}
-    why = {subject.name(a): one for a in loaded if isinstance(one := rated(subject, a), str)}
+    told = {subject.name(a): rated(subject, a) for a in loaded}
+    found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
+    why = {seat: one for seat, one in told.items() if isinstance(one, str)}
     if found:
         blocks += [_pressure(subject, found), _pressures(found)]
     blocks += [Lacking(f"Hertz pressure at {seat}", f"{reason}.") for seat, reason in why.items()]
@@ -82,7 +84,7 @@ def balls(subject: Subject) -> list[Block]:
 
 def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
     lines = [
-        Line(seat, COLOURS[k % len(COLOURS)], GPA * one.pressure(one.load))
+        Line(seat, COLOURS[k % len(COLOURS)], GPA * one.pressure(rating.INNER))
         for k, (seat, one) in enumerate(found.items())
     ]
     title = "Hertz pressure on the inner race"
@@ -90,8 +92,8 @@ def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
     return series(
         chart,
         "Largest pressure of the most loaded ball on the inner race, by Hertz from the ball's load and the "
-        "geometry stated. Above 4.2 GPa a standard bearing steel is dented by a ten-thousandth of the ball's "
-        "diameter (ISO 76).",
+        "stated geometry. At 4.2 GPa ball and race keep a dent of a ten-thousandth of the ball's diameter "
+        "(ISO 76).",
     )
 
 
@@ -99,14 +101,14 @@ def _pressures(found: dict[str, Rated]) -> Table:
     rows = [
         [
             seat,
-            quantity(one.peak_load, "N", 4),
-            quantity(float(one.pressure(np.array(one.peak_load))), "Pa", 3),
-            quantity(float(one.pressure_outside(np.array(one.peak_load))), "Pa", 3),
-            f"{quantity(one.axes[0], 'm', 3)} by {quantity(one.axes[1], 'm', 3)}",
+            quantity(one.loads.peak, "N"),
+            quantity(one.peak_pressure(rating.INNER), "Pa", 3),
+            quantity(one.peak_pressure(rating.OUTER), "Pa", 3),
+            " by ".join(quantity(axis, "m", 3) for axis in one.half_axes),
         ]
         for seat, one in found.items()
     ]
-    head = ["Seat", "Largest ball load", "Pressure, inner race", "Pressure, outer race", "Contact, half axes"]
+    head = ["Seat", "Largest ball load", "Pressure, inner race", "outer race", "Contact's half axes, inner race"]
     return Table("Largest loads and pressures of the run", head, rows, 1)
 
 
