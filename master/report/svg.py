@@ -34,6 +34,9 @@ PAINTS = {  # colour of a picture: word of the page's style
     GREEN: "green",
     PURPLE: "purple",
     GREY: "grey",
+    "#c8d3dc": "core",  # of drawn machines
+    "#e6d9bd": "sleeve",
+    "#7f8a93": "edge",
     "#b0b0b0": "line",  # matplotlib's grid
     "#cccccc": "line",  # and frame of legends
 }

@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.scene.wires import BondSpec, Wire
+
+
+def read_resolved(path: Path) -> Scene:
+    """The scene in a scene.json. Raises TouchdownError where it cannot be read, or is none."""
+    try:
+        return restored(json.loads(path.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise TouchdownError(f"cannot read scene {path}: {error.strerror}") from None
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        what = f"{type(error).__name__}: {error}"
+        raise TouchdownError(f"scene {path} is not as a run leaves it ({what}); give a .toml") from None
 
 
 def restored(values: Mapping[str, Any]) -> Scene:

@@ -18,13 +18,14 @@ def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument("folder", metavar="RUN", type=Path, help="folder that `touchdown run` wrote")
     add_output(verb, "RUN/report.html", "file")
+    verb.add_argument("--pdf", action="store_true", help="print it as PDF, too, by a Chromium on the PATH")
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.api.report import report
 
-    for path in report(options.folder, options.output):
+    for path in report(options.folder, options.output, pdf=options.pdf):
         print(path)
     return 0
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from touchdown.master.api.fmus import build, check
+    from touchdown.master.api.report import report
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import open_result, run
     from touchdown.master.api.scenes import load, scenes
@@ -47,6 +48,7 @@ __all__ = [
     "load",
     "open_result",
     "register_scheme",
+    "report",
     "run",
     "scenes",
     "sweep",
@@ -56,6 +58,7 @@ __all__ = [
 _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
+    "report": "master.api.report",
     "Rotor": "master.api.rotor",
     "open_result": "master.api.run",
     "run": "master.api.run",

@@ -43,6 +43,20 @@
 
   const readable = (value) => (value == null ? "–" : Number(value.toPrecision(5)).toString());
 
+  const FONT = "12px system-ui, sans-serif";
+  const axis = (label, more) => ({
+    stroke: () => paint("ink"),
+    grid: { stroke: () => paint("line"), width: 1 },
+    ticks: { stroke: () => paint("line"), size: 4 },
+    font: FONT,
+    labelFont: FONT,
+    labelSize: 20,
+    labelGap: 0,
+    gap: 4,
+    label,
+    ...more,
+  });
+
   const options = (data, width, moved) => ({
     width,
     height: HEIGHT,
@@ -50,8 +64,8 @@
     cursor: { drag: { x: true, y: false, uni: 20 }, sync: { key: "time" }, points: { size: 5 } },
     scales: { x: { time: false } },
     axes: [
-      { stroke: () => paint("ink"), grid: { stroke: () => paint("line"), width: 1 }, ticks: { stroke: () => paint("line") }, label: "time from the shutdown [s]", labelSize: 22 },
-      { stroke: () => paint("ink"), grid: { stroke: () => paint("line"), width: 1 }, ticks: { stroke: () => paint("line") }, label: data.axis, size: 64, labelSize: 22 },
+      axis("time from the shutdown [s]", { size: 34 }),
+      axis(data.axis, { size: 52, values: (_, ticks) => ticks.map(readable) }),
     ],
     series: [
       { label: "time [s]", value: (_, v) => readable(v) },

@@ -11,10 +11,12 @@ from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.blocks import Absent, Block, Lacking, Picture, Series, Table
 from touchdown.master.report.chapters.charts import series
 from touchdown.master.report.numbers import listed, quantity, share, speed
+from touchdown.master.report.pictures.orbit import Orbit, orbits
 from touchdown.master.report.series import Line
 from touchdown.master.report.subject import FIRST_CONTACT, Subject, number
 from touchdown.master.report.svg import inline
-from touchdown.master.results.figures.orbits import orbits
+from touchdown.master.results.ending import housing_port
+from touchdown.master.results.figures.style import within
 from touchdown.master.results.recording import NotRecordedError
 from touchdown.master.results.summary import relative_orbit
 
@@ -85,14 +87,29 @@ def _events(subject: Subject) -> Table:
 
 
 def _orbits(subject: Subject) -> Picture:
+    shown = [_orbit(subject, a) for a in subject.seats]
     names = listed([subject.name(a) for a in subject.seats])
-    draw = partial(orbits, run=subject.run, seats=subject.seats)
     alt = f"Orbits of the journal in its clearance circle at {names}"
     return Picture(
-        inline(draw, "orbits", alt, font=11.0),
-        "Orbit of the journal in the clearance circle, as it lies to its housing; the circle stands where "
-        "the housing is at the start.",
+        inline(partial(orbits, shown=shown), "orbits", alt),
+        "Orbit of the journal as it lies to its housing, all to one scale. Dashed: the clearance, about where "
+        "the housing is at the start; orange: the first impact; cross: the axis of the magnetic bearings; "
+        "dot: the end of the run.",
     )
+
+
+def _orbit(subject: Subject, a: Attachment) -> Orbit:
+    recording = subject.run.recording
+    x, y = relative_orbit(subject.run.system, a, recording)
+    port = housing_port(subject.run.system, a)
+    middle = (0.0, 0.0)
+    if port is not None:
+        middle = float(recording[f"{port}.x"][0]), float(recording[f"{port}.y"][0])
+    impact = subject.impact or (np.inf, np.inf)
+    words = subject.whirl(a)
+    title = f"{subject.name(a)}: {words}" if isinstance(words, str) else subject.name(a)
+    landing = within(recording.time, impact)
+    return Orbit(title, x, y, landing, subject.setting(a, "clearance"), middle)
 
 
 def _displacement(subject: Subject, a: Attachment) -> Series:

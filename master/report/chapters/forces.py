@@ -37,8 +37,8 @@ def forces(subject: Subject) -> list[Block]:
     blocks: list[Block] = [
         series(
             chart,
-            f"Normal force between journal and bore, recorded every {step}; peaks between, which the "
-            f"figures have, may stand out by a little.{means}",
+            f"Normal force between journal and bore, recorded every {step}. The largest forces in tables "
+            f"count what happened between recorded moments, too, and may be a little larger.{means}",
         )
     ]
     return [*blocks, *_map(subject)]
