@@ -44,7 +44,7 @@ def quantity(value: float | None, unit: str, count: int = 4) -> str:
     if value is None:
         return NONE
     factor, name = _handy(value, unit)
-    return f"{digits(value / factor, count)} {name}".strip()
+    return f"{digits(value / factor, count)}\N{NO-BREAK SPACE}{name}".strip()
 
 
 def _handy(value: float, unit: str) -> tuple[float, str]:

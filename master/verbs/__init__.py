@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.master.verbs import report, run, scenes
+from touchdown.master.verbs import animate, report, run, scenes
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
 from touchdown.master.verbs.studies import (
     advise,
@@ -21,6 +21,7 @@ ALL: tuple[Verb, ...] = (
     scenes.VERB,
     run.VERB,
     report.VERB,
+    animate.VERB,
     advise.VERB,
     sweep.VERB,
     verdict.VERB,

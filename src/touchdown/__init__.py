@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from touchdown.master.api.fmus import build, check
-    from touchdown.master.api.report import report
+    from touchdown.master.api.report import animate, report
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import open_result, run
     from touchdown.master.api.scenes import load, scenes
@@ -42,6 +42,7 @@ __all__ = [
     "TouchdownError",
     "Unbalance",
     "__version__",
+    "animate",
     "build",
     "check",
     "compare",
@@ -58,6 +59,7 @@ __all__ = [
 _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
+    "animate": "master.api.report",
     "report": "master.api.report",
     "Rotor": "master.api.rotor",
     "open_result": "master.api.run",

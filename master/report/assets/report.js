@@ -90,7 +90,6 @@
 
     holder.hidden = false;
     figure.querySelector(".drawn").hidden = true;
-    element("h3", holder, data.title);
     const tools = element("div", holder);
     tools.className = "tools";
     const now = () => shared || [first, last];

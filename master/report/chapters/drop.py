@@ -8,9 +8,10 @@ from functools import partial
 import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Absent, Block, Lacking, Picture, Series, Table
+from touchdown.master.report.animation.motion import motions
+from touchdown.master.report.blocks import Absent, Block, Lacking, Motion, Picture, Series, Table
 from touchdown.master.report.chapters.charts import series
-from touchdown.master.report.numbers import listed, quantity, share, speed
+from touchdown.master.report.numbers import digits, listed, quantity, share, speed
 from touchdown.master.report.pictures.orbit import Orbit, orbits
 from touchdown.master.report.series import Line
 from touchdown.master.report.subject import FIRST_CONTACT, Subject, number
@@ -29,7 +30,7 @@ def drop(subject: Subject) -> list[Block]:
     subject.need_seats()
     blocks: list[Block] = [_conditions(subject), _events(subject)]
     try:
-        blocks.append(_orbits(subject))
+        blocks += [*_moving(subject), _orbits(subject)]
         blocks += [_displacement(subject, a) for a in subject.seats]
     except NotRecordedError as error:
         blocks.append(Lacking(MOVED, f"{error}."))
@@ -84,6 +85,21 @@ def _events(subject: Subject) -> Table:
         )
     head = ["Seat", "First contact", "at", "Largest force", "Largest displacement", "Main frequency sideways"]
     return Table("What happened, seat by seat", head, rows, numbers=1)
+
+
+def _moving(subject: Subject) -> Iterator[Block]:
+    """The drop as a moving picture, of the seats that can be drawn."""
+    shown, lacking = motions(subject)
+    if shown:
+        factors = listed(list(dict.fromkeys(f"{digits(m.shape.magnified, 2)} times" for m in shown)))
+        data = f"[{','.join(m.for_page() for m in shown)}]"
+        yield Motion(
+            data,
+            "The drop: slowly through the first impact, then faster. Journal and ring in their true places, "
+            f"displacements and clearance magnified {factors}; the arrow is the bearing's force on the journal, "
+            "the lines on journal and ring turn with them. Balls are carried on by their mean orbit.",
+        )
+    yield from (Lacking("The drop as a moving picture", why) for why in lacking)
 
 
 def _orbits(subject: Subject) -> Picture:

@@ -100,10 +100,10 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
     ports = {a.body_port: 0.0 for a in system.attachments if a.body == body}
     supports = list(_supports(subject, body, ports))
     radius = next((s.inner for s in supports if s.kind == TOUCHDOWN and s.inner), 0.3 * diameter)
-    wide = max([width, *(s.width for s in supports)])
+    wide = max([0.012, *(2.0 * s.width for s in supports)])
     placed = _beside(supports, width)
     ends = [s.position for s in placed]
-    start, stop = min([0.0, *ends]) - wide, max([0.0, *ends]) + wide
+    start, stop = min([-0.5 * width, *ends]) - wide, max([0.5 * width, *ends]) + wide
     shaft = Cylinder(start, stop - start, radius)
     return SideView([shaft, Cylinder(-0.5 * width, width, diameter)], placed), (
         "The rotor is rigid and moves in one plane: all bearings act there, and are drawn beside each other. "

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
-from touchdown.master.report.numbers import digits, listed, quantity, share
+from touchdown.master.report.numbers import RPM, digits, listed, quantity, share
 from touchdown.master.report.subject import FIRST_CONTACT, Subject, number
 from touchdown.master.results.whirl.evidence import evidence
 from touchdown.master.results.whirl.unbalance import unbalanced
@@ -56,7 +56,7 @@ def summary(subject: Subject) -> list[Block]:
     blocks += [Remark(text, grave) for text, grave in _remarks(subject)]
     if subject.seats:
         blocks.append(_verdicts(subject, subject.seats))
-        told = evidence(subject.summary)
+        told = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
         blocks += [Text("What the verdicts rest on:"), Points(told)] if told else []
     return blocks
 
@@ -137,8 +137,10 @@ def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
         return
     spin = abs(subject.run.recording[name])
     if spin[-1] > SPINS * spin[0] > 0.0:
+        end = quantity(float(subject.run.recording.time[-1]), "s")
+        left = f"{digits(RPM * float(spin[-1]), 4)} of {digits(RPM * float(spin[0]), 4)} rpm"
         yield (
-            f"The run ends while the rotor still has {share(spin[-1] / spin[0])} of its speed: figures are "
-            f"of the first {quantity(float(subject.run.recording.time[-1]), 's')}, not of the whole run-down.",
+            f"The run ends {end} after the shutdown, when the rotor still has {left}: figures are of this "
+            "time, not of the whole run-down.",
             False,
         )
