@@ -27,13 +27,13 @@ def origin_of(spec: ComponentSpec, variable: str) -> Origin:
         return Origin.SET if variable in spec.own else Origin.SCENE
     if variable in spec.inherited:
         return Origin.TAKEN_OVER
-    if variable in _catalogued(spec.preset):
+    if variable in catalogued(spec.preset):
         return Origin.CATALOGUE
     return Origin.DEFAULT
 
 
 @cache
-def _catalogued(name: str | None) -> Mapping[str, float]:
+def catalogued(name: str | None) -> Mapping[str, float]:
     """What a bearing of the catalogue sets; nothing where it is gone from there since."""
     try:
         return preset(name) if name is not None else {}

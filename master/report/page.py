@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
@@ -19,6 +23,7 @@ from touchdown.master.results.result import Result
 HERE = Path(__file__).parent
 TEMPLATES, ASSETS = HERE / "templates", HERE / "assets"
 PAGE = "report.html"
+_CODE = re.compile(r"`([^`]+)`")
 
 
 @dataclass(frozen=True)
@@ -55,10 +60,13 @@ def write_page(page: Page, path: Path) -> Path:
     return path
 
 
+def marked(text: str) -> Markup:
+    """Text with what stands between backquotes as code."""
+    return Markup(_CODE.sub(r"<code>\1</code>", str(escape(text))))
+
+
 def rendered(page: Page) -> str:
     """A page as HTML, scripts and styles inside."""
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     environment = Environment(
         loader=FileSystemLoader([TEMPLATES, ASSETS]),
         autoescape=True,
@@ -66,4 +74,5 @@ def rendered(page: Page) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["marked"] = marked
     return environment.get_template("page.html").render(page=page)

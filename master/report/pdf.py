@@ -11,7 +11,14 @@ from pathlib import Path
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import replacing, writing_to
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge")
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "chrome",
+    "microsoft-edge",
+)
 QUIET = (  # a browser that looks at one file and asks nobody anything
     *("--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update", "--disable-default-apps"),

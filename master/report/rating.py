@@ -10,7 +10,7 @@ import numpy as np
 
 from touchdown.bearings import rating
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.origins import Origin, origin_of
+from touchdown.master.report.origins import Origin, catalogued, origin_of
 from touchdown.master.report.subject import Subject
 
 LOAD, RING = "balls.force", "ring.omega"
@@ -119,6 +119,6 @@ def rated(subject: Subject, a: Attachment) -> Rated | str:
 
 def _stated(subject: Subject, a: Attachment) -> float:
     """Static rating of a row (N) as the scene or the catalogue has it; 0 where only a default would."""
-    if origin_of(subject.result.scene.components[a.bearing], STATIC) is Origin.DEFAULT:
-        return 0.0
-    return subject.setting(a, STATIC) or 0.0
+    spec = subject.result.scene.components[a.bearing]
+    stated = None if origin_of(spec, STATIC) is Origin.DEFAULT else subject.setting(a, STATIC)
+    return stated or catalogued(spec.preset).get(STATIC, 0.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import zero_of
 from touchdown.master.report.blocks import Absent
+from touchdown.master.report.numbers import quantity
 from touchdown.master.report.series import Chart, Line, chosen_rows
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.result import Result
@@ -110,10 +110,11 @@ class Subject:
         before, after = SHOWN_IMPACT
         return self.first_contact - before, self.first_contact + after
 
-    @cached_property
-    def folder(self) -> Path:
-        """Of the run."""
-        return self.result.folder
+    @property
+    def interval(self) -> str:
+        """From one recorded moment to the next, for people."""
+        time = self.run.recording.time
+        return quantity(float(np.median(np.diff(time))), "s") if len(time) > 1 else "moment"
 
 
 def number(value: object) -> float | None:

@@ -14,6 +14,7 @@ from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORA
 
 SVG = "http://www.w3.org/2000/svg"
 LINK = "http://www.w3.org/1999/xlink"
+FONT, WIDE_FONT = 9.5, 12.5  # pt
 STYLE = {
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "touchdown",  # the same picture has the same names inside
@@ -46,22 +47,30 @@ _FONT = re.compile(r"font: ([\d.]+)px [^;]*")
 _REFERENCE = re.compile(r"url\(#([^)]+)\)")
 
 
-def inline(draw: Callable[[Figure], object], name: str, alt: str, font: float = 9.5) -> str:
+def inline(draw: Callable[[Figure], object], name: str, alt: str, wide: bool = False) -> str:
     """What `draw` puts on an empty figure, as an SVG element for a page.
 
     name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words;
-    font: size of text (pt), larger for pictures that a page shows smaller than they are drawn.
+    wide: it is drawn wider than a page, which shows it smaller, so that its text has to be larger.
     """
     written = StringIO()
-    with mpl.rc_context({**STYLE, "font.size": font}):
+    with mpl.rc_context({**STYLE, "font.size": WIDE_FONT if wide else FONT}):
         figure = sheet()
         figure.patch.set_visible(False)
         draw(figure)
+        _without_first_line(figure)
         for axes in figure.axes:
             axes.patch.set_visible(False)
         figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
     text = written.getvalue()
     return _for_page(ElementTree.fromstring(text[text.index("<svg") :]), name, alt)
+
+
+def _without_first_line(figure: Figure) -> None:
+    """Take the run's title off a picture's: the page has it already."""
+    title = figure.get_suptitle()
+    if title:
+        figure.suptitle(title.partition("\n")[2])
 
 
 def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from functools import partial
 
-from matplotlib.figure import Figure
-
 from touchdown.master.report.blocks import Block, Lacking, Picture, Table, Text
 from touchdown.master.report.numbers import quantity, share
 from touchdown.master.report.subject import Subject, number
 from touchdown.master.report.svg import inline
-from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.energy import energy
 from touchdown.master.results.summary import energy_total
 
 FINE = 1e-3  # of the turnover: what the coupling makes or loses says nothing against the figures
-FONT = 12.5  # pt; the picture is wider than a page
 NAMES = {
     "energy_turnover_J": ("Energy that crossed between the parts", "J"),
     "energy_made_J": ("of it made by the coupling", "J"),
@@ -69,11 +65,5 @@ def _energies(subject: Subject) -> Block:
     if energy_total(subject.run.system, subject.run.recording) is None:
         return Lacking("Where the energy is", "not all parts state and record their energies.")
     alt = "Energies of all parts over time, and their sum, which should stay"
-    svg = inline(partial(_untitled, run=subject.run), "energy", alt, FONT)
+    svg = inline(partial(energy, run=subject.run), "energy", alt, wide=True)
     return Picture(svg, "Where the energy is, and the balance of all: zero where nothing is lost or made.")
-
-
-def _untitled(figure: Figure, run: Finished) -> None:
-    """The picture without the title that the page has already."""
-    energy(figure, run)
-    figure.suptitle("")

@@ -83,7 +83,14 @@ def _events(subject: Subject) -> Table:
                 quantity(subject.figure("pendulum_frequency_Hz", a), "Hz", 3),
             ]
         )
-    head = ["Seat", "First contact", "at", "Largest force", "Largest displacement", "Main frequency sideways"]
+    head = [
+        "Seat",
+        "First contact",
+        "at",
+        "Largest force",
+        "Largest displacement",
+        "Main frequency sideways",
+    ]
     return Table("What happened, seat by seat", head, rows, numbers=1)
 
 
@@ -163,6 +170,6 @@ def test_figures(subject: Subject) -> list[Block]:
         )
     head = [
         *("Seat", "Fall time", "Largest displacement", "of the clearance", "Whirl frequency"),
-        "Ring as fast as the rotor after",
+        "Ring rolls with the rotor after",
     ]
     return [Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1)]

@@ -15,8 +15,6 @@ from touchdown.master.results.figures.stress import has_stress, stress
 from touchdown.master.results.spectra import BEGIN, LENGTH
 from touchdown.master.results.stresses import stressed
 
-FONT = 12.5  # pt; these pictures are wider than a page
-
 
 def stresses(subject: Subject) -> list[Block]:
     """Bending and shear along the shaft and over time."""
@@ -35,9 +33,12 @@ def stresses(subject: Subject) -> list[Block]:
             f"Stresses of {name}: along the axis both planes at the kept instant, in front of the largest "
             "resultant of the whole run, and over time the largest anywhere. Nominal: no notch factors."
         )
-        blocks.append(Picture(inline(draw, f"stress-{name}", alt, FONT), caption))
+        blocks.append(Picture(inline(draw, f"stress-{name}", alt, wide=True), caption))
     rows = list(_peaks(subject, shown))
-    return [Table("Largest stresses", ["Stress", "Value", "at node", "after the shutdown"], rows, 1), *blocks]
+    return [
+        Table("Largest stresses", ["Stress", "Value", "at node", "after the shutdown"], rows, 1),
+        *blocks,
+    ]
 
 
 def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
@@ -50,7 +51,12 @@ def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
             )
             if value is not None:
                 at = quantity(node, "1", 3)
-                yield [f"{kind.capitalize()}, {name}", quantity(1e6 * value, "Pa", 3), at, quantity(time, "s")]
+                yield [
+                    f"{kind.capitalize()}, {name}",
+                    quantity(1e6 * value, "Pa", 3),
+                    at,
+                    quantity(time, "s"),
+                ]
 
 
 def spectra(subject: Subject) -> list[Block]:
@@ -66,5 +72,5 @@ def spectra(subject: Subject) -> list[Block]:
 
 def _spectrum(subject: Subject, a: Attachment) -> Picture:
     alt = f"Amplitude spectra of the inner ring's horizontal velocity at {subject.name(a)}"
-    svg = inline(partial(spectrum, run=subject.run, a=a), f"spectrum-{a.bearing}", alt, FONT)
+    svg = inline(partial(spectrum, run=subject.run, a=a), f"spectrum-{a.bearing}", alt, wide=True)
     return Picture(svg, f"Horizontal velocity of the inner ring at {subject.name(a)}, window by window.")

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 
+from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.blocks import Absent, Block, Lacking, Picture
 from touchdown.master.report.chapters.charts import series
-from touchdown.master.report.numbers import quantity
+from touchdown.master.report.numbers import listed, quantity
 from touchdown.master.report.pictures.contact_map import SECTORS, Presses, contact_map
 from touchdown.master.report.series import Line
 from touchdown.master.report.subject import COLOURS, Subject
@@ -17,6 +19,7 @@ from touchdown.master.results.recording import NotRecordedError
 from touchdown.master.results.summary import is_heard, relative_orbit
 
 FORCE = "contact.force"
+SEEN = 1.02  # times the largest recorded value: a larger peak is worth a word
 
 
 def forces(subject: Subject) -> list[Block]:
@@ -32,16 +35,32 @@ def forces(subject: Subject) -> list[Block]:
     ]
     heard = [a.bearing for a in recorded if is_heard(subject.run.system, a)]
     means = f" Forces of {', '.join(heard)} are heard from means over macro steps." if heard else ""
-    step = quantity(float(np.median(np.diff(subject.run.recording.time))), "s")
     chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
     blocks: list[Block] = [
         series(
             chart,
-            f"Normal force between journal and bore, recorded every {step}. The largest forces in tables "
-            f"count what happened between recorded moments, too, and may be a little larger.{means}",
+            f"Normal force between journal and bore, recorded every {subject.interval}."
+            f"{_between(subject, recorded)}{means}",
         )
     ]
     return [*blocks, *_map(subject)]
+
+
+def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
+    """Where a peak fell between recorded moments, that it did."""
+    missed = []
+    for a in recorded:
+        peak, seen = subject.figure("peak_contact_force_N", a), float(np.max(subject.values(a, FORCE)))
+        if peak is not None and peak > SEEN * seen:
+            missed.append(
+                f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
+            )
+    if not missed:
+        return ""
+    return (
+        f" The largest force of the run fell between recorded moments: {listed(missed)}; a smaller "
+        "run.record_every shows more of it."
+    )
 
 
 def _map(subject: Subject) -> list[Block]:

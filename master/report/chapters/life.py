@@ -38,7 +38,7 @@ def _static(found: dict[str, Rated]) -> Table:
         [
             seat,
             quantity(one.capacity.static, "N", 3),
-            "stated" if one.stated else "ISO 76, from the geometry",
+            "stated by scene or catalogue" if one.stated else "ISO 76, from the geometry",
             quantity(one.equivalent_load, "N", 3),
             digits(one.static_safety, 3),
             digits(one.pressure_safety, 3),

@@ -54,7 +54,9 @@ def _view(subject: Subject) -> tuple[SideView, str]:
     """What is drawn, and what to know of it. Raises TouchdownError where the rotor's shape is not known."""
     body = subject.rotor if subject.seats else next(iter(subject.run.system.attachments)).body
     spec = subject.result.scene.components[body]
-    if "stress.peak_bending" in subject.run.system.components[body].variables or stressed(subject.run.system):
+    if "stress.peak_bending" in subject.run.system.components[body].variables or stressed(
+        subject.run.system
+    ):
         shaft = _shaft(subject, spec)
         return _flexible(subject, body, shaft), (
             f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "

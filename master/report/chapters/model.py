@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.report.blocks import Block, Heading, Points, Table, Text
+from touchdown.master.report.numbers import quantity
 from touchdown.master.report.subject import Subject
 from touchdown.master.scene.scene import ComponentSpec
 from touchdown.modelkit.model import ModelError
@@ -29,7 +30,7 @@ LEFT_OUT = {  # model: what it has not
     "simplified_cageless": ("Inertia and weight of the balls of {name} across the race.",),
     "bushing": ("Anything that rolls in {name}: the bore is fixed in the housing.",),
 }
-SCHEME = "How the parts were coupled: {title}; macro step {step:g} s."
+SCHEME = "How the parts were coupled: {title}; macro step {step}."
 
 
 def model(subject: Subject) -> list[Block]:
@@ -42,7 +43,7 @@ def model(subject: Subject) -> list[Block]:
     return [
         *blocks,
         Table("What each part is modelled as", ["Part", "Model", "What is in it"], rows),
-        Text(SCHEME.format(title=run.scheme.title, step=run.macro_step)),
+        Text(SCHEME.format(title=run.scheme.title, step=quantity(run.macro_step, "s"))),
         Heading("Left out"),
         Points(list(_left_out(subject))),
     ]

@@ -38,7 +38,7 @@ def run_up(subject: Subject) -> list[Block]:
     rows = [_synchronous(subject, a) for a in turning]
     return [
         series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
-        Table("Run-up of the inner rings", ["Seat", "As fast as the rotor after", "Speed at the end", "of the rotor's"],
+        Table("Run-up of the inner rings", ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"],
               rows, 1),
     ]  # fmt: skip
 
@@ -108,7 +108,13 @@ def _pressures(found: dict[str, Rated]) -> Table:
         ]
         for seat, one in found.items()
     ]
-    head = ["Seat", "Largest ball load", "Pressure, inner race", "outer race", "Contact's half axes, inner race"]
+    head = [
+        "Seat",
+        "Largest ball load",
+        "Pressure, inner race",
+        "outer race",
+        "Contact's half axes, inner race",
+    ]
     return Table("Largest loads and pressures of the run", head, rows, 1)
 
 
@@ -116,6 +122,8 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
     """The seats whose bearings tell of a variable. Raises Absent where none does."""
     found = [a for a in subject.need_seats() if subject.has(a, variable)]
     if not found:
-        names = listed([f"{a.bearing} ({subject.result.scene.components[a.bearing].fmu})" for a in subject.seats])
+        names = listed(
+            [f"{a.bearing} ({subject.result.scene.components[a.bearing].fmu})" for a in subject.seats]
+        )
         raise Absent(f"{names} has no {what}, or it was not recorded.")
     return found

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from touchdown.bearings import rating
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
 from touchdown.master.report.numbers import RPM, digits, listed, quantity, share
+from touchdown.master.report.rating import Rated, rated
 from touchdown.master.report.subject import FIRST_CONTACT, Subject, number
 from touchdown.master.results.whirl.evidence import evidence
 from touchdown.master.results.whirl.unbalance import unbalanced
@@ -32,7 +34,9 @@ def headline(subject: Subject) -> str:
 
 def _verdict(subject: Subject) -> str:
     said = {subject.name(a): subject.whirl(a) for a in subject.seats}
-    whirls = {seat: words for seat, words in said.items() if isinstance(words, str) and "ward whirl" in words}
+    whirls = {
+        seat: words for seat, words in said.items() if isinstance(words, str) and "ward whirl" in words
+    }
     if whirls:
         where = _by_words(whirls)
         return f"The rotor whirls: {where}."
@@ -73,6 +77,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
         if found:
             value, a = max(found, key=lambda pair: pair[0])
             yield Tile(label, quantity(factor * value, unit, 3), _at(subject, a))
+    yield from _rated(subject)
     stress = number(subject.summary.get("peak_bending_stress_MPa"))
     if stress is not None:
         yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), "in the shaft")
@@ -80,6 +85,17 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
     if speed is not None:
         end = quantity(float(subject.run.recording.time[-1]), "s")
         yield Tile("Rotor at the end", f"{digits(speed, 4)} rpm", f"after {end}")
+
+
+def _rated(subject: Subject) -> Iterator[Tile]:
+    """What the largest ball load means for the races."""
+    told = [(one, a) for a in subject.seats if isinstance(one := rated(subject, a), Rated)]
+    if subject.first_contact is None or not told:
+        return
+    one, a = min(told, key=lambda pair: pair[0].pressure_safety)
+    pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
+    yield Tile("Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a))
+    yield Tile("Static safety s₀, estimate", digits(one.static_safety, 3), _at(subject, a))
 
 
 def _at(subject: Subject, a: Attachment) -> str:
@@ -111,7 +127,10 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
     """What has to be known before the figures are used; and whether it may make them wrong."""
     result = subject.result
     if result.ended is not Ended.COMPLETED:
-        yield f"The run was {result.ended.value}: {result.stopped_because}. What follows is up to there.", True
+        yield (
+            f"The run was {result.ended.value}: {result.stopped_because}. What follows is up to there.",
+            True,
+        )
     yield from ((f"{warning.rstrip('.')}.", True) for warning in result.warnings)
     made = number(subject.summary.get("energy_made_of_turnover"))
     if made is not None and made > NOT_ACCURATE:

@@ -132,9 +132,7 @@ def _draw_support(axes: Axes, s: Support, view: SideView, radius: float) -> None
         low = sign * inner if sign > 0 else -outer
         colour = BLUE if s.kind == "touchdown" else ORANGE
         corner = (at - 0.5 * width, low)
-        axes.add_patch(
-            Rectangle(corner, width, outer - inner, fc="none", ec=colour, lw=1.6, zorder=3)
-        )
+        axes.add_patch(Rectangle(corner, width, outer - inner, fc="none", ec=colour, lw=1.6, zorder=3))
         if s.kind == "touchdown":
             ball = Circle((at, sign * 0.5 * (inner + outer)), 0.28 * (outer - inner), fc="none", ec=colour)
             axes.add_patch(ball)

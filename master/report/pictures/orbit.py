@@ -25,7 +25,10 @@ class Orbit:
     y: np.ndarray
     landing: np.ndarray  # which rows are of the first impact
     clearance: float | None
-    middle: tuple[float, float] = (0.0, 0.0)  # of the housing at the start, from the magnetic bearings' axis
+    middle: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # of the housing at the start, from the magnetic bearings' axis
 
 
 def orbits(figure: Figure, shown: list[Orbit]) -> None:
