@@ -23,13 +23,23 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",
-        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
+        *(
+            "argcomplete",
+            "tqdm",
+            "fmpy",
+            "h5py",
+            "matplotlib",
+            "fmu_manipulation_toolbox",
+            "jinja2",
+            "markupsafe",
+            "imageio_ffmpeg",
+        ),
         *("numpy", "scipy", "pandas", "xarray"),
     },
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
     "master": (
-        *("cli", "verbs", "api", "studies", "interop", "results"),
+        *("cli", "verbs", "api", "report", "studies", "interop", "results"),
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
@@ -48,7 +58,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
 }
 REPORTED = {
     *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotor"),
-    "touchdown.master.api.rotor",
+    *("touchdown.master.api.rotor", "touchdown.master.report.chapters.machine"),
 }
 """What describes rotor files may read them; nothing of it is co-simulation."""
 RATED = {"touchdown.master.report"}

@@ -15,16 +15,20 @@ def report(run: Result | PathLike, path: PathLike | None = None, *, pdf: bool = 
     """Write the report of a run, given its result or its folder, as one page; returns the files.
 
     `path`: of the page; None: report.html in the run's folder. pdf: print it, too, beside the page, by a
-    Chromium on the PATH. The page needs nothing beside it. Raises TouchdownError where there is no such run,
-    or it cannot be written or printed.
+    Chromium on the PATH. The page needs nothing beside it. Raises TouchdownError where there is no such
+    run, or it cannot be written or printed.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
     >>> result = touchdown.run(scene, in_process=True)
     >>> [path.name for path in touchdown.report(result, "drop.html")]
     ['drop.html']
     """
-    from touchdown.master.report.page import PAGE, report_on, write_page  # matplotlib is slow to import
-    from touchdown.master.report.pdf import browser, print_page
+    from touchdown.master.report.page.pdf import browser, print_page
+    from touchdown.master.report.page.writing import (  # matplotlib is slow to import
+        PAGE,
+        report_on,
+        write_page,
+    )
 
     if pdf:
         browser()  # first of all: a page takes seconds
@@ -36,9 +40,9 @@ def report(run: Result | PathLike, path: PathLike | None = None, *, pdf: bool = 
 def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: bool = False) -> Path:
     """Draw the drop of a run, given its result or its folder, as a film, .gif or .mp4; returns its path.
 
-    Rotor, ring, balls and cage turn, an arrow is the force on the journal, and the first impact goes slowly.
-    `path`: None: drop.gif in the run's folder; progress: show a bar. An .mp4 takes ffmpeg, from the PATH or
-    the extra `animate`. Raises TouchdownError where nothing touched, or the film cannot be made.
+    Rotor, ring, balls and cage turn, an arrow is the force on the journal, and the first impact goes
+    slowly. `path`: None: drop.gif in the run's folder; progress: show a bar. An .mp4 takes ffmpeg, from the
+    PATH or the extra `animate`. Raises TouchdownError where nothing touched, or the film cannot be made.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
     >>> touchdown.animate(touchdown.run(scene, in_process=True), "drop.gif").name
@@ -46,8 +50,8 @@ def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: b
     """
     from touchdown.master.report.animation.film import checked_suffix, film_frames, write_film
     from touchdown.master.report.animation.motion import motions
-    from touchdown.master.report.blocks import Absent
-    from touchdown.master.report.subject import Subject
+    from touchdown.master.report.facts.subject import Subject
+    from touchdown.master.report.page.blocks import Absent
 
     result = run if isinstance(run, Result) else open_result(run)
     film = Path(path) if path else result.folder / "drop.gif"

@@ -40,7 +40,7 @@ def run(
 
 
 def open_result(folder: PathLike) -> Result:
-    """What a run left in a folder, read back: as `run` returned it, its recording read when it is asked for.
+    """What a run left in a folder, read back as `run` returned it; the recording is read when it is used.
 
     Raises TouchdownError where the folder is not that of a run that is over.
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from touchdown.master.report.blocks import Absent, Block, Section
 from touchdown.master.report.chapters.accuracy import accuracy
 from touchdown.master.report.chapters.drop import drop, test_figures
 from touchdown.master.report.chapters.figures import spectra, stresses
@@ -22,7 +21,8 @@ from touchdown.master.report.chapters.repeat import repeat
 from touchdown.master.report.chapters.rolling import balls, run_up
 from touchdown.master.report.chapters.settings import settings
 from touchdown.master.report.chapters.summary import summary
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Absent, Block, Section
 
 
 @dataclass(frozen=True)

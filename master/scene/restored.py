@@ -30,24 +30,24 @@ def restored(values: Mapping[str, Any]) -> Scene:
     Raises TouchdownError, KeyError or TypeError where they are not such values.
     """
     parts = dict(values)
-    return Scene(
-        **parts
-        | {
-            "components": {name: _component(part) for name, part in parts["components"].items()},
-            "attach": _pairs(parts["attach"]),
-            "sense": _pairs(parts["sense"]),
-            "connect": tuple(_wire(wire) for wire in parts["connect"]),
-            "bond": tuple(_bond(*bond) for bond in parts["bond"]),
-            "energy_scale": tuple(parts["energy_scale"]),
-            "own": tuple(parts["own"]),
-            "run": with_changes(RunSpec(), parts["run"]),
-            "folder": Path(parts["folder"]),
-        }
-    )
+    parts |= {
+        "components": {name: _component(part) for name, part in parts["components"].items()},
+        "attach": _pairs(parts["attach"]),
+        "sense": _pairs(parts["sense"]),
+        "connect": tuple(_wire(wire) for wire in parts["connect"]),
+        "bond": tuple(_bond(*bond) for bond in parts["bond"]),
+        "energy_scale": tuple(parts["energy_scale"]),
+        "own": tuple(parts["own"]),
+        "run": with_changes(RunSpec(), parts["run"]),
+        "folder": Path(parts["folder"]),
+    }
+    return Scene(**parts)
 
 
 def _component(values: Mapping[str, Any]) -> ComponentSpec:
-    return ComponentSpec(**{**values, "own": tuple(values["own"])})
+    parts = dict(values)
+    parts["own"] = tuple(parts["own"])
+    return ComponentSpec(**parts)
 
 
 def _pairs(pairs: Sequence[Sequence[str]]) -> tuple[tuple[str, str], ...]:

@@ -1,1 +1,1 @@
-"""Moving pictures of a drop: `motion` is what moves, `film` draws it into a file, a page's script on the page."""
+"""Moving pictures of a drop: `motion` is what moves, `film` draws it into a file; a page has a script."""

@@ -131,8 +131,10 @@ class _Panel:
             self._draw_bearing(axes)
         else:
             axes.add_patch(Annulus((0, 0), size.outer, size.outer - size.bore, fc=SLEEVE, ec=EDGE, lw=0.8))
-        self._journal = axes.add_patch(Circle((0, 0), 1.0, fc=BODY, ec=ORANGE, lw=1.6))
-        self._marks = axes.add_collection(LineCollection([], colors=[ORANGE, BLUE], linewidths=[1.6, 2.4]))
+        self._journal = Circle((0, 0), 1.0, fc=BODY, ec=ORANGE, lw=1.6)
+        self._marks = LineCollection([], colors=[ORANGE, BLUE], linewidths=[1.6, 2.4])
+        axes.add_patch(self._journal)
+        axes.add_collection(self._marks)
         self._arrow = axes.quiver([0], [0], [0], [0], angles="xy", scale_units="xy", scale=1.0,
                                   color=FORCE, width=0.012, zorder=5)  # fmt: skip
         axes.text(0.0, 1.02 * reach, motion.shape.title, ha="center", va="bottom", fontsize=10)
@@ -142,10 +144,9 @@ class _Panel:
         s = self._size
         groove = s.pitch + GROOVE * s.ball
         axes.add_patch(Annulus((0, 0), s.outer, s.outer - groove, fc=CORE, ec=EDGE, lw=0.8))
-        self._ring = [
-            axes.add_patch(Circle((0, 0), radius, fc=colour, ec=EDGE, lw=0.8))
-            for radius, colour in ((s.shoulder, CORE), (s.bore, "#ffffff"))
-        ]
+        for radius, colour in ((s.shoulder, CORE), (s.bore, "#ffffff")):
+            self._ring.append(Circle((0, 0), radius, fc=colour, ec=EDGE, lw=0.8))
+            axes.add_patch(self._ring[-1])
         if self._motion.shape.caged:
             axes.add_patch(Circle((0, 0), s.pitch, fc="none", ec=PURPLE, lw=2.0))
         count = self._motion.balls.shape[1]

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Absent
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Absent
 from touchdown.master.results.ending import housing_port
 from touchdown.master.results.recording import NotRecordedError
 

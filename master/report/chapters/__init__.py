@@ -1,1 +1,1 @@
-"""The chapters of a report on a run: each a function of a `Subject` that returns blocks, or raises Absent."""
+"""The chapters of a report on a run: functions of a `Subject` that return blocks, or raise Absent."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
-from touchdown.master.report.blocks import Block, Lacking, Picture, Table, Text
-from touchdown.master.report.numbers import quantity, share
-from touchdown.master.report.subject import Subject, number
-from touchdown.master.report.svg import inline
+from touchdown.master.report.facts.numbers import quantity, share
+from touchdown.master.report.facts.subject import Subject, number
+from touchdown.master.report.page.blocks import Block, Lacking, Picture, Table, Text
+from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.figures.energy import energy
 from touchdown.master.results.summary import energy_total
 
@@ -55,8 +55,8 @@ def _judged(subject: Subject) -> list[Block]:
         return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
     return [
         Text(
-            f"{said}: forces and times may be off by as much and more. A run with half the macro step shows "
-            "what hangs on it, and `touchdown compare` gives the error by macro step."
+            f"{said}: forces and times may be off by as much and more. A run with half the macro step "
+            "shows what hangs on it, and `touchdown compare` gives the error by macro step."
         )
     ]
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from touchdown.master.report.blocks import Series
-from touchdown.master.report.numbers import digits, listed
+from touchdown.master.report.facts.numbers import digits, listed
+from touchdown.master.report.facts.series import Chart
+from touchdown.master.report.page.blocks import Series
 from touchdown.master.report.pictures.curves import curves
-from touchdown.master.report.series import Chart
-from touchdown.master.report.svg import inline
+from touchdown.master.report.pictures.svg import inline
 
 
 def series(chart: Chart, caption: str) -> Series:

@@ -9,13 +9,13 @@ import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.animation.motion import motions
-from touchdown.master.report.blocks import Absent, Block, Lacking, Motion, Picture, Series, Table
 from touchdown.master.report.chapters.charts import series
-from touchdown.master.report.numbers import digits, listed, quantity, share, speed
+from touchdown.master.report.facts.numbers import digits, listed, quantity, share, speed
+from touchdown.master.report.facts.series import Line
+from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
+from touchdown.master.report.page.blocks import Absent, Block, Lacking, Motion, Picture, Series, Table
 from touchdown.master.report.pictures.orbit import Orbit, orbits
-from touchdown.master.report.series import Line
-from touchdown.master.report.subject import FIRST_CONTACT, Subject, number
-from touchdown.master.report.svg import inline
+from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.ending import housing_port
 from touchdown.master.results.figures.style import within
 from touchdown.master.results.recording import NotRecordedError
@@ -102,9 +102,9 @@ def _moving(subject: Subject) -> Iterator[Block]:
         data = f"[{','.join(m.for_page() for m in shown)}]"
         yield Motion(
             data,
-            "The drop: slowly through the first impact, then faster. Journal and ring in their true places, "
-            f"displacements and clearance magnified {factors}; the arrow is the bearing's force on the journal, "
-            "the lines on journal and ring turn with them. Balls are carried on by their mean orbit.",
+            "The drop: slowly through the first impact, then faster. Displacements and clearance are "
+            f"magnified {factors}; the arrow is the bearing's force on the journal, the lines on journal "
+            "and ring turn with them. Balls are carried on by their mean orbit.",
         )
     yield from (Lacking("The drop as a moving picture", why) for why in lacking)
 
@@ -115,9 +115,9 @@ def _orbits(subject: Subject) -> Picture:
     alt = f"Orbits of the journal in its clearance circle at {names}"
     return Picture(
         inline(partial(orbits, shown=shown), "orbits", alt),
-        "Orbit of the journal as it lies to its housing, all to one scale. Dashed: the clearance, about where "
-        "the housing is at the start; orange: the first impact; cross: the axis of the magnetic bearings; "
-        "dot: the end of the run.",
+        "Orbit of the journal as it lies to its housing, all to one scale. Dashed: the clearance, about "
+        "where the housing is at the start; orange: the first impact; cross: the axis of the magnetic "
+        "bearings; dot: the end of the run.",
     )
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from functools import partial
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Absent, Block, Picture, Table
-from touchdown.master.report.numbers import quantity
-from touchdown.master.report.subject import Subject, number
-from touchdown.master.report.svg import inline
+from touchdown.master.report.facts.numbers import quantity
+from touchdown.master.report.facts.subject import Subject, number
+from touchdown.master.report.page.blocks import Absent, Block, Picture, Table
+from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
 from touchdown.master.results.figures.stress import has_stress, stress
 from touchdown.master.results.spectra import BEGIN, LENGTH
@@ -64,8 +64,8 @@ def spectra(subject: Subject) -> list[Block]:
     shown = [a for a in subject.need_seats() if has_spectrum(subject.run.recording, a)]
     if not shown:
         raise Absent(
-            f"a spectrum takes {LENGTH:.3g} s from {BEGIN:g} s after the shutdown on, of a bearing whose ring "
-            "is recorded; this run has not that."
+            f"a spectrum takes {LENGTH:.3g} s from {BEGIN:g} s after the shutdown on, of a bearing whose "
+            "ring is recorded; this run has not that."
         )
     return [_spectrum(subject, a) for a in shown]
 

@@ -8,13 +8,13 @@ from functools import partial
 import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Absent, Block, Lacking, Picture
 from touchdown.master.report.chapters.charts import series
-from touchdown.master.report.numbers import listed, quantity
+from touchdown.master.report.facts.numbers import listed, quantity
+from touchdown.master.report.facts.series import Line
+from touchdown.master.report.facts.subject import COLOURS, Subject
+from touchdown.master.report.page.blocks import Absent, Block, Lacking, Picture
 from touchdown.master.report.pictures.contact_map import SECTORS, Presses, contact_map
-from touchdown.master.report.series import Line
-from touchdown.master.report.subject import COLOURS, Subject
-from touchdown.master.report.svg import inline
+from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.recording import NotRecordedError
 from touchdown.master.results.summary import is_heard, relative_orbit
 
@@ -75,8 +75,8 @@ def _map(subject: Subject) -> list[Block]:
         Picture(
             inline(partial(contact_map, bores=bores), "contact-map", alt),
             "Where the journal pressed on the bore, and when: the place as it stands in the housing, in "
-            f"{SECTORS} sectors, coloured by the largest force. A whirl is a slanting line, a pendulum swings "
-            "about the bottom.",
+            f"{SECTORS} sectors, coloured by the largest force. A whirl is a slanting line, a pendulum "
+            "swings about the bottom.",
         )
     ]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from touchdown.master.report.blocks import Absent, Block, Lacking, Table, Text
-from touchdown.master.report.numbers import digits, listed, quantity, share
-from touchdown.master.report.rating import Rated, rated
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.numbers import digits, listed, quantity, share
+from touchdown.master.report.facts.rating import Rated, rated
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Absent, Block, Lacking, Table, Text
 
 USUAL = 2.0  # s_0 that makers ask for under shocks
 MOST_DROPS = 1e6  # more are said to be more
@@ -75,8 +75,8 @@ def _words(found: dict[str, Rated]) -> list[Block]:
     if dented:
         said.append(
             Text(
-                f"At {listed(dented)} the races are pressed beyond 4.2 GPa: the limit is reached by the first "
-                "drop, and the race is dented."
+                f"At {listed(dented)} the races are pressed beyond 4.2 GPa: the first drop reaches the "
+                "limit, and dents them."
             )
         )
     close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL]
@@ -89,9 +89,9 @@ def _words(found: dict[str, Rated]) -> list[Block]:
     said.append(
         Text(
             "Both count this run only; a rotor that still turns at its end goes on. P₀ is the radial load "
-            "that would press the most loaded ball as hard as the run's largest load did, by the share that ISO 76 gives that "
-            "ball; the life taken sums turns of the ring over the life at each moment's load (Palmgren and "
-            "Miner)."
+            "that would press the most loaded ball as hard as the run's largest load did, by the share "
+            "that ISO 76 gives that ball. The life taken sums turns of the ring over the life at each "
+            "moment's recorded load (Palmgren and Miner)."
         )
     )
     return said

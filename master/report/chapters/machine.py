@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Block, Lacking, Picture, Table
-from touchdown.master.report.numbers import listed, quantity
+from touchdown.master.report.facts.numbers import listed, quantity
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Block, Lacking, Picture, Table
 from touchdown.master.report.pictures.machine import (
     Cylinder,
     Section,
@@ -17,8 +18,7 @@ from touchdown.master.report.pictures.machine import (
     sections,
     side_view,
 )
-from touchdown.master.report.subject import Subject
-from touchdown.master.report.svg import inline
+from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.stresses import stressed
 from touchdown.master.scene.scene import ComponentSpec
 from touchdown.master.studies.rotor.report import find_rotor
@@ -60,9 +60,9 @@ def _view(subject: Subject) -> tuple[SideView, str]:
         shaft = _shaft(subject, spec)
         return _flexible(subject, body, shaft), (
             f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "
-            f"{quantity(float(shaft.positions()[-1]), 'm')} long; blue: touchdown bearings, orange: magnetic "
-            "bearings, black tips: sensors, diamonds: point masses, purple triangles: unbalances. Where a "
-            "part states no size, its outline is a symbol."
+            f"{quantity(float(shaft.positions()[-1]), 'm')} long. Blue: touchdown bearings; orange: "
+            "magnetic bearings; black tips: sensors; diamonds: point masses; purple triangles: unbalances. "
+            "Where a part states no size, its outline is a symbol."
         )
     return _rigid(subject, body)
 
@@ -108,7 +108,7 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
     start, stop = min([-0.5 * width, *ends]) - wide, max([0.5 * width, *ends]) + wide
     shaft = Cylinder(start, stop - start, radius)
     return SideView([shaft, Cylinder(-0.5 * width, width, diameter)], placed), (
-        "The rotor is rigid and moves in one plane: all bearings act there, and are drawn beside each other. "
+        "The rotor is rigid and moves in one plane: all bearings act there, and are drawn side by side. "
         f"Its shape is not stated; drawn is a steel disc of its mass and polar inertia, "
         f"{quantity(diameter, 'm', 3)} by {quantity(width, 'm', 3)}."
     )
@@ -131,7 +131,7 @@ def _supports(subject: Subject, body: str, stations: dict[str, float]) -> Iterat
         if a.body == body and a.body_port in stations:
             kind = TOUCHDOWN if a in seats else MAGNETIC
             yield Support(stations[a.body_port], kind, a.bearing, *_size(subject, a, kind))
-    for sensor, end in subject.result.scene.sense:
+    for _, end in subject.result.scene.sense:
         component, _, port = end.partition(".")
         if component == body and port in stations:
             yield Support(stations[port], SENSOR, "sensor", 0.0, 0.0, 0.0)

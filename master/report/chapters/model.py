@@ -6,17 +6,17 @@ from collections.abc import Iterator
 
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.report.blocks import Block, Heading, Points, Table, Text
-from touchdown.master.report.numbers import quantity
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.numbers import quantity
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Block, Heading, Points, Table, Text
 from touchdown.master.scene.scene import ComponentSpec
 from touchdown.modelkit.model import ModelError
 
 FOREIGN = "an FMU of another's; its own documentation says what is in it"
 ALWAYS_LEFT_OUT = (
     "Axial motion and axial loads: all is in the radial planes of the bearings.",
-    "Temperature: friction's heat is counted in the energy ledger, and nothing warms up or expands.",
-    "Lubricant, wear and damage: laws of friction and contact are the same from the first drop to the last.",
+    "Temperature: friction's heat is counted in the energy ledger, but nothing warms up or expands.",
+    "Lubricant, wear and damage: the laws of friction and contact stay the same, drop after drop.",
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",
     "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs.",
@@ -24,8 +24,8 @@ ALWAYS_LEFT_OUT = (
 LEFT_OUT = {  # model: what it has not
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
     "simplified_caged": (
-        "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; a ball's inertia across "
-        "the race is left out.",
+        "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; and what a ball's "
+        "inertia does across the race.",
     ),
     "simplified_cageless": ("Inertia and weight of the balls of {name} across the race.",),
     "bushing": ("Anything that rolls in {name}: the bore is fixed in the housing.",),

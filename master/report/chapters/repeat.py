@@ -9,8 +9,8 @@ import shlex
 from importlib import metadata
 
 from touchdown.fmus.version import VERSION
-from touchdown.master.report.blocks import Block, Code, Download, Lacking, Table, Text
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Block, Code, Download, Lacking, Table, Text
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.scene import Scene
 

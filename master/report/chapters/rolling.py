@@ -8,16 +8,17 @@ import numpy as np
 
 from touchdown.bearings import rating
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Absent, Block, Lacking, Series, Table
 from touchdown.master.report.chapters.charts import series
-from touchdown.master.report.numbers import RPM, listed, quantity, share
-from touchdown.master.report.rating import Rated, rated
-from touchdown.master.report.series import Line
-from touchdown.master.report.subject import COLOURS, Subject
+from touchdown.master.report.facts.numbers import RPM, listed, quantity, share
+from touchdown.master.report.facts.rating import Rated, rated
+from touchdown.master.report.facts.series import Line
+from touchdown.master.report.facts.subject import COLOURS, Subject
+from touchdown.master.report.page.blocks import Absent, Block, Lacking, Series, Table
 
 RING, BALL = "ring.omega", "balls.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
 GPA = 1e-9
+RUN_UP = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
 
 
 def run_up(subject: Subject) -> list[Block]:
@@ -38,9 +39,8 @@ def run_up(subject: Subject) -> list[Block]:
     rows = [_synchronous(subject, a) for a in turning]
     return [
         series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
-        Table("Run-up of the inner rings", ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"],
-              rows, 1),
-    ]  # fmt: skip
+        Table("Run-up of the inner rings", RUN_UP, rows, 1),
+    ]
 
 
 def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 
 from touchdown.master.components.component import Variable
-from touchdown.master.report.blocks import Block, Folded, Table, Text
-from touchdown.master.report.numbers import RPM, digits, quantity
-from touchdown.master.report.origins import Origin, origin_of, run_origin
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.numbers import RPM, digits, quantity
+from touchdown.master.report.facts.origins import Origin, origin_of, run_origin
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Block, Folded, Table, Text
 from touchdown.modelkit.variables import Causality
 
 RUN_UNITS = {"duration": "s", "macro_step": "s", "tolerance": "m", "call_timeout": "s", "impact_step": "s"}
@@ -20,9 +20,9 @@ def settings(subject: Subject) -> list[Block]:
     """Tables by part: what is not the default first, the defaults folded."""
     blocks: list[Block] = [
         Text(
-            "Values as they were in force, also where a setting followed from others. The origin is the last "
-            "that had a say: the default of the model, the catalogue of bearings, the scene, or what was set "
-            "for this run (--set, --swap, or from Python)."
+            "Values as they were in force. The origin is the last that had a say: the default of the "
+            "model, the catalogue of bearings, the scene, or what was set for this run "
+            "(--set, --swap, or from Python)."
         ),
         _run(subject),
     ]

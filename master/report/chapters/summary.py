@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from touchdown.bearings import rating
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
-from touchdown.master.report.numbers import RPM, digits, listed, quantity, share
-from touchdown.master.report.rating import Rated, rated
-from touchdown.master.report.subject import FIRST_CONTACT, Subject, number
+from touchdown.master.report.facts.numbers import RPM, digits, listed, quantity, share
+from touchdown.master.report.facts.rating import Rated, rated
+from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
+from touchdown.master.report.page.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
 from touchdown.master.results.whirl.evidence import evidence
 from touchdown.master.results.whirl.unbalance import unbalanced
 

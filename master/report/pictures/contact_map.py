@@ -25,7 +25,7 @@ class Presses:
     angle: np.ndarray  # rad, of the place, counter-clockwise from +x
     force: np.ndarray  # N
 
-    def largest(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def largest(self) -> tuple[np.ndarray, np.ndarray, np.ma.MaskedArray]:
         """Edges of time (s) and of angle (deg, 0 at the bottom), and the largest force in each field.
 
         The field is (SECTORS, MOMENTS), masked where nothing pressed.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from touchdown.master.report.series import Chart
+from touchdown.master.report.facts.series import Chart
 from touchdown.master.results.figures.style import (
     BLACK,
     BLUE,

@@ -66,5 +66,5 @@ def _variable(
 
 
 def _connection(*parts: Any) -> Connection:
-    *ends, scale = parts
-    return Connection(*ends, scale and tuple(scale))
+    source, output, target, given, scale = parts
+    return Connection(source, output, target, given, scale and (scale[0], scale[1]))

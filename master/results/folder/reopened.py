@@ -44,7 +44,7 @@ def reopened(folder: Path) -> Result:
 
 
 def _values(folder: Path, name: str, lacking: str) -> dict[str, Any]:
-    """Of a file of the folder. Raises TouchdownError where it cannot be read; `lacking`: why it may miss."""
+    """Of a file of the folder; `lacking`: why there may be none. Raises TouchdownError."""
     try:
         values = json.loads((folder / name).read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -14,10 +14,10 @@ from markupsafe import Markup, escape
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import replacing, writing_to
-from touchdown.master.report.blocks import Section
 from touchdown.master.report.chapters.summary import headline
 from touchdown.master.report.contents import CHAPTERS, section
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Section
 from touchdown.master.results.result import Result
 
 HERE = Path(__file__).parent

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from io import StringIO
+from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib as mpl
@@ -15,7 +16,7 @@ from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORA
 SVG = "http://www.w3.org/2000/svg"
 LINK = "http://www.w3.org/1999/xlink"
 FONT, WIDE_FONT = 9.5, 12.5  # pt
-STYLE = {
+STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "touchdown",  # the same picture has the same names inside
     "axes.titlesize": "medium",

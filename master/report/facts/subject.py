@@ -11,9 +11,9 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import zero_of
-from touchdown.master.report.blocks import Absent
-from touchdown.master.report.numbers import quantity
-from touchdown.master.report.series import Chart, Line, chosen_rows
+from touchdown.master.report.facts.numbers import quantity
+from touchdown.master.report.facts.series import Chart, Line, chosen_rows
+from touchdown.master.report.page.blocks import Absent
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import seat_name, touchdown_seats

@@ -78,9 +78,10 @@ def chosen_rows(time: np.ndarray, columns: Sequence[np.ndarray], first: float | 
 
 
 def _extremes(values: np.ndarray, size: int) -> list[np.ndarray]:
-    """Rows of the smallest and the largest value in each stretch of `size` rows, the rest left to its end."""
+    """Rows of the smallest and the largest value in each stretch of `size` rows, the last one longer."""
     count = len(values) // size
-    blocks = np.nan_to_num(values[: count * size]).reshape(count, size)
-    begins = size * np.arange(count)
-    tail = np.arange(count * size, len(values))
-    return [begins + blocks.argmin(axis=1), begins + blocks.argmax(axis=1), tail[:: max(len(tail), 1)]]
+    known = np.nan_to_num(values)
+    blocks = known[: count * size].reshape(count, size)
+    begins, tail = size * np.arange(count), (count - 1) * size
+    last = np.array([tail + known[tail:].argmin(), tail + known[tail:].argmax()])
+    return [begins + blocks.argmin(axis=1), begins + blocks.argmax(axis=1), last]

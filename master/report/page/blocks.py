@@ -1,4 +1,4 @@
-"""What a page is made of. A chapter is a list of blocks; `templates/blocks.html` has how each looks."""
+"""What a page is made of. A chapter is a list of blocks; `templates/blocks.html` beside has how each looks."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from touchdown.master.report.series import Chart
+from touchdown.master.report.facts.series import Chart
 
 
 class Absent(Exception):  # noqa: N818 - no error: a chapter that a run cannot give

@@ -33,8 +33,8 @@ def browser() -> str:
         if found:
             return found
     raise TouchdownError(
-        f"a PDF is printed by Chromium or a browser of its kind, and none of {', '.join(BROWSERS)} is on the "
-        "PATH; install one, or open the page in any browser and print it"
+        f"a PDF is printed by Chromium or a browser of its kind, and none of {', '.join(BROWSERS)} is on "
+        "the PATH; install one, or open the page in any browser and print it"
     )
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from touchdown.bearings import rating
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.origins import Origin, catalogued, origin_of
-from touchdown.master.report.subject import Subject
+from touchdown.master.report.facts.origins import Origin, catalogued, origin_of
+from touchdown.master.report.facts.subject import Subject
 
 LOAD, RING = "balls.force", "ring.omega"
 STATIC = "rolling.static_rating"
