@@ -39,7 +39,7 @@ PATH = re.compile(
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
-    "Use": ("results", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
+    "Use": ("results", "reports", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
     "Background": ("physics", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),

@@ -23,17 +23,16 @@ def report(run: Result | PathLike, path: PathLike | None = None, *, pdf: bool = 
     >>> [path.name for path in touchdown.report(result, "drop.html")]
     ['drop.html']
     """
+    # matplotlib, which these import, is slow to come
     from touchdown.master.report.page.pdf import browser, print_page
-    from touchdown.master.report.page.writing import (  # matplotlib is slow to import
-        PAGE,
-        report_on,
-        write_page,
-    )
+    from touchdown.master.report.page.writing import PAGE, make_room, report_on, write_page
 
     if pdf:
         browser()  # first of all: a page takes seconds
     result = run if isinstance(run, Result) else open_result(run)
-    page = write_page(report_on(result), Path(path) if path else result.folder / PAGE)
+    page = Path(path) if path else result.folder / PAGE
+    make_room(page)
+    write_page(report_on(result), page)
     return [page, print_page(page, page.with_suffix(".pdf"))] if pdf else [page]
 
 

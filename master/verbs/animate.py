@@ -9,8 +9,8 @@ from touchdown.master.verbs.arguments import add_output, add_quiet
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
-    "touchdown animate runs/disk-caged-simplified -o drop.gif",
-    "touchdown animate runs/disk-caged-simplified -o drop.mp4",
+    "touchdown animate runs/disk-caged-simplified -o runs/drop.gif",
+    "touchdown animate runs/disk-caged-simplified -o runs/drop.mp4",
 )
 
 

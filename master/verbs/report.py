@@ -10,7 +10,7 @@ from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
     "touchdown report runs/disk-caged-simplified",
-    "touchdown report runs/disk-caged-simplified -o drop.html --pdf",
+    "touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf",
 )
 
 

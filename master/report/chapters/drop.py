@@ -9,11 +9,11 @@ import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.report.animation.motion import motions
-from touchdown.master.report.chapters.charts import series
 from touchdown.master.report.facts.numbers import digits, listed, quantity, share, speed
 from touchdown.master.report.facts.series import Line
 from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
 from touchdown.master.report.page.blocks import Absent, Block, Lacking, Motion, Picture, Series, Table
+from touchdown.master.report.pictures.charts import series
 from touchdown.master.report.pictures.orbit import Orbit, orbits
 from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.ending import housing_port

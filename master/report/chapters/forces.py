@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.chapters.charts import series
 from touchdown.master.report.facts.numbers import listed, quantity
 from touchdown.master.report.facts.series import Line
 from touchdown.master.report.facts.subject import COLOURS, Subject
 from touchdown.master.report.page.blocks import Absent, Block, Lacking, Picture
+from touchdown.master.report.pictures.charts import series
 from touchdown.master.report.pictures.contact_map import SECTORS, Presses, contact_map
 from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.recording import NotRecordedError

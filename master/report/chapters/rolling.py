@@ -8,12 +8,12 @@ import numpy as np
 
 from touchdown.bearings import rating
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.chapters.charts import series
 from touchdown.master.report.facts.numbers import RPM, listed, quantity, share
 from touchdown.master.report.facts.rating import Rated, rated
 from touchdown.master.report.facts.series import Line
 from touchdown.master.report.facts.subject import COLOURS, Subject
 from touchdown.master.report.page.blocks import Absent, Block, Lacking, Series, Table
+from touchdown.master.report.pictures.charts import series
 
 RING, BALL = "ring.omega", "balls.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles

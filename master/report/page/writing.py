@@ -48,13 +48,17 @@ def report_on(result: Result) -> Page:
     )
 
 
+def make_room(path: Path) -> None:
+    """Make the folder of a page at `path`. Raises TouchdownError where there can be no page."""
+    if path.is_dir():
+        raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
+    with writing_to(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+
+
 def write_page(page: Page, path: Path) -> Path:
     """Write a page whole; returns its path. Raises TouchdownError where it cannot be written."""
     text = rendered(page)
-    with writing_to(path.parent):
-        path.parent.mkdir(parents=True, exist_ok=True)
-    if path.is_dir():
-        raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
     with writing_to(path.parent), replacing(path) as part:
         part.write_text(text, encoding="utf-8")
     return path
