@@ -40,8 +40,8 @@ PATH = re.compile(
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
     "Use": (
-        *("own-machine", "bearings", "studies", "results", "systems", "elsewhere", "native", "rotors"),
-        *("coupling", "bonds", "api"),
+        *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere"),
+        *("native", "rotors", "coupling", "bonds", "api"),
     ),
     "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
