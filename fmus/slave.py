@@ -50,6 +50,7 @@ class ModelSlave(Fmi2Slave):
         self._instance = Instance(self.model)
         self._identity = guid(self.model).encode()
         self._stores = {Scalar.REAL: self._instance.words, Scalar.INTEGER: self._instance.words.view("i8")}
+        self._tunable = {s.index for s in self._instance.slots if s.variable.spec.tunable}
         self._known: dict[tuple[object, ...], np.ndarray] = {}  # vectors of value references checked before
         self._last: dict[tuple[str, str], tuple[list[int], np.ndarray]] = {}
         self._phase = NEW
@@ -153,13 +154,14 @@ class ModelSlave(Fmi2Slave):
     def _set(self, kind: Scalar, vrs: list[int], values: list[Any]) -> None:
         places = self._places("set", kind, vrs)
         if places is None:
-            causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
-            wrong = self._others(kind, vrs, causes)
+            wrong = self._others(kind, vrs, AT_START, self._phase >= STEPPING)
             if wrong:
                 self._raise(refusals.SET_LATE.format(names=wrong, kind=kind))
             places = self._note("set", kind, vrs)
         self._stores[kind][places] = values
         self._stale = True
+        if self._phase >= STEPPING and not self._tunable.isdisjoint(vrs):
+            self._instance.tune()
 
     def _get(self, kind: Scalar, vrs: list[int]) -> list[Any]:
         places = self._places("get", kind, vrs)
@@ -205,15 +207,22 @@ class ModelSlave(Fmi2Slave):
         self._known.clear()
         self._last.clear()
 
-    def _others(self, kind: Scalar, vrs: list[int], causes: tuple[Causality, ...]) -> str:
-        """Names of the variables among `vrs` that are not of this kind and these causalities."""
+    def _others(
+        self, kind: Scalar, vrs: list[int], causes: tuple[Causality, ...], late: bool = False
+    ) -> str:
+        """Names of the variables among `vrs` that are not of this kind and these causalities.
+
+        late: nor may parameters be that are not tunable.
+        """
         slots = {s.index: s for s in self._instance.slots}
         wrong: list[str] = []
         for i in sorted({vr % 2**32 for vr in vrs}):  # unsigned, as FMI has them
             slot = slots.get(i)
             if slot is None:
                 wrong.append(refusals.UNKNOWN.format(number=i))
-            elif slot.variable.spec.kind is not kind or slot.causality not in causes:
+                continue
+            fixed = late and slot.causality is Causality.PARAMETER and i not in self._tunable
+            if slot.variable.spec.kind is not kind or slot.causality not in causes or fixed:
                 wrong.append(slot.variable.name)
         return ", ".join(wrong)
 
