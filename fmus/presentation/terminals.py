@@ -6,7 +6,7 @@ a bearing with a journal by one line instead of thirty: members of one name belo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from touchdown.fmus.description import causality
@@ -65,7 +65,7 @@ def _heights(count: int) -> Iterator[float]:
     return (SIZE - (2.0 * i + 1.0) * SIZE / count for i in range(count))
 
 
-def _corners(height: float, half: float) -> Mapping[str, str]:
+def _corners(height: float, half: float) -> dict[str, str]:
     """A square: the whole drawing, or a port at the left edge of it at some height."""
     middle = 0.0 if half == SIZE else -SIZE
     return {

@@ -1,9 +1,9 @@
-"""Experiments that FMUs bring along, by the layered standard FMI-LS-REF: run, and held against their results.
+"""Experiments that FMUs bring along, by the layered standard FMI-LS-REF: run, and held to their results.
 
-A manifest, extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml, names files of experiments. Each says from
-when to when and in which steps to run, from which parameters (SSP's parameter sets), with which inputs and
-to which results (tables with a column `time`; between its rows inputs are linear). A result may be off by
-the experiment's tolerance times the largest result in its unit, as components of a force belong together.
+A manifest, extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml, names files of experiments. Each says
+from when to when and in which steps to run, from which parameters (SSP's parameter sets), with which inputs
+and to which results (tables over time, of which inputs are linear between rows). A result may be off by the
+experiment's tolerance times the largest result in its unit: components of a force belong together.
 """
 
 from __future__ import annotations
@@ -83,9 +83,10 @@ class Deviation:
     def text(self) -> str:
         """For people."""
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+        off = abs(self.found - self.expected)
         return (
-            f"{self.name} is {self.found:.6g}{unit} at t = {self.time:.6g} s, not {self.expected:.6g}{unit}: "
-            f"off by {abs(self.found - self.expected):.2g}{unit}, {self.share:.2g} of the largest"
+            f"{self.name} is {self.found:.6g}{unit} at t = {self.time:.6g} s, not {self.expected:.6g}{unit}; "
+            f"off by {off:.2g}{unit}, {self.share:.2g} of the largest"
         )
 
 
@@ -197,9 +198,7 @@ def _scales(variables: Sequence[Variable], wanted: np.ndarray) -> np.ndarray:
 
 
 def _shares(off: np.ndarray, scales: np.ndarray) -> np.ndarray:
-    """Deviations (n, m) over their scales (m,): none is none; where nothing was expected, or no number came,
-    without end.
-    """
+    """Deviations (n, m) over their scales (m,); infinite where nothing was expected, or no number came."""
     beyond = np.where(off == 0.0, 0.0, math.inf)
     shares = np.divide(off, scales, out=np.array(beyond), where=(scales > 0.0) & np.isfinite(off))
     return np.asarray(shares)
