@@ -152,7 +152,7 @@ def _stored(instance: Any, slot: Slot) -> float:
 
 
 def _written(value: float) -> str:
-    return f"{value:.{DIGITS}g}"
+    return f"{value + 0.0:.{DIGITS}g}"  # no -0
 
 
 def _csv(rows: Sequence[Row]) -> bytes:

@@ -85,7 +85,8 @@ class Deviation:
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
         off = abs(self.found - self.expected)
         return (
-            f"{self.name} is {self.found:.6g}{unit} at t = {self.time:.6g} s, not {self.expected:.6g}{unit}; "
+            f"{self.name} is {self.found:.6g}{unit} at t = {self.time:.6g} s, "
+            f"not {self.expected:.6g}{unit}; "
             f"off by {off:.2g}{unit}, {self.share:.2g} of the largest"
         )
 
