@@ -83,7 +83,7 @@ def test_other_start_values_have_other_results(tmp_path: Path):
 
 
 def test_what_cannot_start_comes_without_an_experiment(tmp_path: Path):
-    changed = recipe("bushing").starting_from({"friction.static": 0.05})  # below the dynamic one
+    changed = recipe("bushing").starting_from({"clearance": -1.0})
     with zipfile.ZipFile(build(changed, tmp_path)) as archive:
         held = {name.rpartition("/")[2] for name in archive.namelist() if name.startswith(FOLDER)}
         manifest = etree.parse(io.BytesIO(archive.read(f"{FOLDER}/fmi-ls-manifest.xml"))).getroot()

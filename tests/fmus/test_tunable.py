@@ -80,7 +80,7 @@ def test_a_fixed_parameter_beside_a_tunable_one_is_refused(folder: Path):
 
 
 def held(times: list[float | None]) -> list[float]:
-    """Force (N) of a magnetic bearing at each step, its shutdown set before those where a time (s) stands."""
+    """Force (N) of a magnetic bearing at each step; its shutdown is set before those with a time (s)."""
     instance = Instance(recipe("amb").model)
     at = {s.variable.name: s.index for s in instance.slots}
     instance.reals[at["journal.y"]] = -1e-5
