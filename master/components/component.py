@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
@@ -244,17 +245,14 @@ def value_of(component: Component, variable: Variable, given: object) -> float:
     if not variable.choices:
         return to_si(given, variable.unit, name)
     text = {True: "on", False: "off"}[given] if isinstance(given, bool) else given
-    if not isinstance(text, str):
-        return to_si(text, variable.unit, name)
     by_word = {word.casefold(): number for word, number in variable.choices.items()}
-    found = by_word.get(text.strip().casefold())
-    if found is not None:
-        return float(found)
-    try:
-        return to_si(text, variable.unit, name)
-    except TouchdownError:
-        known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())
-        raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}") from None
+    word = text.strip().casefold() if isinstance(text, str) else ""
+    with suppress(TouchdownError):
+        value = float(by_word[word]) if word in by_word else to_si(text, variable.unit, name)
+        if value in by_word.values():
+            return value
+    known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())
+    raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}")
 
 
 def check_value(component: Component, variable: Variable, value: float) -> None:
