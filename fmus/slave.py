@@ -152,15 +152,19 @@ class ModelSlave(Fmi2Slave):
         return []
 
     def _set(self, kind: Scalar, vrs: list[int], values: list[Any]) -> None:
-        places = self._places("set", kind, vrs)
+        places, tuning = self._places("set", kind, vrs), False
         if places is None:
-            wrong = self._others(kind, vrs, AT_START, self._phase >= STEPPING)
+            late = self._phase >= STEPPING
+            wrong = self._others(kind, vrs, AT_START, late)
             if wrong:
                 self._raise(refusals.SET_LATE.format(names=wrong, kind=kind))
-            places = self._note("set", kind, vrs)
+            tuning = late and not self._tunable.isdisjoint(vrs)
+            places = np.array(vrs, dtype=np.intp)
+            if not tuning:  # which is rare, and looked at each time
+                self._known[("set", kind, *vrs)] = places
         self._stores[kind][places] = values
         self._stale = True
-        if self._phase >= STEPPING and not self._tunable.isdisjoint(vrs):
+        if tuning:
             self._instance.tune()
 
     def _get(self, kind: Scalar, vrs: list[int]) -> list[Any]:
@@ -169,7 +173,7 @@ class ModelSlave(Fmi2Slave):
             wrong = self._others(kind, vrs, READABLE)
             if wrong:
                 self._raise(refusals.UNREADABLE.format(names=wrong, kind=kind))
-            places = self._note("get", kind, vrs)
+            places = self._known[("get", kind, *vrs)] = np.array(vrs, dtype=np.intp)
         if self._phase < STEPPING:
             self._compute_early(self._others(kind, vrs, AT_START))
         return self._stores[kind][places].tolist()
@@ -194,12 +198,6 @@ class ModelSlave(Fmi2Slave):
         places = self._known.get((access, kind, *vrs))
         if places is not None:
             self._last[access, kind] = (list(vrs), places)
-        return places
-
-    def _note(self, access: str, kind: Scalar, vrs: list[int]) -> np.ndarray:
-        """Keep a vector that was checked."""
-        places = np.array(vrs, dtype=np.intp)
-        self._known[(access, kind, *vrs)] = places
         return places
 
     def _forget(self) -> None:

@@ -26,7 +26,7 @@ SCALES: dict[str, tuple[float, str]] = {
 }  # fmt: skip
 
 
-# units that values are shown in, from small to large; the first of all is for what is 0 at the start
+# units that values are shown in, from small to large; of what is 0 at the start, where it is not the first
 DISPLAYED: dict[str, tuple[str, ...]] = {
     "m": ("um", "mm", "m"),
     "m/s": ("mm/s", "m/s"),

@@ -239,16 +239,16 @@ class Component(ABC):
 def value_of(component: Component, variable: Variable, given: object) -> float:
     """`given`, a number, or text with a unit or one of the variable's choices, in SI.
 
-    True and false are the choices "on" and "off". Raises TouchdownError where it cannot be read.
+    "on" may be true, and "off" false. Raises TouchdownError where it cannot be read.
     """
     name = f"{component.name}.{variable.name}"
     if not variable.choices:
         return to_si(given, variable.unit, name)
-    text = {True: "on", False: "off"}[given] if isinstance(given, bool) else given
     by_word = {word.casefold(): number for word, number in variable.choices.items()}
-    word = text.strip().casefold() if isinstance(text, str) else ""
+    word = str(given).strip().casefold()
+    word = word if word in by_word else {"true": "on", "false": "off"}.get(word, word)
     with suppress(TouchdownError):
-        value = float(by_word[word]) if word in by_word else to_si(text, variable.unit, name)
+        value = float(by_word[word]) if word in by_word else to_si(given, variable.unit, name)
         if value in by_word.values():
             return value
     known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import product
@@ -137,7 +138,7 @@ def _choices(v: Any) -> dict[str, int]:
     """Words of an enumeration, and the numbers they stand for."""
     items = v.declaredType.items if v.declaredType else ()
     numbers = {item.name: _number(item.value) for item in items if item.name}
-    return {word: int(number) for word, number in numbers.items() if number is not None}
+    return {word: int(n) for word, n in numbers.items() if n is not None and math.isfinite(n)}
 
 
 def _number(text: object) -> float | None:

@@ -94,9 +94,7 @@ def _try_experiment(experiment: Experiment, name: str, stepping: Stepping, repor
         component.close()
     allowed = f"{experiment.tolerance:g} is allowed"
     if off.share <= experiment.tolerance:
-        unit = off.unit if off.unit not in ("", "1") else off.name
-        far = f"at most {off.share:.2g} of the largest {unit} off its results, in {off.name}"
-        report.lines.append(f"{what}: {far}; {allowed}")
+        report.lines.append(f"{what}: as in its results; {off.distance}; {allowed}")
     else:
         report.problems.append(f"{what}: {off.text}; {allowed}")
 

@@ -80,15 +80,20 @@ class Deviation:
     share: float  # of the largest result in that unit
 
     @property
-    def text(self) -> str:
-        """For people."""
-        unit = f" {self.unit}" if self.unit not in ("", "1") else ""
+    def distance(self) -> str:
+        """How far, for people."""
         off = abs(self.found - self.expected)
-        return (
-            f"{self.name} is {self.found:.6g}{unit} at t = {self.time:.6g} s, "
-            f"not {self.expected:.6g}{unit}; "
-            f"off by {off:.2g}{unit}, {self.share:.2g} of the largest"
-        )
+        return f"{self.name} is off most, by {off:.2g}{self._unit}, {self.share:.2g} of the largest"
+
+    @property
+    def text(self) -> str:
+        """What came instead, for people."""
+        found, expected = (f"{value:.6g}{self._unit}" for value in (self.found, self.expected))
+        return f"{self.name} is {found} at t = {self.time:.6g} s, not {expected}; {self.distance}"
+
+    @property
+    def _unit(self) -> str:
+        return f" {self.unit}" if self.unit not in ("", "1") else ""
 
 
 # -- reading them ------------------------------------------------------------------------------------------

@@ -31,6 +31,7 @@ def bearing() -> Component:
         ("slip", "on", 1.0),
         ("slip", True, 1.0),
         ("slip", False, 0.0),
+        ("slip", "true", 1.0),
         ("balls.hertz", "printed", 1.0),
     ],
 )
