@@ -55,7 +55,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("variables", "units", "status", "refusals"),
     ),
     "fmus": (
-        *("native", "build", "presentation", "recipes", "scripts", "slave", "starts", "description"),
+        *("native", "build", "presentation", "recipes", "scripts", "slave", "variants", "description"),
         *("python", "refusals", "version"),
     ),
 }
