@@ -48,7 +48,7 @@ LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
     "Learn": ("start", "first-drop", "own-bearing", "wanted-error", "glossary"),
     "Use": ("results", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
-    "Background": ("physics", "stability", "speed", "peers"),
+    "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),
 }

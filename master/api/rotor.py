@@ -8,18 +8,20 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
+from touchdown.master.studies.rotor.importing import import_rotor
 from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
 from touchdown.modelkit.kernel.cache_folder import kept, put
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written
+from touchdown.rotor.imports.places import Places
 from touchdown.rotor.portrait import Portrait
 
 if TYPE_CHECKING:
@@ -59,7 +61,7 @@ class Rotor(Shaft):
     """
 
     def __post_init__(self) -> None:
-        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at"):
+        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at", "supports"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
 
     @classmethod
@@ -69,6 +71,30 @@ class Rotor(Shaft):
         Raises TouchdownError where there is no such rotor, or its file has a mistake.
         """
         return cls._of(find_rotor(os.fspath(name_or_path)))
+
+    @classmethod
+    def imported(
+        cls,
+        source: Any,
+        at: Places | None = None,
+        amb: Places | None = None,
+        sensors: Places | None = None,
+        speed: float | None = None,
+    ) -> Rotor:
+        """A rotor of others': the path of a file that ROSS saved (.toml, .json) or of a table of sections
+        (.csv), or a `ross.Rotor`; its `about` says what is left out or otherwise.
+
+        at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
+        only motion is asked for; each a node (from 1), or text such as "120 mm" from node 1, by name.
+        speed: rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
+
+        >>> with open("pump.csv", "w") as file:
+        ...     print("length [mm], outer diameter [mm], material\\n300, 30, steel", file=file)
+        >>> rotor = touchdown.Rotor.imported("pump.csv", at={"A": "20 mm", "B": "280 mm"})
+        >>> rotor
+        <Rotor pump: 12 elements, 13 nodes, 1.6604 kg, 0.3 m, stations: A at node 2, B at node 12>
+        """
+        return cls._of(import_rotor(source, at, amb, sensors, speed))
 
     @classmethod
     def _of(cls, shaft: Shaft) -> Rotor:

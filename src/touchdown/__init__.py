@@ -12,7 +12,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
+    from touchdown.master.api.machines import catalogue
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Unbalance
+    from touchdown.rotor.beams.element import Element
+    from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
 
     __version__: str
 
@@ -38,12 +41,15 @@ __all__ = [
     "Scheme",
     "Station",
     "Stepper",
+    "Support",
     "TouchdownError",
     "Unbalance",
     "__version__",
     "build",
+    "catalogue",
     "check",
     "compare",
+    "figure",
     "load",
     "register_scheme",
     "run",
@@ -53,8 +59,10 @@ __all__ = [
 ]
 
 _HOMES = {
+    "figure": "master.api.figures",
     "build": "master.api.fmus",
     "check": "master.api.fmus",
+    "catalogue": "master.api.machines",
     "Rotor": "master.api.rotor",
     "run": "master.api.run",
     "load": "master.api.scenes",
@@ -69,9 +77,10 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Element": "rotor.beams.shaft",
+    "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",
+    "Support": "rotor.beams.shaft",
     "Unbalance": "rotor.beams.shaft",
 }
 

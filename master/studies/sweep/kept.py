@@ -18,7 +18,7 @@ from typing import Any, cast
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.files import replace_text
-from touchdown.master.components.library import locate
+from touchdown.master.components.library.sources import locate
 from touchdown.master.results.folder import MARK, SUMMARY
 from touchdown.master.results.result import RECORDING
 from touchdown.master.scene.scene import Scene
