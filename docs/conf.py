@@ -13,7 +13,6 @@ html_theme = "furo"
 html_title = f"touchdown-cosim {VERSION}"
 default_role = "code"  # `name` in a docstring
 myst_heading_anchors = 3
-myst_enable_extensions = ["dollarmath"]
 nb_execution_mode = "force"
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
