@@ -9,12 +9,11 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from tqdm.auto import tqdm
-
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.common.progress import bars
 from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
@@ -140,7 +139,7 @@ class _Bar:
     """Progress over simulated time, with the run's speed and the ledger's residual over turnover."""
 
     def __init__(self, scene: Scene, shown: bool) -> None:
-        self._bar = tqdm(
+        self._bar = bars()(
             total=scene.run.duration,
             disable=not shown,
             # tqdm's widget for notebooks stands in for exactly {bar}
