@@ -13,6 +13,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.processes.pool import TaskOutcome, run_all
+from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.results.folder import claimed
 from touchdown.master.results.result import RECORDING
@@ -170,6 +171,7 @@ def _run(
 
         ended = run_on_cluster(work, tasks, running.cluster, done, heard)
     else:
+        _make_ready(tasks)
         ended = run_all(work, tasks, running.jobs, done, heard)
     for place, outcome in enumerate(ended):
         if outcome.ended is Ended.INTERRUPTED:
@@ -179,8 +181,15 @@ def _run(
 
 def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
     """A member for each task, `jobs` at a time in processes of their own; those not run say why."""
+    _make_ready(tasks)
     outcomes = run_all(carrying(_run_task), tasks, jobs, done)
     return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
+
+
+def _make_ready(tasks: Sequence[Task]) -> None:
+    """Have compiled what the tasks' processes would each compile."""
+    if tasks:
+        compile_ahead(tasks[0].scene, tasks[0].execution.in_process)
 
 
 def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:
