@@ -223,11 +223,13 @@ def read_definition(folder: Path) -> Definition:
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
         return Definition(**{**given, "columns": tuple(columns), "part": tuple(given["part"])})
     except FileNotFoundError:
-        raise TouchdownError(f"{folder} holds no sweep: there is no {FILE}") from None
+        raise TouchdownError(f"there is no sweep in {folder}: it has no {FILE}") from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     except (ValueError, TypeError, KeyError):
-        raise TouchdownError(f"{path} cannot be read; it is of another version, or damaged") from None
+        raise TouchdownError(
+            f"{path} cannot be read; it is of another version, or damaged. Take another folder"
+        ) from None
 
 
 def differences(there: Definition, here: Definition) -> list[str]:
