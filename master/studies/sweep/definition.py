@@ -18,7 +18,7 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.files import replace_text
 from touchdown.master.components.component import SETTABLE
-from touchdown.master.components.library import locate
+from touchdown.master.components.library.sources import locate
 from touchdown.master.coupling.assembly import checked
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.coupling.system import System
