@@ -27,7 +27,7 @@ from touchdown.master.studies.sweep.definition import (
     refuse_other,
 )
 from touchdown.master.studies.sweep.design import Design
-from touchdown.master.studies.sweep.journal import FINAL, Journal, Member, cut_torn_line, read_journal
+from touchdown.master.studies.sweep.journal import Journal, Member, cut_torn_line, read_journal
 from touchdown.master.studies.sweep.results import Sweep, write_results
 
 UNDER_WAY = ".under-way"  # where members run whose recordings are not kept
@@ -74,7 +74,7 @@ def sweep(
     """Run `scene` at every point of `design`; done() after each member.
 
     Each member that ends is a line of members.jsonl in `folder`; at the end all stand in sweep.nc and
-    sweep.csv. Members that `folder` has already are `kept`, not run again, unless their processes died.
+    sweep.csv. Members that `folder` has already are `kept`, not run again, unless they failed.
     A member that fails says so and the others go on. After Ctrl-C those that have not run are INTERRUPTED.
     One sweep at a time has the folder. Raises TouchdownError where a setting cannot be, and where `folder`
     holds another sweep. A script that calls it needs `if __name__ == "__main__":`, as all do that start
@@ -116,9 +116,9 @@ def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
 
 def _is_there(member: Member | None, kept_in: Path | None) -> bool:
     """Whether a member need not be run; its recording must be `kept_in` a folder, if in any."""
-    if member is None or member.ended not in FINAL:
+    if member is None or member.failed:  # of what may have changed: a full disk
         return False
-    return kept_in is None or bool(member.failed) or (kept_in / RECORDING).is_file()
+    return kept_in is None or (kept_in / RECORDING).is_file()
 
 
 @dataclass(frozen=True)
