@@ -176,7 +176,7 @@ def test_all_modes_may_be_asked_for(tmp_path: Path) -> None:
     found = report(str(path), tmp_path, speed=0.0, modes=0)
     assert "bending 16" in found.text
     assert "B = same" in found.text
-    assert [p.name for p in found.pictures] == ["campbell.png", "critical.png", "modes.png", "rest.png"]
+    assert [p.name for p in found.pictures] == ["campbell.png", "modes.png", "critical.png", "rest.png"]
 
 
 @pytest.mark.parametrize(
