@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from touchdown.master.verbs import run, scenes
+from touchdown.master.verbs import animate, report, run, scenes
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
+from touchdown.master.verbs.machines import catalogue, new
 from touchdown.master.verbs.studies import (
     advise,
     compare,
     compare_bearings,
     compare_modes,
     compare_rotors,
+    figure,
+    merge,
     stability,
     sweep,
     verdict,
@@ -19,9 +22,14 @@ from touchdown.master.verbs.verb import Verb
 
 ALL: tuple[Verb, ...] = (
     scenes.VERB,
+    catalogue.VERB,
+    new.VERB,
     run.VERB,
+    report.VERB,
+    animate.VERB,
     advise.VERB,
     sweep.VERB,
+    merge.VERB,
     verdict.VERB,
     rotor.VERB,
     import_rotor.VERB,
@@ -29,6 +37,7 @@ ALL: tuple[Verb, ...] = (
     compare_bearings.VERB,
     compare_rotors.VERB,
     compare_modes.VERB,
+    figure.VERB,
     stability.VERB,
     build.VERB,
     ssp.VERB,

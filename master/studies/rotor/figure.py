@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.shaft import PointMass, Shaft
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
 
@@ -23,7 +23,7 @@ MM = 1e3
 MOST = 6  # modes drawn
 COLOURS = (BLACK, GREY, BLUE, ORANGE, GREEN, PURPLE)  # of the modes
 AXIS = "position along the rotor's axis [mm]"
-CORE, SLEEVE, EDGE = "#c8d3dc", "#ece3d0", "#7f8a93"
+CORE, SLEEVE, DISC, EDGE = "#c8d3dc", "#ece3d0", "#b3c6b1", "#7f8a93"
 WIDTH = 9.0  # inch, of a picture with side views
 BESIDE = 1.5  # inch of it that labels take
 BEYOND = 1.6  # of the largest radius: a side view's half height
@@ -182,6 +182,7 @@ class _Window:
 def _window(shaft: Shaft) -> _Window:
     length = MM * float(shaft.positions()[-1])
     radius = 0.5 * MM * max(e.widest for e in shaft.elements)
+    radius = max(radius, *(0.5 * MM * _disc(point, shaft)[0] for point in shaft.points), 0.0)
     half = max(0.52 * length, BEYOND * radius / HIGHEST)
     reach = max(BEYOND * radius, FLATTEST * half)
     return _Window(0.5 * length - half, 0.5 * length + half, reach)
@@ -194,7 +195,7 @@ def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
 
 
 def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
-    """Outlines of the elements in mm, to scale; masses at nodes as diamonds, places by name."""
+    """Outlines of the elements and discs in mm, to scale; places by name."""
     position = MM * shaft.positions()
     for at, e in zip(position, shaft.elements, strict=False):
         for layer in reversed(e.layers):
@@ -204,8 +205,7 @@ def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
         _cone(axes, at, e, 0, CORE)
         if any(e.diameters(end)[1] for end in (0.0, 1.0)):
             _cone(axes, at, e, 1, "white")
-    for point in shaft.points:
-        axes.plot(position[point.node - 1], 0.0, "D", color=EDGE, ms=5)
+    _draw_points(axes, shaft)
     axes.axhline(0.0, color=EDGE, lw=0.5, ls="-.")
     axes.set_ylabel("radius [mm]")
     if named:
@@ -234,8 +234,13 @@ def _names(axes: Axes, shaft: Shaft) -> None:
 
 def _cone(axes: Axes, at: float, e: Element, which: int, colour: str) -> None:
     """Outside (`which` = 0) or bore (1) of a cylinder or cone that begins at `at` (mm)."""
-    first, second = (0.5 * MM * e.diameters(end)[which] for end in (0.0, 1.0))
-    end = at + MM * e.length
+    _outline(axes, at, e.length, (e.diameters(0.0)[which], e.diameters(1.0)[which]), colour)
+
+
+def _outline(axes: Axes, at: float, length: float, diameters: tuple[float, float], colour: str) -> None:
+    """Of a body of revolution from `at` (mm) on, with diameters at its ends; its lengths in m."""
+    first, second = (0.5 * MM * diameter for diameter in diameters)
+    end = at + MM * length
     corners = [(at, -first), (at, first), (end, second), (end, -second)]
     axes.add_patch(Polygon(corners, facecolor=colour, edgecolor=EDGE, lw=0.6))
 
@@ -247,3 +252,44 @@ def _supports(axes: Axes, shaft: Shaft) -> None:
         touching = shaft.elements[max(node - 2, 0) : node]
         radius = 0.5 * MM * max(e.widest for e in touching)
         axes.plot(position[node - 1], -radius, marker=6, color=GREEN, ms=11)
+
+
+def drawing(figure: FigureBase, shaft: Shaft) -> list[Axes]:
+    """The rotor's side view alone, to scale."""
+    sized(figure, WIDTH, 1.2 + _window(shaft).height)
+    axes = figure.subplots()
+    _side_view(axes, shaft, named=True)
+    window = _window(shaft)
+    axes.set_xlim(window.left, window.right)
+    axes.set_ylim(-window.reach, window.reach)
+    axes.set_aspect("equal")
+    axes.set_xlabel(AXIS)
+    axes.set_title(shaft.title, pad=18)
+    return [axes]
+
+
+def _draw_points(axes: Axes, shaft: Shaft) -> None:
+    """Discs to scale, as wide and large as their inertias make them; masses without, as diamonds."""
+    position = MM * shaft.positions()
+    for point in shaft.points:
+        at, diameter, width = position[point.node - 1], *_disc(point, shaft)
+        if diameter > 0.0:
+            _outline(axes, at - 0.5 * MM * width, width, (diameter, diameter), DISC)
+        else:
+            axes.plot(at, 0.0, "D", color=EDGE, ms=5)
+
+
+def _disc(point: PointMass, shaft: Shaft) -> tuple[float, float]:
+    """Outer diameter and width (m) of the disc on the shaft that has a point's inertias; 0, 0 without one.
+
+    Jp/m = (D2 + d2)/8, Jd/m = (3 (D2 + d2)/4 + w2)/12; d is the shaft's diameter beside the node.
+    """
+    if point.mass <= 0.0 or point.polar_inertia <= 0.0:
+        return 0.0, 0.0
+    beside = shaft.elements[max(point.node - 2, 0) : point.node]
+    squares = 8.0 * point.polar_inertia / point.mass
+    outer = squares - min(e.outer_diameter for e in beside) ** 2
+    width = 12.0 * point.diametral_inertia / point.mass - 0.75 * squares
+    if outer <= 0.0:
+        return 0.0, 0.0
+    return math.sqrt(outer), math.sqrt(max(width, 0.0))

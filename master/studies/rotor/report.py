@@ -206,7 +206,18 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
                 ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
             ]
         ),
+        *(f"  {line}" for line in pulling(dict(zip(names, rest.reactions.tolist(), strict=True)))),
     ]  # fmt: skip
+
+
+def pulling(reactions: Mapping[str, float]) -> list[str]:
+    """A line for each support at rest (N by name, upwards) that would have to pull the rotor down."""
+    return [
+        f"{name} would have to pull the rotor down with {-force:.4g} N: where bearings only push, the "
+        "rotor lifts off there until it lies against the top of the bore"
+        for name, force in reactions.items()
+        if force < 0.0
+    ]
 
 
 def _is_seat(shaft: Shaft, name: str) -> bool:
