@@ -13,7 +13,7 @@ from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.campbell import Whirl, supported_whirl, whirl_frequencies
 from touchdown.rotor.modal.critical import CriticalMap, critical_map
 from touchdown.rotor.modal.data import seats
-from touchdown.rotor.modal.modes import RIGID, Basis, basis
+from touchdown.rotor.modal.modes import RIGID, Basis, basis, fullest
 from touchdown.rotor.statics import Rest, at_rest
 
 HERTZ = 0.5 / math.pi
@@ -51,6 +51,7 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
             f"modes = {modes}: {shaft.title} has {len(full.omega)} modes per plane; ask for "
             f"{RIGID} (rigid) to {len(full.omega)}, or 0 for all"
         )
+    held = fullest(shaft, list(dict.fromkeys(s.node for s in (*shaft.stations, *shaft.supports))))
     shapes = full.shapes[0::2, :count]
     turning = np.abs(np.asarray(speeds, dtype=float))
     whirl = HERTZ * whirl_frequencies(full, turning)
@@ -64,8 +65,8 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
         forward=forward,
         backward=backward,
         rest=_at_rest(shaft),
-        critical=tuple(_critical(shaft, full)),
-        held=supported_whirl(full, turning[0], shaft.supports) if shaft.supports else None,
+        critical=tuple(_critical(shaft, held)),
+        held=supported_whirl(held, turning[0], shaft.supports) if shaft.supports else None,
     )
 
 

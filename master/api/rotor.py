@@ -30,7 +30,7 @@ from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written
 from touchdown.rotor.imports.places import Places
 from touchdown.rotor.modal.critical import critical_speeds
-from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.modes import fullest
 from touchdown.rotor.portrait import Portrait
 
 if TYPE_CHECKING:
@@ -129,7 +129,8 @@ class Rotor(Shaft):
         shaft = supported(self, supports or {})
         if len({s.node for s in shaft.supports if s.stiffness > 0.0}) < 2:
             raise TouchdownError(f"critical speeds need supports at two nodes of {self.title} or more")
-        return critical_speeds(basis(shaft, 0), shaft.supports)
+        held_at = list(dict.fromkeys(s.node for s in shaft.supports))
+        return critical_speeds(fullest(shaft, held_at), shaft.supports)
 
     def whirl(self, speed: float, modes: int = MODES) -> tuple[np.ndarray, np.ndarray]:
         """Of the free rotor at `speed` (rad/s): whirl against the spin, and with it, by mode (Hz).

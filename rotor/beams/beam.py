@@ -7,6 +7,7 @@ not of the centre line (3.14): dy/dz less the shear angle. z runs from node 1 to
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -67,6 +68,7 @@ def _polynomial(s: np.ndarray) -> list[np.ndarray]:
     ]
 
 
+@lru_cache(maxsize=4096)
 def matrices(element: Element) -> ElementMatrices:
     """Consistent matrices of an element with its sleeve and layers, by Gauss quadrature, exact for them.
 

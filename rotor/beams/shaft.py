@@ -14,7 +14,7 @@ import numpy as np
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.element import Element, ring_area
 
-MOST_NODES = 64
+MOST_NODES = 2000
 MOST_STATIONS = 8
 
 

@@ -22,10 +22,12 @@ from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.stresses import stressed
 from touchdown.master.scene.scene import ComponentSpec
 from touchdown.master.studies.rotor.report import find_rotor
+from touchdown.rotor.beams.element import Element, split
 from touchdown.rotor.beams.shaft import Shaft
 
 SECTION = ("journal_radius", "clearance")
 BALLS = ("balls.count", "balls.diameter", "balls.pitch_diameter")
+STEPS = 6  # in which a cone is drawn
 MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
 
 
@@ -78,10 +80,7 @@ def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:
     cylinders = [
         cylinder
         for at, e in zip(position, shaft.elements, strict=False)
-        for cylinder in (
-            Cylinder(at, e.length, e.outer_diameter, e.inner_diameter),
-            *([Cylinder(at, e.length, e.sleeve_diameter, sleeve=True)] if e.sleeve_diameter else []),
-        )
+        for cylinder in _cylinders(float(at), e)
     ]
     stations = {s.name: float(position[s.node - 1]) for s in (*shaft.stations, *shaft.sensors)}
     return SideView(
@@ -90,6 +89,20 @@ def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:
         [float(position[p.node - 1]) for p in shaft.points],
         [float(position[u.node - 1]) for u in shaft.unbalances],
     )
+
+
+def _cylinders(at: float, element: Element) -> Iterator[Cylinder]:
+    """An element that begins at `at` (m), what is around it from the outside in; cones as steps."""
+    for piece in split(element, STEPS) if element.varies else [element]:
+        section = piece.section(0.5)
+        for outer in (
+            *(layer.outer_diameter for layer in reversed(section.layers)),
+            section.sleeve_diameter,
+        ):
+            if outer:
+                yield Cylinder(at, piece.length, outer, sleeve=True)
+        yield Cylinder(at, piece.length, section.outer_diameter, section.inner_diameter)
+        at += piece.length
 
 
 def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
