@@ -17,7 +17,7 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 sys.path.extend(
@@ -32,6 +32,7 @@ sys.path.extend(
 
 import bodies
 from cosimulated import comparison
+from cosimulated.comparison import Result
 from cosimulated.masters.others import Controlled, Other
 from cosimulated.masters.own import Own
 from cosimulated.picture import draw
@@ -39,7 +40,7 @@ from cosimulated.problems.bounce import Bounce
 from cosimulated.problems.car import Car
 from cosimulated.problems.drop import Drop
 from cosimulated.problems.oscillator import Oscillator, PositionAlone, VelocityAlone
-from cosimulated.runs import Problem
+from cosimulated.runs import Master, Problem
 
 PROBLEMS: Mapping[str, Callable[[Path], Problem]] = {
     "car": Car,
@@ -70,30 +71,66 @@ OTHERS: tuple[Other, ...] = (
 )
 
 
+TUNED: Mapping[str, Mapping[str, float]] = {  # what else was tried for the step control
+    "as above": {},
+    "first step 1 us": {"step_size": 1e-6},
+    "rates 0.5 to 1.1": {"min_change_rate": 0.5, "max_change_rate": 1.1},
+    "rates 0.2 to 2": {"max_change_rate": 2.0},
+    "safety 1": {"safety_factor": 1.0},
+    "gains 0, 0.5": {"p_gain": 0.0, "i_gain": 0.5},
+    "gains 0.4, 0.3": {"p_gain": 0.4, "i_gain": 0.3},
+    "gains 0.13, 0.2": {"p_gain": 0.13, "i_gain": 0.2},
+}
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Print the tables, draw the picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--problems", default=",".join(PROBLEMS), help=f"of {', '.join(PROBLEMS)}")
-    known = dict.fromkeys(other.tool for other in OTHERS)
-    parser.add_argument("--tools", default=",".join(known), help="other tools; '' for none")
-    parser.add_argument("--quick", action="store_true", help="the coarsest runs only: does it still run?")
-    parser.add_argument("-o", "--output", type=Path, default=Path("runs/masters"))
-    options = parser.parse_args(arguments)
+    options = asked(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
-    chosen, tools = options.problems.split(","), options.tools.split(",")
     with tempfile.TemporaryDirectory() as folder:
         fmu = bodies.fmu(bodies.compiled(Path(folder)))
-        for name in chosen:
+        if options.tune:
+            tuned = [
+                Controlled("libcosim", name, ecco={**ECCO, **change}) for name, change in TUNED.items()
+            ]
+            tabled(Car(fmu), tuned, options)
+            return 0
+        for name in options.problems:
             problem = PROBLEMS[name](fmu)
             ways = [Own(way, table) for way, table in problem.ways.items()]
-            others = [other for other in OTHERS if other.tool in tools]
-            found = list(comparison.compared([*ways, *others], problem, options.quick))
-            comparison.kept(found, options.output / f"{name}.json")
-            print(*comparison.table(problem.title, found), sep="\n", flush=True)
+            others = [other for other in OTHERS if other.tool in options.tools]
+            comparison.keep(tabled(problem, [*ways, *others], options), options.output / f"{name}.json")
     drawn = {title: comparison.known(options.output / f"{name}.json") for name, title in SHOWN.items()}
     draw({title: found for title, found in drawn.items() if found}, options.output / "masters.png")
     print(f"\npicture, of all problems that were ever run into it, in {options.output}")
     return 0
+
+
+def asked(arguments: list[str] | None) -> argparse.Namespace:
+    """The command's options."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    tools = dict.fromkeys(other.tool for other in OTHERS)
+    parser.add_argument("--problems", default=",".join(PROBLEMS), help=f"of {', '.join(PROBLEMS)}")
+    parser.add_argument("--tools", default=",".join(tools), help=f"of {', '.join(tools)}; '' for none")
+    parser.add_argument("--quick", action="store_true", help="the coarsest runs only: does it still run?")
+    parser.add_argument(
+        "--tune", action="store_true", help="only the step control's other parameters, on the car"
+    )
+    parser.add_argument("-o", "--output", type=Path, default=Path("runs/masters"))
+    options = parser.parse_args(arguments)
+    for key, known in (("problems", PROBLEMS), ("tools", tools)):
+        chosen = [name for name in getattr(options, key).split(",") if name]
+        if not set(chosen) <= set(known):
+            parser.error(f"--{key} {','.join(chosen)}: of {', '.join(known)}")
+        setattr(options, key, chosen)
+    return options
+
+
+def tabled(problem: Problem, masters: Sequence[Master], options: argparse.Namespace) -> list[Result]:
+    """What all masters give on a problem, which is printed."""
+    found = list(comparison.compared(masters, problem, options.quick))
+    print(*comparison.table(problem.title, found), sep="\n", flush=True)
+    return found
 
 
 if __name__ == "__main__":

@@ -110,13 +110,13 @@ def table(title: str, found: Sequence[Result]) -> Iterator[str]:
     yield from dict.fromkeys(told)
 
 
-def kept(found: Sequence[Result], path: Path) -> None:
+def keep(found: Sequence[Result], path: Path) -> None:
     """Results as JSON, for a picture of several runs."""
     path.write_text(json.dumps([asdict(one) for one in found], indent=1), encoding="utf-8")
 
 
 def known(path: Path) -> list[Result]:
-    """What `kept` wrote; nothing where there is no file."""
+    """What `keep` wrote; nothing where there is no file."""
     if not path.is_file():
         return []
     return [Result(**one) for one in json.loads(path.read_text(encoding="utf-8"))]
