@@ -9,16 +9,16 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from tqdm.auto import tqdm
-
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.common.progress import bars
 from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
+from touchdown.master.results.folder.ending import write_ending
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
@@ -58,15 +58,16 @@ def run_scene(
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
+            warnings = [*system.left_out, *_warnings(outcome)]
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:
+                    write_ending(folder, told, warnings)
                     drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
                 finally:
                     results.finish(summary)
         finally:
             system.close()
-    warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 
@@ -138,7 +139,7 @@ class _Bar:
     """Progress over simulated time, with the run's speed and the ledger's residual over turnover."""
 
     def __init__(self, scene: Scene, shown: bool) -> None:
-        self._bar = tqdm(
+        self._bar = bars()(
             total=scene.run.duration,
             disable=not shown,
             # tqdm's widget for notebooks stands in for exactly {bar}

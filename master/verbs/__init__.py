@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.master.verbs import run, scenes
+from touchdown.master.verbs import animate, report, run, scenes
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
 from touchdown.master.verbs.machines import catalogue, new
 from touchdown.master.verbs.studies import (
@@ -12,6 +12,7 @@ from touchdown.master.verbs.studies import (
     compare_modes,
     compare_rotors,
     figure,
+    merge,
     stability,
     sweep,
     verdict,
@@ -24,8 +25,11 @@ ALL: tuple[Verb, ...] = (
     catalogue.VERB,
     new.VERB,
     run.VERB,
+    report.VERB,
+    animate.VERB,
     advise.VERB,
     sweep.VERB,
+    merge.VERB,
     verdict.VERB,
     rotor.VERB,
     import_rotor.VERB,

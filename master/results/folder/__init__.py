@@ -15,7 +15,7 @@ from touchdown.master.results.result import RECORDING
 
 LOCK = ".touchdown.lock"
 SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
-MARK = "member.json"  # of a finished member of a sweep
+ENDING = "ending.json"  # the components as they ended
 RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
@@ -81,12 +81,12 @@ def _left(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
     pictures = list(_pictures(folder))
     yield folder / SUMMARY
-    yield folder / MARK
     yield from pictures
     yield folder / TABLE
+    yield folder / ENDING
     recording = (folder / RECORDING).resolve()  # a link stays
     yield recording
-    for path in (folder / SUMMARY, folder / SCENE, folder / TABLE, recording, *pictures):
+    for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):
         yield partial(path)
 
 
