@@ -39,8 +39,11 @@ PATH = re.compile(
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
-    "Use": ("results", "reports", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
-    "Background": ("physics", "stability", "speed", "peers"),
+    "Use": (
+        *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere", "native"),
+        *("rotors", "coupling", "bonds", "api"),
+    ),
+    "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),
 }

@@ -11,7 +11,7 @@ from places import ROOT
 from touchdown.master.scene.file import load_scene
 
 BENCHMARKS = ROOT / "benchmarks"
-NEEDS_MORE = {"exudyn_drop"}  # installed by hand
+NEEDS_MORE = {"exudyn_drop", "ross_rotors"}  # installed by hand
 
 
 @pytest.fixture(autouse=True)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.simulation import zero_of
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.style import (
     BLUE,
@@ -26,6 +27,9 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.summary import is_heard
 
 FIRST = 0.5  # s, the first zoom
+IMPACT = 5e-3  # s, the inset from the first touch on
+INSET = (0.5, 0.4, 0.48, 0.48)  # of the panel: left, bottom, width, height
+FEWEST = 10  # recorded values that make an inset
 HARDEST = "hardest.ball"
 NORMAL, TANGENTIAL = ORANGE, GREEN
 
@@ -62,12 +66,39 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             axes.ticklabel_format(useOffset=False)
         row[0].set_ylabel(f"{label} [N]")
         if len(curves) > 1:
-            row[0].legend(loc="upper right", fontsize="small")
+            row[-1].legend(loc="upper right")
+    first = first_contact(run, a)
+    if first is not None and within(time, (first, first + IMPACT)).sum() > FEWEST:
+        for row, (_, curves) in zip(grid, rows, strict=True):
+            _first_impact(row[0], recording, a, curves, first)
     _label_columns(grid[0], grid[-1], spans, (beginning(time), float(time[-1])))
     peak = run.system.value(f"{a.bearing}.contact.peak_force")
     by = ", heard from means over macro steps" if is_heard(run.system, a) else ""
     figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{by}{_which(recording, a)}")
     return list(grid.flat)
+
+
+def first_contact(run: Finished, a: Attachment) -> float | None:
+    """When the journal first touched (s from the scene's zero); None where it never did."""
+    touched = run.system.value(f"{a.bearing}.contact.first_time")
+    return None if touched == -1.0 else touched - zero_of(run.scene, run.system)
+
+
+def _first_impact(
+    axes: Axes, recording: Recording, a: Attachment, curves: list[Curve], first: float
+) -> None:
+    """The first impact in an inset, where the forces have died down."""
+    span = first - 0.1 * IMPACT, first + IMPACT
+    part = within(recording.time, span)
+    inset = axes.inset_axes(INSET)
+    for c in curves:
+        values = recording[f"{a.bearing}.{c.variable}"][part]
+        inset.plot(1e3 * (recording.time[part] - first), values, color=c.colour, lw=c.width)
+    inset.set_xlim(-100.0 * IMPACT, 1e3 * IMPACT)
+    inset.tick_params(labelsize="x-small")
+    inset.set_title("first impact, ms from the first touch", fontsize="x-small", pad=2)
+    for side in ("top", "right"):
+        inset.spines[side].set_visible(True)
 
 
 def _rows(recording: Recording, a: Attachment) -> list[Row]:

@@ -16,7 +16,6 @@ from touchdown.master.results.result import RECORDING
 LOCK = ".touchdown.lock"
 SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
 ENDING = "ending.json"  # the components as they ended
-MARK = "member.json"  # of a finished member of a sweep
 RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
@@ -82,7 +81,6 @@ def _left(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
     pictures = list(_pictures(folder))
     yield folder / SUMMARY
-    yield folder / MARK
     yield from pictures
     yield folder / TABLE
     yield folder / ENDING

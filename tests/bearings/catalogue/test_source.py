@@ -1,15 +1,16 @@
-"""The bearings of the catalogue: they fit, weigh and give way as they should."""
+"""The bearings of the source: they fit, weigh and give way as they should, and reach components."""
 
 from __future__ import annotations
 
 import pytest
 from ball_sets import problem_of, settled, stiffness_of
 
-from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.bearings.catalogue.source import FROM_SOURCE
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load_scene
 
+CATALOGUE = {bearing.designation: bearing for bearing in FROM_SOURCE}
 STIFFNESS = {  # inner, outer, series in 1e10 N/m^1.5, by (2.43)-(2.46) as corrected
     "6004": (2.322, 2.436, 0.841),
     "6904": (2.021, 2.102, 0.729),
@@ -47,5 +48,10 @@ def test_a_preset_reaches_the_component(name: str) -> None:
 
 
 def test_an_unknown_preset_is_named() -> None:
-    with pytest.raises(TouchdownError, match="no preset 6005"):
-        load_scene("disk-caged-simplified").set({"bearing.preset": "6005"})
+    with pytest.raises(TouchdownError, match="no preset 6504; did you mean 6"):
+        load_scene("disk-caged-simplified").set({"bearing.preset": "6504"})
+
+
+@pytest.mark.parametrize("name", sorted(CATALOGUE))
+def test_each_number_has_an_origin(name: str) -> None:
+    assert CATALOGUE[name].origins.keys() == CATALOGUE[name].numbers().keys()

@@ -1,64 +1,50 @@
-"""Bearings of the source's Tables 1 and 3, ready to be set in a model.
+"""Bearings of the source's Tables 1 and 3.
 
 Filled in, because the source does not give them: masses and inertias of the inner rings, masses of the
-outer rings (catalogue mass less the other parts), static load ratings of the small bearings, the cage
-as heavy as two balls. Corrected: the pitch diameter of the 6904, printed as 26.1 mm, which cannot hold
-17 balls of 4.8 mm; 28.5 mm is the mean of bore and outside diameter. Read: the 5 um of Table 1 as radial
-play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on diameter. Stiffness of
-the races is the source's, with its fits for the elliptic integrals.
+outer rings (catalogue mass less the other parts), static load ratings of the small bearings, dynamic ones
+by ISO 281, the cage as heavy as two balls. Corrected: the pitch diameter of the 6904, printed as 26.1 mm,
+which cannot hold 17 balls of 4.8 mm; 28.5 mm is the mean of bore and outside diameter. Read: the 5 um of
+Table 1 as radial play, which reproduces the source's Table 7; the clearances of Table 3 as printed, on
+diameter. Stiffness of the races is the source's, with its fits for the elliptic integrals.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 
+from touchdown.bearings.catalogue.bearing import NUMBERS, Bearing
 from touchdown.bearings.contact.stiffness import PRINTED
+from touchdown.bearings.rating import dynamic_rating
 from touchdown.bearings.rolling.balls import BallSet
 from touchdown.bearings.rolling.balls.geometry import ball_mass
 from touchdown.bearings.rolling.ring import Ring
 
-
-@dataclass(frozen=True)
-class Bearing:
-    """A rolling bearing: geometry, masses, rating. Lengths in m, masses in kg."""
-
-    designation: str
-    bore: float
-    outside: float
-    width: float
-    balls: BallSet
-    ring: Ring
-    caged: bool
-    outer_ring: float  # mass
-    static_rating: float  # N, of a row
-    damping: float = 0.0  # N s/m, between the rings (2.7)
-
-    def settings(self) -> dict[str, float]:
-        """Values by parameter name; a model takes those it has."""
-        b = self.balls
-        return {
-            "balls.count": b.count,
-            "balls.rows": b.rows,
-            "balls.diameter": b.diameter,
-            "balls.pitch_diameter": b.pitch_diameter,
-            "balls.play": b.play,
-            "balls.conformity": b.conformity,
-            "balls.hertz": b.hertz,
-            "ring.mass": self.ring.mass,
-            "ring.inertia": self.ring.inertia,
-            "cage.mass": 2.0 * ball_mass(b.rows, b.diameter, b.density),
-            "rolling.static_rating": self.static_rating,
-            "damping": self.damping,
-        }
-
+GIVEN = ("bore", "outside", "width", "balls", "rows", "ball_diameter", "pitch_diameter", "play")
+GROOVES = ("inner_groove", "outer_groove")
+_GROOVES_OF_1 = dict.fromkeys(GROOVES, "as in Table 3")
 
 _balls = partial(BallSet, hertz=PRINTED)
+_open = partial(Bearing, cage=0.0, dynamic_rating=0.0)  # what `_complete` fills in
 
-CATALOGUE = {
-    bearing.designation: bearing
-    for bearing in (
-        Bearing(
+
+def _complete(bearing: Bearing, table: str, **others: str) -> Bearing:
+    """With cage and dynamic rating, and where numbers are from: the `table` of the source, or `others`."""
+    row = replace(bearing.rated(), rows=1)
+    origins = dict.fromkeys(NUMBERS, "filled in") | dict.fromkeys((*GIVEN, *GROOVES), table)
+    origins |= {"cage_mass": "as two balls", "dynamic_rating": "ISO 281", "contact_angle": "not stated"}
+    b = bearing.balls
+    return replace(
+        bearing,
+        cage=2.0 * ball_mass(b.rows, b.diameter, b.density),
+        dynamic_rating=dynamic_rating(row),
+        origins=origins | others,
+    )
+
+
+FROM_SOURCE = (
+    _complete(
+        _open(
             "6004",
             bore=20e-3,
             outside=42e-3,
@@ -69,7 +55,11 @@ CATALOGUE = {
             outer_ring=0.042,
             static_rating=5000.0,
         ),
-        Bearing(
+        "Table 1",
+        **_GROOVES_OF_1,
+    ),
+    _complete(
+        _open(
             "6904",
             bore=20e-3,
             outside=37e-3,
@@ -80,7 +70,12 @@ CATALOGUE = {
             outer_ring=0.020,
             static_rating=3650.0,
         ),
-        Bearing(
+        "Table 1",
+        **_GROOVES_OF_1,
+        pitch_diameter="mean of bore and outside diameter",
+    ),
+    _complete(
+        _open(
             "6014",
             bore=70e-3,
             outside=110e-3,
@@ -92,7 +87,12 @@ CATALOGUE = {
             static_rating=31000.0,
             damping=300.0,
         ),
-        Bearing(
+        "Table 3",
+        damping="Table 3",
+        static_rating="Table 3",
+    ),
+    _complete(
+        _open(
             "7914",  # one of the pair; its half of the bronze ring is in the inner ring
             bore=70e-3,
             outside=100e-3,
@@ -104,7 +104,12 @@ CATALOGUE = {
             static_rating=20900.0,
             damping=270.0,
         ),
-        Bearing(
+        "Table 3",
+        damping="Table 3",
+        static_rating="Table 3",
+    ),
+    _complete(
+        _open(
             "7914 pair",  # both, as one set of two rows under the whole bronze ring
             bore=70e-3,
             outside=100e-3,
@@ -116,5 +121,8 @@ CATALOGUE = {
             static_rating=20900.0,
             damping=2 * 270.0,
         ),
-    )
-}
+        "Table 3",
+        damping="Table 3",
+        static_rating="Table 3",
+    ),
+)

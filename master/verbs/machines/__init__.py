@@ -1,0 +1,1 @@
+"""Verbs about machines of one's own: their bearings, and a scene to start from."""
