@@ -4,8 +4,8 @@
 
 needs ROSS (`pip install ross-rotordynamics "plotly<6"`). Each example is saved by `rotor.save` and imported
 by one command. ROSS's own matrices are solved here without its axial and torsional coordinates, undamped;
-`run_modal` is solved as it is. With -o it leaves the saved files and ROSS's frequencies in
-FOLDER, which is how tests/rotor/imports/saved came to be.
+`run_modal` and `run_ucs` (critical speeds over the stiffness of the bearings) are solved as they are. With
+-o it leaves saved files and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from touchdown.rotor.modal.modes import basis
 EXAMPLES = ("rotor_example", "rotor_example_with_damping", "compressor_example")
 SPEEDS = (0.0, 6000.0, 12000.0)  # rpm
 MODES = 12  # six, backward and forward
+STIFFNESS = (5, 9, 5)  # decades of N/m, and how many
 STILL = 1.0  # rad/s; below, a free rotor does not bend
 
 
@@ -64,7 +65,7 @@ def main() -> None:
     print(
         f"ROSS {ross.__version__}; largest relative deviation of {MODES // 2} modes, backward and forward"
     )
-    print(f"{'example':28}{'rpm':>7}{'free':>10}{'on bearings':>13}{'run_modal':>11}")
+    print(f"{'example':28}{'rpm':>7}{'free':>10}{'on bearings':>13}{'run_modal':>11}{'run_ucs':>10}")
     with TemporaryDirectory() as temporary:
         told = {name: compared(name, folder or Path(temporary)) for name in EXAMPLES}
     if folder:
@@ -91,10 +92,24 @@ def compared(name: str, folder: Path) -> dict[str, dict[str, list[float]]]:
             ours["held"] = our_modes(rotor, speed, rotor.supports)
         apart = {kind: f"{np.max(np.abs(ours[kind] / theirs[kind] - 1.0)):.1e}" for kind in ours}
         cells = (apart["free"], apart.get("held", "-"), run_modal(held, rotor, speed))
-        print(f"{name:28}{rpm:7.0f}{cells[0]:>10}{cells[1]:>13}{cells[2]:>11}")
         for kind in ours:
             told[kind][f"{rpm:g}"] = theirs[kind].tolist()
+        print(f"{name:28}{rpm:7.0f}{cells[0]:>10}{cells[1]:>13}{cells[2]:>11}", end="\n" if rpm else "")
+        if not rpm:
+            told["critical"], line = critical(original, rotor)
+            print(line)
     return told
+
+
+def critical(original: ross.Rotor, rotor: touchdown.Rotor) -> tuple[dict[str, list[float]], str]:
+    """Critical speeds (rad/s) by the stiffness of the bearings, ROSS's; and how far ours are from them."""
+    low, high, count = STIFFNESS
+    found = original.run_ucs((low, high), num=count, num_modes=16, synchronous=True).wn.T
+    theirs = {f"{k:g}": row.tolist() for k, row in zip(np.logspace(low, high, count), found, strict=True)}
+    ours = [
+        rotor.critical_speeds({s.name: float(k) for s in rotor.stations})[: found.shape[1]] for k in theirs
+    ]
+    return theirs, f"{np.max(np.abs(np.array(ours) / found - 1.0)):10.1e}"
 
 
 def imported(saved: Path, rpm: float) -> touchdown.Rotor:

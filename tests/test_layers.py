@@ -24,7 +24,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
         "touchdown.modelkit",
         "touchdown.fmus",
         *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
-        *("numpy", "scipy", "pandas", "xarray"),
+        *("numpy", "scipy", "pandas", "xarray", "distributed"),
     },
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
@@ -63,7 +63,7 @@ RATED = {"touchdown.master.report", "touchdown.master.studies.machine", "touchdo
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
-        "touchdown.master.api.rotor",
+        *("touchdown.master.api.rotor", "touchdown.master.studies.machine"),
     },
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,

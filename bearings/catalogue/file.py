@@ -17,6 +17,7 @@ All numbers are listed in `NUMBERS`. The file is found beside a scene as `bearin
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
@@ -46,8 +47,7 @@ class CatalogueError(ModelError):
 def read(path: Path) -> dict[str, Bearing]:
     """The bearings of a file by name. Raises CatalogueError for the first mistake."""
     try:
-        with path.open("rb") as file:
-            tables = tomllib.load(file)
+        tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))  # some editors begin files with a mark
     except OSError as error:
         raise CatalogueError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, RecursionError) as error:
@@ -123,11 +123,12 @@ def _check_proportion(given: Mapping[str, float], where: str) -> None:
 def as_file(bearing: Bearing) -> str:
     """A bearing as a file of the user's: what `read` takes, each number with its origin."""
     kind = ANGULAR if bearing.contact_angle > 0.0 else DEEP_GROOVE
-    lines = [f'["{bearing.designation}"]', f'kind = "{kind}"']
-    for name, value in bearing.numbers().items():
-        unit, meaning = NUMBERS[name]
+    name = json.dumps(bearing.designation, ensure_ascii=False)
+    lines = [f"[{name}]", f'kind = "{kind}"']
+    for number, value in bearing.numbers().items():
+        unit, meaning = NUMBERS[number]
         text = f"{value:g}" if unit == "1" else f'"{value:.6g} {unit}"'
-        lines.append(f"{name} = {text}  # {meaning}")
-    lines += ["", f'["{bearing.designation}".origins]']
-    lines += [f'{name} = "{text}"' for name, text in bearing.origins.items()]
+        lines.append(f"{number} = {text}  # {meaning}")
+    lines += ["", f"[{name}.origins]"]
+    lines += [f"{number} = {json.dumps(of, ensure_ascii=False)}" for number, of in bearing.origins.items()]
     return "\n".join(lines) + "\n"

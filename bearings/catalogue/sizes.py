@@ -30,7 +30,7 @@ SERIES = {  # what designations begin with: kind and dimension series
     "70": (ANGULAR, "10"),
     "72": (ANGULAR, "02"),
 }
-ORIGINS = dict.fromkeys(("bore", "outside", "width"), "ISO 15")
+ORIGINS: dict[str, str] = dict.fromkeys(("bore", "outside", "width"), "ISO 15")
 
 
 def designations() -> list[str]:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 from touchdown.bearings.rating.bearing import RACES, RatedBearing
 from touchdown.bearings.rating.hertz import point_contact
@@ -47,5 +47,5 @@ def load_distribution(
 
     one_ball = (radial_load / (bearing.rows * tilt)) ** (2.0 / 3.0) * compliance / tilt  # bears all of it
     most = max(clearance, 0.0) + (1.0 + ROUNDING) * one_ball
-    found = float(brentq(lacking, 0.0, most, xtol=TINY, rtol=ROUNDING))
+    found = root_scalar(lacking, bracket=(0.0, most), xtol=TINY, rtol=ROUNDING).root
     return LoadDistribution(angles, loads(found), found)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,12 +16,21 @@ from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.studies.rotor.importing import import_rotor
-from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
+from touchdown.master.studies.rotor.report import (
+    MODES,
+    SPEED,
+    described,
+    find_rotor,
+    report_text,
+    supported,
+)
 from touchdown.modelkit.kernel.cache_folder import kept, put
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written
 from touchdown.rotor.imports.places import Places
+from touchdown.rotor.modal.critical import critical_speeds
+from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.portrait import Portrait
 
 if TYPE_CHECKING:
@@ -107,6 +116,21 @@ class Rotor(Shaft):
         """
         return described(self, SPEED, modes).frequencies
 
+    def critical_speeds(self, supports: Mapping[str, float] | None = None) -> np.ndarray:
+        """Undamped, ascending (rad/s): those of the forward whirl, or all where the planes differ.
+
+        supports: stiffness in N/m of stations by name, beside its own `supports`. Raises TouchdownError
+        where it is not held at two nodes or more.
+
+        >>> rotor = touchdown.Rotor.load("rotor_II")
+        >>> rotor.critical_speeds({"amb_A": 20e6, "amb_B": 20e6})[:3].round(1)
+        array([ 561.2,  784.2, 4453.1])
+        """
+        shaft = supported(self, supports or {})
+        if len({s.node for s in shaft.supports if s.stiffness > 0.0}) < 2:
+            raise TouchdownError(f"critical speeds need supports at two nodes of {self.title} or more")
+        return critical_speeds(basis(shaft, 0), shaft.supports)
+
     def whirl(self, speed: float, modes: int = MODES) -> tuple[np.ndarray, np.ndarray]:
         """Of the free rotor at `speed` (rad/s): whirl against the spin, and with it, by mode (Hz).
 
@@ -117,7 +141,7 @@ class Rotor(Shaft):
 
     @property
     def plot(self) -> RotorPlot:
-        """Pictures: `plot.modes()`, `plot.campbell()`, `plot.rest()`, each of which returns its axes."""
+        """Pictures: `plot.modes()`, `.campbell()`, `.critical()`, `.rest()`; each returns its axes."""
         return RotorPlot(lambda: described(self, SPEED, MODES))
 
     def save(self, path: PathLike) -> Path:
@@ -191,6 +215,19 @@ class RotorPlot:
         from touchdown.master.studies.rotor.figure import campbell
 
         return campbell(drawable(figure), self._portrait())
+
+    def critical(self, figure: FigureBase | None = None) -> list[Axes]:
+        """Undamped critical speeds [rpm] over the stiffness of its supports [N/m], its own ones marked.
+
+        Raises TouchdownError where no two nodes hold it.
+        """
+        from touchdown.master.results.figures.style import drawable
+        from touchdown.master.studies.rotor.figure import critical
+
+        portrait = self._portrait()
+        if not portrait.critical:
+            raise TouchdownError("this picture needs stations at two nodes or more, to hold the rotor")
+        return critical(drawable(figure), portrait)
 
     def rest(self, figure: FigureBase | None = None) -> list[Axes]:
         """How it lies on its seats: deflection [µm] and bending stress [MPa].

@@ -15,7 +15,6 @@ from touchdown.master.results.result import RECORDING
 
 LOCK = ".touchdown.lock"
 SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
-MARK = "member.json"  # of a finished member of a sweep
 RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
@@ -81,7 +80,6 @@ def _left(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
     pictures = list(_pictures(folder))
     yield folder / SUMMARY
-    yield folder / MARK
     yield from pictures
     yield folder / TABLE
     recording = (folder / RECORDING).resolve()  # a link stays

@@ -60,6 +60,7 @@ from touchdown.master.scene.tables import (
 )
 from touchdown.master.scene.wires import bonds, wires
 
+SCENE_FILE = "scene.toml"  # of a folder that is a machine
 LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
@@ -70,15 +71,21 @@ def shipped() -> dict[str, Path]:
 
 
 def load_scene(name: str) -> Scene:
-    """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    """A scene of the project's by name, or of the user's by the path of a TOML file.
+
+    A folder stands for the scene.toml in it, which goes by the folder's name.
+    """
     path = locate(name)
-    return parse(tables(path), path.stem, path.parent)
+    own = path.absolute().parent.name if path.name == SCENE_FILE else path.stem
+    return parse(tables(path), own, path.parent)
 
 
 def locate(name: str) -> Path:
     """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
     if name.endswith(".toml"):
         return Path(name)
+    if name not in shipped() and (Path(name) / SCENE_FILE).is_file():
+        return Path(name) / SCENE_FILE
     try:
         return shipped()[name]
     except KeyError:

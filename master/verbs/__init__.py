@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from touchdown.master.verbs import run, scenes
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
-from touchdown.master.verbs.machines import catalogue
+from touchdown.master.verbs.machines import catalogue, new
 from touchdown.master.verbs.studies import (
     advise,
     compare,
@@ -12,6 +12,7 @@ from touchdown.master.verbs.studies import (
     compare_modes,
     compare_rotors,
     figure,
+    merge,
     stability,
     sweep,
     verdict,
@@ -22,9 +23,11 @@ from touchdown.master.verbs.verb import Verb
 ALL: tuple[Verb, ...] = (
     scenes.VERB,
     catalogue.VERB,
+    new.VERB,
     run.VERB,
     advise.VERB,
     sweep.VERB,
+    merge.VERB,
     verdict.VERB,
     rotor.VERB,
     import_rotor.VERB,

@@ -14,24 +14,26 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
-    from touchdown.master.api.machines import catalogue
+    from touchdown.master.api.machines import catalogue, new
     from touchdown.master.api.rotor import Rotor
     from touchdown.master.api.run import run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
-    from touchdown.master.api.studies import compare, sweep, verdict
+    from touchdown.master.api.studies import compare, merge, sweep, verdict
     from touchdown.master.common.ended import Ended
     from touchdown.master.common.errors import TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
+    from touchdown.master.studies.sweep.design import Design
     from touchdown.rotor.beams.element import Element
     from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
 
     __version__: str
 
 __all__ = [
+    "Design",
     "Element",
     "Ended",
     "PointMass",
@@ -51,6 +53,8 @@ __all__ = [
     "compare",
     "figure",
     "load",
+    "merge",
+    "new",
     "register_scheme",
     "run",
     "scenes",
@@ -63,12 +67,14 @@ _HOMES = {
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
+    "new": "master.api.machines",
     "Rotor": "master.api.rotor",
     "run": "master.api.run",
     "load": "master.api.scenes",
     "scenes": "master.api.scenes",
     "register_scheme": "master.api.schemes",
     "compare": "master.api.studies",
+    "merge": "master.api.studies",
     "sweep": "master.api.studies",
     "verdict": "master.api.studies",
     "Ended": "master.common.ended",
@@ -77,6 +83,7 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
+    "Design": "master.studies.sweep.design",
     "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",

@@ -1,4 +1,4 @@
-"""Pictures of a rotor before it is dropped: Campbell diagram, mode shapes, how it lies (Fig 19)."""
+"""Pictures of a rotor before it is dropped: Campbell diagram, critical speeds, modes, rest (Fig 19)."""
 
 from __future__ import annotations
 
@@ -32,8 +32,10 @@ SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 
 def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
-    """campbell.png, modes.png and, where the rotor has two seats, rest.png in `folder`."""
+    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`."""
     pictures = {"campbell": campbell, "modes": modes}
+    if portrait.critical:
+        pictures["critical"] = critical
     if portrait.rest is not None:
         pictures["rest"] = rest
     made: list[Path] = []
@@ -69,6 +71,41 @@ def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     figure.legend(loc="outside right upper", fontsize="small")
     figure.suptitle(f"{portrait.shaft.title}: Campbell diagram")
     return [axes]
+
+
+def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+    """Undamped critical speeds [rpm] over the stiffness of the supports [N/m], for each way it is held.
+
+    Dashed: the shaft's own supports there, with dots for its critical speeds on them; grey: the first of
+    the portrait's speeds.
+    """
+    panels = sized(figure, 9.0, 1.0 + 4.2 * len(portrait.critical)).subplots(
+        len(portrait.critical), 1, squeeze=False
+    )
+    for axes, found in zip(panels[:, 0], portrait.critical, strict=True):
+        axes.loglog(found.stiffness, RPM * found.speeds, color=BLUE, lw=1.4)
+        names = ", ".join(s.name for s in found.places)
+        for support in found.marked:
+            where = "/".join(s.name for s in found.places if s.node == support.node)
+            for value in {support.stiffness, support.stiffness_y or support.stiffness}:
+                label = f"{where}: {value:.3g} N/m"
+                axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
+        if len(found.own):
+            middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
+            label = "critical speeds on these supports"
+            axes.plot(
+                np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
+            )
+        if portrait.speeds[0] > 0.0:
+            asked = RPM * portrait.speeds[0]
+            axes.axhline(asked, color=GREY, lw=1.0, label=f"{asked:.5g} rpm")
+        axes.set_xlabel(f"stiffness of each support at {names} [N/m]")
+        axes.set_ylabel("critical speed, forward [rpm]")
+        axes.grid(True, which="major", color=GREY, lw=0.3)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="lower right", fontsize="small")
+    figure.suptitle(f"{portrait.shaft.title}: undamped critical speeds")
+    return list(panels[:, 0])
 
 
 def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:

@@ -20,6 +20,7 @@ from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import ImportedRotorError, from_ross, read
 from touchdown.rotor.imports.ross import of_elements
 from touchdown.rotor.modal.campbell import supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
 
 SAVED = Path(__file__).parent / "saved"
@@ -45,7 +46,7 @@ def bent(whirl: np.ndarray, shaft: Shaft) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("name", "kind"), [(name, kind) for name, kinds in THEIRS.items() for kind in kinds if kinds[kind]]
+    ("name", "kind"), [(n, kind) for n, kinds in THEIRS.items() for kind in ("free", "held") if kinds[kind]]
 )
 def test_six_modes_of_a_published_example(name: str, kind: str) -> None:
     """Backward and forward, at rest and spinning, free and on its bearings."""
@@ -60,6 +61,17 @@ def test_six_modes_of_a_published_example(name: str, kind: str) -> None:
         ours = np.sort(found)
         assert len(theirs) >= 10
         assert ours[: len(theirs)] == pytest.approx(theirs, rel=AGREE)
+
+
+@pytest.mark.parametrize("name", THEIRS)
+def test_its_critical_speeds_over_the_stiffness_of_its_bearings(name: str) -> None:
+    """Those of `ross.Rotor.run_ucs`, synchronous."""
+    shaft = read(SAVED / f"{name}.toml")
+    modes = basis(shaft, 0)
+    for stiffness, theirs in THEIRS[name]["critical"].items():
+        ours = critical_speeds(modes, [Support(s.node, float(stiffness)) for s in shaft.stations])
+        assert len(theirs) == 4
+        assert ours[:4] == pytest.approx(theirs, rel=1e-7)  # found: 8e-9
 
 
 @pytest.mark.parametrize("name", THEIRS)
