@@ -46,15 +46,11 @@ PATH = re.compile(
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
-<<<<<<< HEAD
     "Learn": ("start", "first-drop", "own-bearing", "wanted-error", "glossary"),
-    "Use": ("results", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
-=======
     "Use": (
-        *("own-machine", "bearings", "studies", "results", "systems", "elsewhere", "native", "rotors"),
-        *("coupling", "bonds", "api"),
+        *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere"),
+        *("native", "rotors", "coupling", "bonds", "api"),
     ),
->>>>>>> answers
     "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),

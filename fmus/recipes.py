@@ -19,8 +19,10 @@ from touchdown.bearings.catalogue import CatalogueError as CatalogueError
 from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
-from touchdown.fmus.starts import defaults, starting_from
-from touchdown.modelkit.model import Model
+from touchdown.fmus.variants.modes import with_modes
+from touchdown.fmus.variants.starts import defaults, starting_from
+from touchdown.modelkit.model import Model, slots
+from touchdown.modelkit.variables import Causality
 from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor
 
@@ -42,9 +44,16 @@ class {identifier}(ModelSlave):
 
 _STARTING = """
 
-from touchdown.fmus.starts import starting_from
+from touchdown.fmus.variants.starts import starting_from
 
 {identifier}.model = starting_from({identifier}.model, {values!r})
+"""
+
+_WITH_MODES = """
+
+from touchdown.fmus.variants.modes import with_modes
+
+{identifier}.model = with_modes({identifier}.model, {count})
 """
 
 
@@ -75,6 +84,14 @@ class Recipe:
         model = starting_from(self.model, others)
         script = self.script + _STARTING.format(identifier=self.identifier, values=others)
         return replace(self, script=script, content=f"{self.content}{model.content[-17:]}", model=model)
+
+    def with_modes(self, count: int) -> Recipe:
+        """The recipe of an FMU for rotors of `count` modes per plane (`variants.modes`)."""
+        model = with_modes(self.model, count)
+        if model is self.model:
+            return self
+        script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count)
+        return replace(self, script=script, content=f"{self.content}_modes{count}", model=model)
 
 
 def names() -> list[str]:
@@ -114,6 +131,17 @@ def _from_rotor(path: Path) -> Recipe:
     identifier = "Rotor" + "".join(part.capitalize() for part in name.split("_"))
     script = _ROTOR_SCRIPT.format(file=path.name, text=text, identifier=identifier, name=name, content=own)
     return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
+
+
+def parameter_sets(model: Model) -> dict[str, dict[str, float]]:
+    """By name, what the sets give to parameters of `model`: those of bearings with all that it takes."""
+    names = {s.variable.name for s in slots(model) if s.causality is Causality.PARAMETER}
+    known = {name: preset(name) for name in presets()}
+    return {
+        name: {n: v for n, v in values.items() if n in names}
+        for name, values in known.items()
+        if all(n in names for n in values if n.startswith("balls."))
+    }
 
 
 def presets() -> list[str]:

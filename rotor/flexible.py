@@ -26,7 +26,7 @@ from touchdown.modelkit.ports import (
     StaticLoad,
 )
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from touchdown.modelkit.variables import as_tuple, group, groups, integer, real
+from touchdown.modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
 from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
 from touchdown.rotor.modal.data import MOST_MODES, Derived, tabulate
 from touchdown.rotor.modal.modes import RIGID
@@ -45,9 +45,7 @@ class Parameters:
     modes: int = integer(
         5, "modes per plane, the two rigid ones included; 0: all of the finite elements'", minimum=0
     )
-    residual: int = integer(
-        1, "1: the seats keep the flexibility of the modes that are left out", minimum=0, maximum=1
-    )
+    residual: int = choice(1, SWITCH, "the seats keep the flexibility of the modes that are left out")
     damping_ratio: float = real(
         -1.0, "1", "damping ratio of the elastic modes; negative: as the rotor's file says", maximum=1.0
     )
@@ -55,8 +53,10 @@ class Parameters:
     speed: float = real(942.477796076938, "rad/s", "spin speed at the start")
     unbalance_scale: float = real(1.0, "1", "factor on the shaft's unbalances", minimum=0.0)
     unbalance_angle: float = real(0.0, "rad", "angle of the rotor at the start")
-    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0)
-    viscous_drag: float = real(0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0)
+    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0, tunable=True)
+    viscous_drag: float = real(
+        0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0, tunable=True
+    )
     x: float = real(0.0, "m", "horizontal position at the start")
     y: float = real(0.0, "m", "vertical position at the start")
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")

@@ -23,13 +23,13 @@ LAYERS = {  # package: what it may import beside itself and the standard library
     "master": {
         "touchdown.modelkit",
         "touchdown.fmus",
-        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox"),
-        *("numpy", "scipy", "pandas", "xarray", "distributed"),
+        *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox", "distributed"),
+        *("numpy", "scipy", "pandas", "xarray", "jinja2", "markupsafe", "imageio_ffmpeg"),
     },
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
     "master": (
-        *("cli", "verbs", "api", "studies", "interop", "results"),
+        *("cli", "verbs", "api", "report", "studies", "interop", "results"),
         *("coupling", "components", "scene", "common"),
     ),
     "bearings": (
@@ -55,7 +55,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("variables", "units", "status", "refusals"),
     ),
     "fmus": (
-        *("native", "build", "presentation", "recipes", "scripts", "slave", "starts", "description"),
+        *("native", "build", "presentation", "recipes", "scripts", "slave", "variants", "description"),
         *("python", "refusals", "version"),
     ),
 }
@@ -64,6 +64,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
         *("touchdown.master.api.rotor", "touchdown.master.studies.machine"),
+        "touchdown.master.report.chapters.machine",
     },
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,

@@ -28,10 +28,11 @@ from touchdown.modelkit.ports import (
     StaticLoad,
 )
 from touchdown.modelkit.status import BAD_INPUT, OK
-from touchdown.modelkit.variables import group, integer, real
+from touchdown.modelkit.variables import Choices, choice, group, integer, real
 
 SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N
+SENSED = Choices("SensedAt", ("journal", "sensor"))
 ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
 
 
@@ -39,14 +40,14 @@ ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
 class Parameters:
     """Stiff enough to hold a small rotor, soft beside the touchdown bearing."""
 
-    stiffness: float = real(2e5, "N/m", "stiffness of the control", minimum=0.0)
-    damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0)
-    bandwidth: float = real(0.0, "rad/s", "of the amplifier (first order); 0: no lag", minimum=0.0)
-    sensed: int = integer(
-        0, "where position is measured: 0 at the journal, 1 at the sensor", minimum=0, maximum=1
+    stiffness: float = real(2e5, "N/m", "stiffness of the control", minimum=0.0, tunable=True)
+    damping: float = real(400.0, "N.s/m", "damping of the control", minimum=0.0, tunable=True)
+    bandwidth: float = real(
+        0.0, "rad/s", "of the amplifier (first order); 0: no lag", minimum=0.0, shown="rad/s"
     )
-    force_limit: float = real(1000.0, "N", "largest force in each direction", above=0.0)
-    shutdown_time: float = real(0.005, "s", "time of the shutdown", minimum=0.0)
+    sensed: int = choice(0, SENSED, "where position is measured")
+    force_limit: float = real(1000.0, "N", "largest force in each direction", above=0.0, tunable=True)
+    shutdown_time: float = real(0.005, "s", "time of the shutdown", minimum=0.0, tunable=True)
     interface: Interface = group(Interface)
 
 

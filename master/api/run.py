@@ -6,6 +6,7 @@ from pathlib import Path
 
 from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.results.folder.reopened import reopened
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import Pictures, run_scene
 from touchdown.master.scene.scene import Scene
@@ -40,3 +41,16 @@ def run(
     return run_scene(
         as_scene(scene), None if folder is None else Path(folder), in_process, csv, pictures, progress
     )
+
+
+def open_result(folder: PathLike) -> Result:
+    """What a run left in a folder, read back as `run` returned it; the recording is read when it is used.
+
+    Raises TouchdownError where the folder is not that of a run that is over.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> kept = touchdown.run(scene, "runs/kept", in_process=True).folder
+    >>> touchdown.open_result(kept).summary["completed"]
+    True
+    """
+    return reopened(Path(folder))

@@ -7,8 +7,7 @@ from contextlib import suppress
 
 from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import to_si
-from touchdown.master.components.component import SETTABLE, Component, check_value
+from touchdown.master.components.component import SETTABLE, Component, check_value, value_of
 from touchdown.master.coupling.bonds.bond import found
 from touchdown.master.coupling.connections import (
     Attachment,
@@ -172,6 +171,6 @@ def checked(component: Component, name: str, given: object) -> float:
         raise TouchdownError(
             f"{component.name}.{name} has the causality {variable.causality} and cannot be set"
         )
-    value = to_si(given, variable.unit, f"{component.name}.{name}")
+    value = value_of(component, variable, given)
     check_value(component, variable, value)
     return value

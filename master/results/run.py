@@ -18,6 +18,7 @@ from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
+from touchdown.master.results.folder.ending import write_ending
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
@@ -57,15 +58,16 @@ def run_scene(
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
+            warnings = [*system.left_out, *_warnings(outcome)]
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:
+                    write_ending(folder, told, warnings)
                     drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
                 finally:
                     results.finish(summary)
         finally:
             system.close()
-    warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
 
 

@@ -77,6 +77,7 @@ class Scene:
     energy_scale: tuple[str, ...] = ()
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
+    own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
 
     def set(self, settings: Mapping[str, object]) -> Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
@@ -113,7 +114,7 @@ class Scene:
         if not tail:
             raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
         if head == "run":
-            return replace(self, run=with_changes(self.run, {tail: value}))
+            return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
         spec = self._component(head)
         if tail == "preset":
             preset = checked_preset(value, head, self.folder)

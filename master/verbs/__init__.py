@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.master.verbs import run, scenes
+from touchdown.master.verbs import animate, report, run, scenes
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
 from touchdown.master.verbs.machines import catalogue, new
 from touchdown.master.verbs.studies import (
@@ -25,6 +25,8 @@ ALL: tuple[Verb, ...] = (
     catalogue.VERB,
     new.VERB,
     run.VERB,
+    report.VERB,
+    animate.VERB,
     advise.VERB,
     sweep.VERB,
     merge.VERB,

@@ -27,7 +27,7 @@ MOST_JOBS = 256  # processes, each of a hundred MB and more
 
 def add_scene(verb: argparse.ArgumentParser) -> None:
     """Add what names a scene and changes it; `chosen_scene` reads it."""
-    add_scene_name(verb, "name of a scene, or path of a .toml or .ssp")
+    add_scene_name(verb, "name of a scene, or path of a .toml, an .ssp or a run's scene.json")
     complete(
         verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})"),
         completion.schemes,

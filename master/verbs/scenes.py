@@ -75,7 +75,7 @@ def _show_variables(scene: Scene, name: str) -> None:
         for v, value in zip(settable, values, strict=True):
             ends = (("from", v.minimum), ("to", v.maximum))
             bounds = " ".join(f"{word} {bound:g}" for word, bound in ends if bound is not None)
-            print(f"  {v.name:<34}{value:>12.6g} {v.unit or '1':<10}{bounds:<14} {v.description}")
+            print(f"  {v.name:<34}{v.told(value):>12} {v.unit or '1':<10}{bounds:<14} {v.description}")
 
 
 VERB = Verb("scenes", "list the scenes, or show one", EXAMPLES, declare, execute)

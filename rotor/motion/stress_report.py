@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import integer, real
+from touchdown.modelkit.variables import SWITCH, choice, integer, real
 from touchdown.rotor.motion.state import modal
 
 
@@ -24,10 +24,8 @@ from touchdown.rotor.motion.state import modal
 class StressOptions:
     """What to compute of the stresses."""
 
-    active: int = integer(1, "0: no stresses are computed", minimum=0, maximum=1)
-    mode_acceleration: int = integer(
-        1, "1: loads add what the modes left out would; 0: kept modes only", minimum=0, maximum=1
-    )
+    active: int = choice(1, SWITCH, "whether stresses are computed")
+    mode_acceleration: int = choice(1, SWITCH, "loads add to the kept modes what those left out would")
     node: int = integer(
         0,
         "node whose vertical bending stress decides when the stresses along the rotor are kept; "
@@ -61,7 +59,7 @@ class NodeStress:
     shear_y: float = real(0.0, "Pa", "shear stress by vertical forces, when kept", local=True)
     peak_bending: float = real(0.0, "Pa", "largest bending stress since the start", local=True)
     peak_shear: float = real(0.0, "Pa", "largest shear stress since the start", local=True)
-    position: float = real(0.0, "m", "along the axis, from node 1", constant=True)
+    position: float = real(0.0, "m", "along the axis, from node 1", constant=True, shown="mm")
 
 
 class Along(NamedTuple):

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
     from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
     from touchdown.master.api.machines import catalogue, new
+    from touchdown.master.api.report import animate, report
     from touchdown.master.api.rotor import Rotor
-    from touchdown.master.api.run import run
+    from touchdown.master.api.run import open_result, run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
     from touchdown.master.api.studies import compare, merge, sweep, verdict
@@ -47,6 +48,7 @@ __all__ = [
     "TouchdownError",
     "Unbalance",
     "__version__",
+    "animate",
     "build",
     "catalogue",
     "check",
@@ -55,7 +57,9 @@ __all__ = [
     "load",
     "merge",
     "new",
+    "open_result",
     "register_scheme",
+    "report",
     "run",
     "scenes",
     "sweep",
@@ -68,7 +72,10 @@ _HOMES = {
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
     "new": "master.api.machines",
+    "animate": "master.api.report",
+    "report": "master.api.report",
     "Rotor": "master.api.rotor",
+    "open_result": "master.api.run",
     "run": "master.api.run",
     "load": "master.api.scenes",
     "scenes": "master.api.scenes",

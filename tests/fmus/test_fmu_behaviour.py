@@ -422,7 +422,7 @@ def test_calls_out_of_order_are_refused(fmu: str, answers: Answers):
 
 
 @every_fmu
-def test_after_initialisation_only_inputs_can_be_set(fmu: str, answers: Answers):
+def test_after_initialisation_only_inputs_and_what_is_tunable_can_be_set(fmu: str, answers: Answers):
     """The value stays, the log names the variable, and the instance does not go on."""
     found = answers(fmu)["set_too_late"]
     assert found["tried"] > 5

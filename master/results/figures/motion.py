@@ -115,18 +115,19 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     time = run.recording.time
     spun_up = SPUN_UP * _sync(run, a)
     spans = zooms(time, spun_up)
+    zoomed = int(np.sum(time >= spun_up)) > 1
     groups = [(title, shown) for title, turns in GROUPS if (shown := _turning(run, a, turns))]
     sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 1.2 + 2.4 * len(groups))
     grid = figure.subplots(len(groups), len(spans), squeeze=False, sharex="col")
     for row, (title, shown) in zip(grid, groups, strict=True):
         for axes, span in zip(row, spans, strict=True):
             _draw_speeds(axes, time, shown, span)
-            if _is_whole(span, time) and len(spans) > 1:
+            if zoomed and _is_whole(span, time):
                 _zoom(axes, [values[time >= spun_up] for _, values in shown])
         row[0].set_ylabel(f"{title} [rpm]")
         row[0].legend(*_reversed_legend(row[0]), loc="lower right")
     for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
-        head.set_title(_title(span, spans, _is_whole(span, time), len(spans) > 1))
+        head.set_title(_title(span, spans, _is_whole(span, time), zoomed))
         foot.set_xlabel(TIME)
     figure.suptitle(run.scene.title)
     return list(grid.flat)

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
-from touchdown.master.studies.rotor.figure import campbell, critical, modes, rest
+from touchdown.master.studies.rotor.figure import DISC, campbell, critical, drawing, modes, rest
 from touchdown.master.studies.rotor.report import TO_REST, report, report_text
+from touchdown.rotor.beams.shaft import PointMass
 from touchdown.rotor.file import find, shipped
 from touchdown.rotor.portrait import Portrait, portrait
 
@@ -125,7 +128,7 @@ def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
     sleeves = sum(e.sleeve_diameter > 0.0 for e in shaft.elements)
     for axes in figure.axes:
         assert axes.get_ylabel() == "radius [mm]"
-        assert len(axes.patches) == len(shaft.elements) + sleeves
+        assert len(axes.patches) == len(shaft.elements) + sleeves + len(shaft.points)
         box = axes.get_window_extent()
         (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
         assert (right - left) / box.width == pytest.approx((high - low) / box.height, rel=1e-3)
@@ -187,7 +190,7 @@ def test_all_modes_may_be_asked_for(tmp_path: Path) -> None:
     found = report(str(path), tmp_path, speed=0.0, modes=0)
     assert "bending 16" in found.text
     assert "B = same" in found.text
-    assert [p.name for p in found.pictures] == ["campbell.png", "critical.png", "modes.png", "rest.png"]
+    assert [p.name for p in found.pictures] == ["campbell.png", "modes.png", "critical.png", "rest.png"]
 
 
 @pytest.mark.parametrize(
@@ -269,3 +272,23 @@ def test_a_support_that_cannot_be(given: str, says: str, capsys: pytest.CaptureF
 def test_critical_speeds_need_two_supports() -> None:
     with pytest.raises(TouchdownError, match="critical speeds need supports at two nodes of Rotor II"):
         touchdown.Rotor.load("rotor_II").critical_speeds({"amb_A": 2e7})
+
+
+@pytest.mark.parametrize(
+    ("rotor", "diameter", "width"), [("rotor_I", 56.7, 20.8), ("rotor_II", 177.7, 13.7)]
+)
+def test_a_disc_is_drawn_as_large_as_its_file_has_it(rotor: str, diameter: float, width: float) -> None:
+    """From its inertias: the shaft keeps no diameters of discs."""
+    shaft = find(rotor)
+    point = max(shaft.points, key=lambda one: one.polar_inertia)
+    (axes,) = drawing(sheet(), shaft)
+    bodies = [patch for patch in axes.patches if patch.get_facecolor() == to_rgba(DISC)]
+    disc = max((body.get_path().get_extents() for body in bodies), key=lambda box: box.height)
+    assert (disc.height, disc.width) == pytest.approx((diameter, width), abs=0.05)
+    assert disc.x0 + 0.5 * disc.width == pytest.approx(1e3 * shaft.positions()[point.node - 1])
+
+
+def test_a_mass_without_inertias_is_a_mark() -> None:
+    shaft = replace(find("rotor_I"), points=(PointMass(5, 1.0),))
+    (axes,) = drawing(sheet(), shaft)
+    assert any(line.get_marker() == "D" for line in axes.lines)

@@ -15,6 +15,7 @@ from touchdown.master.results.result import RECORDING
 
 LOCK = ".touchdown.lock"
 SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
+ENDING = "ending.json"  # the components as they ended
 RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
@@ -82,9 +83,10 @@ def _left(folder: Path) -> Iterator[Path]:
     yield folder / SUMMARY
     yield from pictures
     yield folder / TABLE
+    yield folder / ENDING
     recording = (folder / RECORDING).resolve()  # a link stays
     yield recording
-    for path in (folder / SUMMARY, folder / SCENE, folder / TABLE, recording, *pictures):
+    for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):
         yield partial(path)
 
 
