@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
-from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.bearings import catalogue
+from touchdown.bearings.catalogue import CatalogueError as CatalogueError
 from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
@@ -144,10 +145,15 @@ def parameter_sets(model: Model) -> dict[str, dict[str, float]]:
 
 
 def presets() -> list[str]:
-    """Names of the sets of parameters that a component may ask for."""
-    return sorted(CATALOGUE)
+    """Names of the sets of parameters that a component may ask for: the bearings of the catalogue."""
+    return catalogue.built_in()
 
 
-def preset(name: str) -> dict[str, float]:
-    """Values in SI by parameter name; a component takes those it has. KeyError for an unknown name."""
-    return CATALOGUE[name].settings()
+def find_preset(name: str, folder: Path) -> str:
+    """What `preset` takes for what a scene in `folder` calls `name`. Raises CatalogueError."""
+    return catalogue.reference(name, folder)
+
+
+def preset(found: str) -> dict[str, float]:
+    """Values in SI by parameter name; a component takes those it has. Raises CatalogueError."""
+    return catalogue.bearing(found).settings()

@@ -19,7 +19,7 @@ from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.several import several
-from touchdown.master.components.library import locate
+from touchdown.master.components.library.sources import locate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
 from touchdown.master.scene.run_spec import CALL_TIMEOUT

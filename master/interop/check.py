@@ -11,7 +11,8 @@ from fmpy.validation import validate_fmu
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.components.library import Stepping, foreign, load_component
+from touchdown.master.components.library.loading import Stepping, load_component
+from touchdown.master.components.library.sources import foreign
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
 from touchdown.master.interop.experiments import Experiment, experiments, largest_deviation
 from touchdown.master.scene.run_spec import CALL_TIMEOUT

@@ -18,7 +18,8 @@ macro_step = 2e-5     # s
 
 [components.rotor]
 fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
-preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
+preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them; your own by its
+                      # name in bearings.toml beside the scene, or by FILE.toml:NAME
 every = 2             # macro steps of the run that it takes in one (default: 1)
 isolate = true        # step its FMU in a process of its own (default: false)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
@@ -26,6 +27,9 @@ native = true         # one of the project's own: take its FMU that needs no Pyt
 mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
 "A.x" = "shaft_x"     # a variable of the contract, and what this FMU calls it; or names = "FILE.toml"
+
+[set."bearing_*"]      # last, what several share: all components whose names match; or run, or one of them
+friction.dynamic = 0.2
 
 A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
 gives takes the place of what stands there, table by table; a component that names its fmu is a new one.
@@ -35,6 +39,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +60,7 @@ from touchdown.master.scene.tables import (
 )
 from touchdown.master.scene.wires import bonds, wires
 
+SCENE_FILE = "scene.toml"  # of a folder that is a machine
 LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
@@ -65,15 +71,21 @@ def shipped() -> dict[str, Path]:
 
 
 def load_scene(name: str) -> Scene:
-    """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    """A scene of the project's by name, or of the user's by the path of a TOML file.
+
+    A folder stands for the scene.toml in it, which goes by the folder's name.
+    """
     path = locate(name)
-    return parse(tables(path), path.stem, path.parent)
+    own = path.absolute().parent.name if path.name == SCENE_FILE else path.stem
+    return parse(tables(path), own, path.parent)
 
 
 def locate(name: str) -> Path:
     """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
     if name.endswith(".toml"):
         return Path(name)
+    if name not in shipped() and (Path(name) / SCENE_FILE).is_file():
+        return Path(name) / SCENE_FILE
     try:
         return shipped()[name]
     except KeyError:
@@ -95,6 +107,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "bond",
         "run",
         "components",
+        "set",
     )
     refuse_unknown(data, known, f"scene {name}")
     components = {
@@ -103,7 +116,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     }
     if not components:
         raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
-    return Scene(
+    scene = Scene(
         name=name,
         title=str(data.get("title", name)),
         about=str(data.get("about", "")),
@@ -117,6 +130,14 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
     )
+    return _with_all(scene, flat(table(data.get("set", {}), f"scene {name}: [set]")))
+
+
+def _with_all(scene: Scene, settings: Mapping[str, object]) -> Scene:
+    """A scene with the settings of its file's [set], which are the scene's, not made beside it."""
+    there = scene.set(settings)
+    components = {name: replace(spec, own=()) for name, spec in there.components.items()}
+    return replace(there, components=components)
 
 
 def _component(value: object, where: str, folder: Path) -> ComponentSpec:
@@ -126,7 +147,7 @@ def _component(value: object, where: str, folder: Path) -> ComponentSpec:
     if not isinstance(given.get("fmu"), str):
         raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
     settings = flat(table(given.get("set", {}), where))
-    preset = checked_preset(given.get("preset"), where)
+    preset = checked_preset(given.get("preset"), where, folder)
     every = whole(given.get("every", 1), f"{where} every")
     names = _names(given.get("names", {}), where, folder)
     isolate = switch(given.get("isolate", False), f"{where} isolate")

@@ -4,7 +4,8 @@ They are looked at after every stride of the rotor, since a macro step may be lo
 
 sigma = r E Y'' (3.20, 3.21) and tau = 4/3 V/A (3.22, 3.23; solid sections) at both ends of every element,
 from the modal coordinates, and from the loads by what the modes left out would add (mode acceleration).
-A node's stress is the larger of its elements'. R: ends of the elements, two each.
+A node's stress is the larger of its elements'. R: ends of the elements at the nodes that are watched
+(`rotor.modal.watched`), two each but for the shaft's ends.
 """
 
 from __future__ import annotations
@@ -157,7 +158,7 @@ def _largest(bending, shear, m):
     most_bending, most_shear, watched = Peak(0.0, 0), Peak(0.0, 0), 0.0
     for i in range(rows.ends):
         node = int(rows.node[i])
-        own = m.o.node[node - 1]
+        own = m.o.node[int(rows.place[i])]
         own.peak_bending = max(own.peak_bending, bending.both[i])
         own.peak_shear = max(own.peak_shear, shear.both[i])
         if bending.both[i] > most_bending.stress:
@@ -173,11 +174,11 @@ def _largest(bending, shear, m):
 def _keep(bending, shear, m):
     """Keep bending and shear (`Along` each) in m.o.node (Pa)."""
     rows = m.d.stress
-    for i in range(m.d.nodes):
+    for i in range(m.d.watched):
         o = m.o.node[i]
         o.bending_x, o.bending_y, o.shear_x, o.shear_y = 0.0, 0.0, 0.0, 0.0
     for i in range(rows.ends):
-        o = m.o.node[int(rows.node[i]) - 1]
+        o = m.o.node[int(rows.place[i])]
         o.bending_x, o.bending_y = _larger(o.bending_x, bending.x[i]), _larger(o.bending_y, bending.y[i])
         o.shear_x, o.shear_y = _larger(o.shear_x, shear.x[i]), _larger(o.shear_y, shear.y[i])
 

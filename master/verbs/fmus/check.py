@@ -38,7 +38,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.components.library import foreign
+    from touchdown.master.components.library.sources import foreign
     from touchdown.master.interop.check import check_fmu
     from touchdown.master.scene.file import read_names
 

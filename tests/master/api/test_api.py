@@ -231,7 +231,7 @@ def test_a_sweep_in_a_script_without_the_guard_says_so(tmp_path: Path) -> None:
     made = subprocess.run(
         [sys.executable, tmp_path / "bare.py"], capture_output=True, text=True, check=False
     )
-    assert made.stdout == "['its process died']\n"
+    assert made.stdout == "['its process ended with status 1 before it began']\n"
     assert 'put what it does under if __name__ == "__main__":' in made.stderr
     assert "Traceback" not in made.stderr
 

@@ -63,4 +63,5 @@ def configuration(drop: Drop, folder: str) -> dict[str, object]:
     }
 
 
-main(drive)
+if __name__ == "__main__":
+    main(drive)

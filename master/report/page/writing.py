@@ -1,0 +1,82 @@
+"""The report of a run as one page that needs nothing beside it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from touchdown.fmus.version import VERSION
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import replacing, writing_to
+from touchdown.master.report.chapters.summary import headline
+from touchdown.master.report.contents import CHAPTERS, section
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Section
+from touchdown.master.results.result import Result
+
+HERE = Path(__file__).parent
+TEMPLATES, ASSETS = HERE / "templates", HERE / "assets"
+PAGE = "report.html"
+_CODE = re.compile(r"`([^`]+)`")
+
+
+@dataclass(frozen=True)
+class Page:
+    """What the page's template prints."""
+
+    title: str
+    headline: str
+    made: str  # when and with what
+    sections: Sequence[Section]
+
+
+def report_on(result: Result) -> Page:
+    """The report of a run."""
+    subject = Subject(result)
+    when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    return Page(
+        title=result.scene.title,
+        headline=headline(subject),
+        made=f"Scene {result.scene.name}, report of {when} by touchdown-cosim {VERSION}.",
+        sections=[section(chapter, subject) for chapter in CHAPTERS],
+    )
+
+
+def make_room(path: Path) -> None:
+    """Make the folder of a page at `path`. Raises TouchdownError where there can be no page."""
+    if path.is_dir():
+        raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
+    with writing_to(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+
+
+def write_page(page: Page, path: Path) -> Path:
+    """Write a page whole; returns its path. Raises TouchdownError where it cannot be written."""
+    text = rendered(page)
+    with writing_to(path.parent), replacing(path) as part:
+        part.write_text(text, encoding="utf-8")
+    return path
+
+
+def marked(text: str) -> Markup:
+    """Text with what stands between backquotes as code."""
+    return Markup(_CODE.sub(r"<code>\1</code>", str(escape(text))))
+
+
+def rendered(page: Page) -> str:
+    """A page as HTML, scripts and styles inside."""
+    environment = Environment(
+        loader=FileSystemLoader([TEMPLATES, ASSETS]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["marked"] = marked
+    return environment.get_template("page.html").render(page=page)

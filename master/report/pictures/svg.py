@@ -1,0 +1,144 @@
+"""Pictures drawn by matplotlib as SVG inside a page, in the page's colours by day and by night."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from io import StringIO
+from typing import Any
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet
+
+SVG = "http://www.w3.org/2000/svg"
+LINK = "http://www.w3.org/1999/xlink"
+FONT, WIDE_FONT = 9.5, 12.5  # pt
+STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",  # text stays text
+    "svg.hashsalt": "touchdown",  # the same picture has the same names inside
+    "axes.titlesize": "medium",
+    "figure.titlesize": "medium",
+    "legend.framealpha": 0.75,
+    "legend.edgecolor": GREY,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "path.simplify_threshold": 0.5,  # px, of lines with thousands of points
+    "agg.path.chunksize": 0,
+}
+PAINTS = {  # colour of a picture: word of the page's style
+    BLACK: "ink",
+    "#ffffff": "paper",
+    BLUE: "blue",
+    ORANGE: "orange",
+    GREEN: "green",
+    PURPLE: "purple",
+    GREY: "grey",
+    "#c8d3dc": "core",  # of drawn machines
+    "#e6d9bd": "sleeve",
+    "#ece3d0": "sleeve",
+    "#b3c6b1": "disc",
+    "#7f8a93": "edge",
+    "#b0b0b0": "line",  # matplotlib's grid
+    "#cccccc": "line",  # and frame of legends
+}
+_COLOUR = re.compile(r"#[0-9a-f]{6}\b")
+_LONG = re.compile(r"(-?\d+\.\d{2})\d+")
+_FONT = re.compile(r"font: ([\d.]+)px [^;]*")
+_REFERENCE = re.compile(r"url\(#([^)]+)\)")
+
+
+def inline(draw: Callable[[Figure], object], name: str, alt: str, wide: bool = False) -> str:
+    """What `draw` puts on an empty figure, as an SVG element for a page.
+
+    name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words;
+    wide: it is drawn wider than a page, which shows it smaller, so that its text has to be larger.
+    """
+    written = StringIO()
+    with mpl.rc_context({**STYLE, "font.size": WIDE_FONT if wide else FONT}):
+        figure = sheet()
+        figure.patch.set_visible(False)
+        draw(figure)
+        _without_first_line(figure)
+        for axes in figure.axes:
+            axes.patch.set_visible(False)
+        figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
+    text = written.getvalue()
+    return _for_page(ElementTree.fromstring(text[text.index("<svg") :]), name, alt)
+
+
+def _without_first_line(figure: Figure) -> None:
+    """Take the run's title off a picture's: the page has it already."""
+    title = figure.get_suptitle()
+    if title:
+        figure.suptitle(title.partition("\n")[2])
+
+
+def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:
+    ElementTree.register_namespace("", SVG)
+    ElementTree.register_namespace("xlink", LINK)
+    for part in [*root.findall(f"{{{SVG}}}metadata"), *root.findall(f"{{{SVG}}}defs")]:
+        if part.tag.endswith("metadata") or part.find(f"{{{SVG}}}style") is not None:
+            root.remove(part)
+    used = _used(root)
+    for element in root.iter():
+        _renamed(element, used, name)
+        _coloured(element)
+    width = root.attrib.pop("width")
+    root.attrib.pop("height")
+    root.set("role", "img")
+    root.set("aria-label", alt)
+    root.set("style", f"max-width: {_pixels(width):.0f}px")
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _pixels(length: str) -> float:
+    """Of a length in points."""
+    return float(length.removesuffix("pt")) * 4.0 / 3.0
+
+
+def _used(root: ElementTree.Element) -> set[str]:
+    """Ids that something inside refers to."""
+    found: set[str] = set()
+    for element in root.iter():
+        for key, value in element.attrib.items():
+            found |= set(_REFERENCE.findall(value))
+            if key == f"{{{LINK}}}href":
+                found.add(value.removeprefix("#"))
+    return found
+
+
+def _renamed(element: ElementTree.Element, used: set[str], name: str) -> None:
+    """Ids that begin with `name` where they are referred to, and none elsewhere."""
+    own = element.attrib.pop("id", None)
+    if own in used:
+        element.set("id", f"{name}-{own}")
+    for key, value in element.attrib.items():
+        if key == f"{{{LINK}}}href" and value.startswith("#"):
+            element.set(key, f"#{name}-{value[1:]}")
+        elif "url(#" in value:
+            element.set(key, _REFERENCE.sub(rf"url(#{name}-\1)", value))
+
+
+def _coloured(element: ElementTree.Element) -> None:
+    """Colours as words of the page's style, its font, and coordinates of two decimals."""
+    tag = element.tag.rpartition("}")[2]
+    if "d" in element.attrib:
+        element.set("d", _LONG.sub(r"\1", element.get("d", "")).replace("\n", ""))
+    style = element.get("style", "")
+    if tag == "text":
+        style = _FONT.sub(r"font-size: \1px", style)
+        if "fill" not in style:
+            style += "; fill: var(--ink)"
+    elif tag in ("path", "use") and "fill" not in style and "stroke" in style and tag == "use":
+        style += "; fill: var(--ink)"
+    style = _COLOUR.sub(lambda match: _paint(match[0]), style)
+    if style:
+        element.set("style", style)
+
+
+def _paint(colour: str) -> str:
+    word = PAINTS.get(colour)
+    return f"var(--{word})" if word else colour
