@@ -153,9 +153,22 @@ def presets() -> list[str]:
     return catalogue.built_in()
 
 
-def find_preset(name: str, folder: Path) -> str:
-    """What `preset` takes for what a scene in `folder` calls `name`. Raises CatalogueError."""
-    return catalogue.reference(name, folder)
+def find_preset(name: str, *folders: Path) -> str:
+    """What `preset` takes for the bearing called `name` in the first of `folders` where there is one.
+
+    Raises CatalogueError, that of the first folder, where there is none.
+    """
+    file = name.rpartition(":")[0]
+    there = [folder for folder in folders if not file or (folder / file).is_file()] or folders[:1]
+    missed: CatalogueError | None = None
+    for folder in there:
+        try:
+            return catalogue.reference(name, folder)
+        except CatalogueError as error:
+            if not error.known:  # a mistake in a file, not a name that may be elsewhere
+                raise
+            missed = missed or error
+    raise missed or CatalogueError(f"there is no preset {name}", presets())
 
 
 def preset(found: str) -> dict[str, float]:
