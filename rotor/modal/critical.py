@@ -49,7 +49,7 @@ def critical_speeds(basis: Basis, supports: Sequence[Support]) -> np.ndarray:
     one, G = np.eye(len(basis.omega)), basis.gyroscopic
     if np.array_equal(planes[0], planes[1]):
         return _speeds(planes[0], one - G)
-    return _speeds(linalg.block_diag(*planes), np.block([[one, -G], [-G, one]]))
+    return _speeds(np.asarray(linalg.block_diag(*planes)), np.block([[one, -G], [-G, one]]))
 
 
 def critical_map(shaft: Shaft, basis: Basis, places: Sequence[Station]) -> CriticalMap:
