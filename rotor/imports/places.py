@@ -27,6 +27,9 @@ def placed(
     places that are not on the shaft.
     """
     kinds = [dict(kind or {}) for kind in (seats, levitated, sensors)]
+    names = [name for kind in kinds for name in kind]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise ImportedRotorError(f"{twice} is there twice; each station and sensor has a name of its own")
     where = [{name: _position(shaft, name, at) for name, at in kind.items()} for kind in kinds]
     for kind in where:
         for position in kind.values():

@@ -54,6 +54,13 @@ class Part:
             raise ImportedRotorError(f"{self.where}: {name} = {value!r} is not a finite number")
         return number
 
+    def positive(self, name: str, default: float | None = None) -> float:
+        """A number above 0. Raises ImportedRotorError."""
+        number = self.number(name, default)
+        if number <= 0.0:
+            raise ImportedRotorError(f"{self.where}: {name} = {number:g} must be above 0")
+        return number
+
     def node(self) -> int:
         """Counted from 0. Raises ImportedRotorError."""
         number = self.number("n")
@@ -141,10 +148,10 @@ def _shaft(parts: list[Part]) -> tuple[Element, ...]:
     at: dict[int, list[Part]] = {}
     for part in parts:
         at.setdefault(part.node(), []).append(part)
-    missing = sorted(set(range(max(at) + 1)) - set(at))
-    if missing:
+    missing = next((n for n, there in enumerate(sorted(at)) if n != there), None)
+    if missing is not None:
         raise ImportedRotorError(
-            f"no shaft element begins at node {missing[0]} of ROSS's: this is more than one shaft, and a "
+            f"no shaft element begins at node {missing} of ROSS's: this is more than one shaft, and a "
             "rotor here is one; save them one by one"
         )
     return tuple(_together(at[n]) for n in sorted(at))
@@ -170,16 +177,16 @@ def _element(part: Part) -> Element:
             f"{part.where}: material = {material!r} has no values; save it by a newer version of ROSS"
         )
     own = Part("Material", part.name, f"{part.where}: material", material)
-    E = own.number("E")
-    poisson = 0.5 * E / own.number("G_s") - 1.0 if own.has("G_s") else own.number("Poisson")
-    outer, inner = part.number("odl"), part.number("idl")
-    outer_end, inner_end = part.number("odr", outer), part.number("idr", inner)
+    E = own.positive("E")
+    poisson = 0.5 * E / own.positive("G_s") - 1.0 if own.has("G_s") else own.number("Poisson")
+    outer, inner = part.positive("odl"), part.number("idl")
+    outer_end, inner_end = part.positive("odr", outer), part.number("idr", inner)
     return Element(
-        length=part.number("L"),
+        length=part.positive("L"),
         outer_diameter=outer,
         inner_diameter=inner,
         modulus=E,
-        density=own.number("rho"),
+        density=own.positive("rho"),
         poisson=poisson,
         shear_factor=_shear_factor(part, poisson, (inner + inner_end) / (outer + outer_end)),
         outer_diameter_end=None if outer_end == outer else outer_end,

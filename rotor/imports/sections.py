@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 from touchdown.modelkit.units import UnitError, to_si
 from touchdown.rotor.beams.element import Element, split
-from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
 from touchdown.rotor.imports.mistakes import ImportedRotorError
 
 UNITS = {  # column: SI unit; those of text and of pure numbers are not here
@@ -91,7 +91,7 @@ def of_sections(text: str, file: str, title: str) -> Shaft:
     for row in _rows(text, file):
         _add_things(row, built)
         if "length" in row.cells:
-            built.elements += _elements(row)
+            built.elements += _elements(row, MOST_NODES - 1 - len(built.elements))
         elif "outer diameter" in row.cells:
             raise row.error("length", "is missing, of a section with an outer diameter")
     if not built.elements:
@@ -162,10 +162,14 @@ def _add_things(row: Row, built: Built) -> None:
         angle = row.quantity("unbalance angle", 0.0)
         built.unbalances.append(Unbalance(node, row.quantity("unbalance"), angle))
     if "station" in row.cells:
-        built.stations.append(Station(row.cells["station"], node))
+        name = row.cells["station"]
+        if any(s.name == name for s in built.stations):
+            raise row.error("station", "is there twice; choose another name")
+        built.stations.append(Station(name, node))
 
 
-def _elements(row: Row) -> list[Element]:
+def _elements(row: Row, most: int) -> list[Element]:
+    """The elements of a section, at most `most`."""
     length = row.quantity("length", zero=False)
     outer = row.quantity("outer diameter", zero=False)
     inner = row.quantity("inner diameter", 0.0)
@@ -194,7 +198,7 @@ def _elements(row: Row) -> list[Element]:
         outer_diameter_end=None if outer_end == outer else outer_end,
         inner_diameter_end=None if inner_end == inner else inner_end,
     )
-    return split(section, _count(row, section))
+    return split(section, _count(row, section, most))
 
 
 def _material(row: Row) -> tuple[float, float, float]:
@@ -215,11 +219,15 @@ def _material(row: Row) -> tuple[float, float, float]:
     )
 
 
-def _count(row: Row, section: Element) -> int:
-    """Into how many elements a section is divided."""
-    if "elements" not in row.cells:
-        return math.ceil(section.length / section.widest)
-    count = row.quantity("elements", zero=False)
+def _count(row: Row, section: Element, most: int) -> int:
+    """Into how many elements a section is divided, at most `most`."""
+    count = math.ceil(section.length / section.widest)
+    if "elements" in row.cells:
+        count = row.quantity("elements", zero=False)
     if count != int(count):
         raise row.error("elements", "must be a whole number")
+    if count > most:
+        raise row.error(
+            "length", f"makes {count:g} elements; with those before a rotor has at most {MOST_NODES} nodes"
+        )
     return int(count)

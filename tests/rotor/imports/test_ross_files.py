@@ -151,6 +151,9 @@ def test_what_is_otherwise_is_said() -> None:
         ({"Disk_0": {"n": 9}}, "n = 9 is not on the shaft, whose nodes are 0 to 2"),
         ({"Disk_0": {"m": math.nan}}, "m = nan is not a finite number"),
         ({"Disk_0": {"n": 0.5}}, "n = 0.5 is no node"),
+        ({"Element_1": {"n": 1e9}}, "no shaft element begins at node 2"),
+        ({"Element_1": {"odl": 0.0}}, "odl = 0 must be above 0"),
+        ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material: G_s = 0 must be above 0"),
         ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
     ],
 )

@@ -77,6 +77,8 @@ def test_a_sleeve() -> None:
         ("200, 40", ", 40", "line 5: length is missing"),
         ("steel, 4", "steel, 4.5", "line 5: elements = '4.5' must be a whole number"),
         ("A\n200", "A, 5\n200", "line 4: has 12 cells, the header 11"),
+        ("steel, 4", "steel, 1e9", "line 5: length = '200' makes 1e+09 elements; with those before"),
+        (", B\n", ", A\n", "line 6: station = 'A' is there twice"),
         (TABLE, "", "mine.csv: is empty"),
         (TABLE, "length [mm], outer diameter [mm]", "has no section"),
         (TABLE, "length [mm]\n3", "the header must name"),
@@ -102,6 +104,11 @@ def test_places_by_node_and_by_distance() -> None:
     assert with_places.centre_of_mass == pytest.approx(shaft.centre_of_mass, rel=1e-12)
     assert with_places.diametral_inertia == pytest.approx(shaft.diametral_inertia, rel=1e-12)
     assert placed(shaft).stations == shaft.stations
+
+
+def test_a_name_stands_once() -> None:
+    with pytest.raises(ImportedRotorError, match="A is there twice"):
+        placed(table(TABLE), {"A": 1}, {"A": 2})
 
 
 @pytest.mark.parametrize(
