@@ -16,6 +16,7 @@ myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
+nb_execution_show_tb = True
 nb_execution_timeout = 600  # s per cell: where nothing is compiled yet
 nb_merge_streams = True
 autodoc_member_order = "bysource"

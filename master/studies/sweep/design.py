@@ -106,7 +106,7 @@ class Design:
         return cls(tuple(spans), points, f"{_points(count)} of {method.title}, seed {seed}")
 
     def shard(self, number: int, of: int) -> Design:
-        """Every point whose turn it is when `of` take turns, as the `number`th of them (from 1)."""
+        """Every point whose turn it is when `of` take turns, for the one of that `number`, from 1."""
         if not 1 <= number <= of:
             raise TouchdownError(f"shard {number} of {of}: write 1 to {of}, such as 3/8")
         if number > len(self.points):
