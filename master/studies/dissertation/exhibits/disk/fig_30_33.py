@@ -52,7 +52,7 @@ def fig_33(drops: Drops) -> Exhibit:
         NEVER,
         touches,
         holds=touches == NEVER,
-        why="a ball that the others push round the unloaded arc" if touches != NEVER else "",
+        why="where the balls come to lie is chaotic" if touches != NEVER else "",
     )
     return exhibit._replace(rows=[*exhibit.rows, none])
 

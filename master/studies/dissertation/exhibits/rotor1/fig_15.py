@@ -36,7 +36,7 @@ def fig_15(drops: Drops) -> Exhibit:
                     source,
                     found,
                     near=NEAR_HZ / source,
-                    why="forward and backward swing differ less on bearings so far out of line",
+                    why="the source does not say of which part its lines are",
                 )
             )
         ((bending, _),) = lines(frequency, vx[part], *BENDING)
