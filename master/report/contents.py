@@ -23,6 +23,7 @@ from touchdown.master.report.chapters.settings import settings
 from touchdown.master.report.chapters.summary import summary
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Absent, Block, Section
+from touchdown.master.results.recording import NotRecordedError
 
 
 @dataclass(frozen=True)
@@ -86,3 +87,5 @@ def section(chapter: Chapter, subject: Subject) -> Section:
         return Section(chapter.name, chapter.title, chapter.blocks(subject), scope=chapter.scope)
     except Absent as absent:
         return Section(chapter.name, chapter.title, lacking=str(absent), scope=chapter.scope)
+    except NotRecordedError as error:
+        return Section(chapter.name, chapter.title, lacking=f"{error}.", scope=chapter.scope)

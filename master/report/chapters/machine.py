@@ -56,7 +56,9 @@ def _side_view(subject: Subject) -> Iterator[Block]:
 
 def _view(subject: Subject) -> tuple[SideView, str]:
     """What is drawn, and what to know of it. Raises TouchdownError where the rotor's shape is not known."""
-    body = subject.rotor if subject.seats else next(iter(subject.run.system.attachments)).body
+    if not subject.run.system.attachments:
+        raise TouchdownError("nothing is attached to a rotor")
+    body = subject.rotor if subject.seats else subject.run.system.attachments[0].body
     spec = subject.result.scene.components[body]
     if "stress.peak_bending" in subject.run.system.components[body].variables or stressed(
         subject.run.system

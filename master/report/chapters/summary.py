@@ -15,6 +15,7 @@ from touchdown.master.results.whirl.evidence import evidence
 from touchdown.master.results.whirl.unbalance import unbalanced
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
+UNTOLD = "not told, for no clearance is stated or no orbit recorded"
 SPINS = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
 
 
@@ -42,7 +43,7 @@ def _verdict(subject: Subject) -> str:
         return f"The rotor whirls: {where}."
     told = {seat: words for seat, words in said.items() if isinstance(words, str)}
     if not told:
-        return "The rotor lands; its bearings state no clearance, so that no whirl can be told."
+        return f"The rotor lands; whether it whirls is {UNTOLD}."
     return f"The rotor lands and does not whirl: {_by_words(told)}."
 
 
@@ -112,7 +113,7 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
         rows.append(
             [
                 f"{subject.name(a)} ({a.bearing})",
-                words if isinstance(words, str) else "not told: the bearing states no clearance",
+                words if isinstance(words, str) else UNTOLD,
                 quantity(contact, "s"),
                 quantity(subject.figure("peak_contact_force_N", a), "N", 3),
                 quantity(turns or None, "1", 3),
