@@ -2,13 +2,14 @@
 
     python benchmarks/masters.py [--problems car,bounce] [--tools libcosim,ecos] [--quick] [-o runs/masters]
 
-Four systems: two masses on springs that are shot at each other, a quarter car that meets a step of the road, a
-ball on an undamped one-sided spring (FMUs in C, compiled for it), and a shipped scene, the disk that falls onto
-a touchdown bearing. Every scheme of this project, and libcosim with fixed steps and with its energy-based
-step control, ecos, fmpy's SSP runner and cofmupy, which are installed from PyPI into environments of their own; ecos
-needs Debian's libtbb12. One table for each system, and one picture. The step control has the parameters of
-libcosimpy's own test of a quarter car, but may take steps from 1 us to the longest that the others are asked
-for; its tolerances, absolute and relative, are what is varied.
+Four systems: two masses on springs that are shot at each other (also where the position or the velocity
+alone comes back), a quarter car that meets a step of the road, a ball on an undamped one-sided spring (FMUs
+in C, compiled for it), and a shipped scene, the disk that falls onto a touchdown bearing. Every scheme of
+this project, and libcosim with fixed steps and with its energy-based step control, ecos, fmpy's SSP runner
+and cofmupy, which are installed from PyPI into environments of their own; ecos needs Debian's libtbb12. One
+table for each system, and one picture. The step control has the parameters of libcosimpy's own test of a
+quarter car, but may take steps from 1 us to the longest that the others are asked for; its tolerances,
+absolute and relative, are what is varied. Results are kept, so that problems can be run one by one.
 """
 
 from __future__ import annotations
@@ -16,9 +17,8 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TextIO
 
 sys.path.extend(
     str(Path(__file__).resolve().parents[1] / part)
@@ -39,15 +39,18 @@ from cosimulated.picture import draw
 from cosimulated.problems.bounce import Bounce
 from cosimulated.problems.car import Car
 from cosimulated.problems.drop import Drop
-from cosimulated.problems.oscillator import Oscillator
+from cosimulated.problems.oscillator import Oscillator, PositionAlone, VelocityAlone
 from cosimulated.runs import Master, Problem
 
 PROBLEMS: Mapping[str, Callable[[Path], Problem]] = {
-    "oscillator": Oscillator,
     "car": Car,
-    "bounce": Bounce,
     "drop": lambda _: Drop(),
+    "bounce": Bounce,
+    "oscillator": Oscillator,
+    "position": PositionAlone,
+    "velocity": VelocityAlone,
 }
+SHOWN = {"car": Car.title, "drop": Drop.title, "bounce": Bounce.title, "oscillator": Oscillator.title}
 ECCO = {  # names and values as in libcosimpy's test of a quarter car, but for the shortest step
     "safety_factor": 0.8,
     "step_size": 1e-4,
@@ -68,46 +71,66 @@ OTHERS: tuple[Other, ...] = (
 )
 
 
+TUNED: Mapping[str, Mapping[str, float]] = {  # what else was tried for the step control
+    "as above": {},
+    "first step 1 us": {"step_size": 1e-6},
+    "rates 0.5 to 1.1": {"min_change_rate": 0.5, "max_change_rate": 1.1},
+    "rates 0.2 to 2": {"max_change_rate": 2.0},
+    "safety 1": {"safety_factor": 1.0},
+    "gains 0, 0.5": {"p_gain": 0.0, "i_gain": 0.5},
+    "gains 0.4, 0.3": {"p_gain": 0.4, "i_gain": 0.3},
+    "gains 0.13, 0.2": {"p_gain": 0.13, "i_gain": 0.2},
+}
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Print the tables, draw the picture."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--problems", default=",".join(PROBLEMS), help=f"of {', '.join(PROBLEMS)}")
-    tools = dict.fromkeys(other.tool for other in OTHERS)
-    parser.add_argument("--tools", default=",".join(tools), help="other tools; '' for none")
-    parser.add_argument("--quick", action="store_true", help="the coarsest runs only: does it still run?")
-    parser.add_argument("-o", "--output", type=Path, default=Path("runs/masters"))
-    options = parser.parse_args(arguments)
+    options = asked(arguments)
     options.output.mkdir(parents=True, exist_ok=True)
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        (options.output / "masters.txt").open("w", encoding="utf-8") as file,
-    ):
+    with tempfile.TemporaryDirectory() as folder:
         fmu = bodies.fmu(bodies.compiled(Path(folder)))
-        found, own = {}, []
-        for name in options.problems.split(","):
+        if options.tune:
+            tuned = [
+                Controlled("libcosim", name, ecco={**ECCO, **change}) for name, change in TUNED.items()
+            ]
+            tabled(Car(fmu), tuned, options)
+            return 0
+        for name in options.problems:
             problem = PROBLEMS[name](fmu)
-            ways = [Own(way, table) for way, table in problem.own.items()]
-            others = [other for other in OTHERS if other.tool in options.tools.split(",")]
-            own += [way.title for way in ways]
-            found[problem.title] = compared(problem, [*ways, *others], options.quick, file)
-    draw(found, own, options.output / "masters.png")
-    print(f"\ntables and picture in {options.output}")
+            ways = [Own(way, table) for way, table in problem.ways.items()]
+            others = [other for other in OTHERS if other.tool in options.tools]
+            comparison.keep(tabled(problem, [*ways, *others], options), options.output / f"{name}.json")
+    drawn = {title: comparison.known(options.output / f"{name}.json") for name, title in SHOWN.items()}
+    draw({title: found for title, found in drawn.items() if found}, options.output / "masters.png")
+    print(f"\npicture, of all problems that were ever run into it, in {options.output}")
     return 0
 
 
-def compared(problem: Problem, masters: list[Master], quick: bool, file: TextIO) -> list[Result]:
-    """All masters on a problem, and its table on the screen and in a file."""
-    rows: list[tuple[Result, str]] = []
-    for master in masters:
-        tried = master.settings(problem)
-        found = list(comparison.results(master, problem, tried[:1] if quick else tried))
-        rests = "-" if quick else comparison.resting(master, problem)
-        rows += [(one, "" if k else rests) for k, one in enumerate(found)]
-    results = [one for one, _ in rows]
-    for line in (*comparison.block(problem.title, rows).lines(), *comparison.reasons(results)):
-        print(line, flush=True)
-        print(line, file=file, flush=True)
-    return results
+def asked(arguments: list[str] | None) -> argparse.Namespace:
+    """The command's options."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    tools = dict.fromkeys(other.tool for other in OTHERS)
+    parser.add_argument("--problems", default=",".join(PROBLEMS), help=f"of {', '.join(PROBLEMS)}")
+    parser.add_argument("--tools", default=",".join(tools), help=f"of {', '.join(tools)}; '' for none")
+    parser.add_argument("--quick", action="store_true", help="the coarsest runs only: does it still run?")
+    parser.add_argument(
+        "--tune", action="store_true", help="only the step control's other parameters, on the car"
+    )
+    parser.add_argument("-o", "--output", type=Path, default=Path("runs/masters"))
+    options = parser.parse_args(arguments)
+    for key, known in (("problems", PROBLEMS), ("tools", tools)):
+        chosen = [name for name in getattr(options, key).split(",") if name]
+        if not set(chosen) <= set(known):
+            parser.error(f"--{key} {','.join(chosen)}: of {', '.join(known)}")
+        setattr(options, key, chosen)
+    return options
+
+
+def tabled(problem: Problem, masters: Sequence[Master], options: argparse.Namespace) -> list[Result]:
+    """What all masters give on a problem, which is printed."""
+    found = list(comparison.compared(masters, problem, options.quick))
+    print(*comparison.table(problem.title, found), sep="\n", flush=True)
+    return found
 
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
         *("touchdown.master.api.rotor", "touchdown.master.studies.machine"),
-        "touchdown.master.report.chapters.machine",
+        *("touchdown.master.report.chapters.machine", "touchdown.master.report.pictures.machine"),
     },
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,

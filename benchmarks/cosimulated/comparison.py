@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 
 import numpy as np
-from cosimulated.runs import Master, Problem, Setting, UnableError
 from speeds.measured import Block
+
+from cosimulated.runs import Master, Problem, Setting, UnableError
 
 SHORTEST, LONGEST = 1e-4, 0.3  # s, where stable macro steps are looked for
 CLOSE = 1.1  # ratio of a stable step and one that is not
@@ -19,23 +22,20 @@ class Result:
     """A master at one setting."""
 
     master: str
+    own: bool  # whether it is this project's
     label: str
     calls: int = 0
     error: float = float("nan")  # m
     energy: float | None = None  # over what there was
+    rests: str = ""  # its longest stable macro step, for people
     unable: str = ""  # why there is nothing
 
-    def row(self, rests: str) -> tuple[str, ...]:
+    def row(self) -> tuple[str, ...]:
         """Of the table."""
         if self.unable:
-            return self.master, self.label, "-", "-", "-", rests
+            return self.master, self.label, "-", "-", "-", self.rests
         energy = "-" if self.energy is None else f"{self.energy:.1e}"
-        return self.master, self.label, f"{self.calls}", f"{self.error:.1e}", energy, rests
-
-
-def results(master: Master, problem: Problem, settings: Sequence[Setting]) -> Iterator[Result]:
-    """One for each setting."""
-    return (result(master, problem, setting) for setting in settings)
+        return self.master, self.label, f"{self.calls}", f"{self.error:.1e}", energy, self.rests
 
 
 def result(master: Master, problem: Problem, setting: Setting) -> Result:
@@ -43,46 +43,80 @@ def result(master: Master, problem: Problem, setting: Setting) -> Result:
     try:
         motion = master.run(problem, setting)
     except UnableError as reason:
-        return Result(master.title, setting.label, unable=str(reason))
+        return Result(master.title, master.own, setting.label, unable=str(reason))
     with np.errstate(all="ignore"):
         error, energy = problem.error(motion), problem.energy(motion)
     unable = f"stops: {motion.ended}" if motion.ended else ""
-    return Result(master.title, setting.label, motion.calls, error, energy, unable)
+    return Result(master.title, master.own, setting.label, motion.calls, error, energy, unable=unable)
 
 
-def resting(master: Master, problem: Problem) -> str:
-    """The longest stable macro step, for people."""
-    if problem.damped(LONGEST) is None:
-        return "-"
-    if master.at(LONGEST) is None:
-        return "by tolerance"
-    low, high = SHORTEST, LONGEST
-    try:
-        if rests(master, problem, high):
-            return f"above {1e3 * high:g} ms"
+class Stability:
+    """Looks for the longest stable macro steps of masters on a problem.
+
+    Where one master's bound is found, the next ones are tried first: several masters do the same.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem, self._bounds = problem, set[float]()
+
+    def of(self, master: Master) -> str:
+        """For people."""
+        if self._problem.damped(LONGEST) is None:
+            return "-"
+        if master.at(LONGEST) is None:
+            return "by tolerance"
+        try:
+            low, high = self._bracket(master)
+        except UnableError:
+            return "-"
+        if low >= LONGEST:
+            return f"above {1e3 * low:g} ms"
+        return f"{1e3 * low:.2g} ms" if low > SHORTEST else f"below {1e3 * high:.2g} ms"
+
+    def _bracket(self, master: Master) -> tuple[float, float]:
+        """A stable step and one that is not (s)."""
+        low, high = SHORTEST, LONGEST
+        if self._rests(master, high):
+            return high, high
         while high / low > CLOSE:
-            middle = (low * high) ** 0.5
-            low, high = (middle, high) if rests(master, problem, middle) else (low, middle)
-    except UnableError:
-        return "-"
-    return f"{1e3 * low:.2g} ms" if low > SHORTEST else f"below {1e3 * high:.2g} ms"
+            known = sorted(bound for bound in self._bounds if low < bound < high)
+            middle = known[len(known) // 2] if known else (low * high) ** 0.5
+            low, high = (middle, high) if self._rests(master, middle) else (low, middle)
+        self._bounds |= {low, high}
+        return low, high
+
+    def _rests(self, master: Master, step: float) -> bool:
+        damped, setting = self._problem.damped(step), master.at(step)
+        assert damped is not None
+        assert setting is not None
+        with np.errstate(all="ignore"):
+            return damped.rests(master.run(damped, setting))
 
 
-def rests(master: Master, problem: Problem, step: float) -> bool:
-    """Whether motion dies away at macro steps of `step` (s)."""
-    damped, setting = problem.damped(step), master.at(step)
-    assert damped is not None
-    assert setting is not None
-    with np.errstate(all="ignore"):
-        return damped.rests(master.run(damped, setting))
+def compared(masters: Iterable[Master], problem: Problem, quick: bool) -> Iterator[Result]:
+    """All settings of all masters; `quick`: the coarsest of each, and no search for stable steps."""
+    stability = Stability(problem)
+    for master in masters:
+        tried = master.settings(problem)
+        first, *others = (result(master, problem, setting) for setting in (tried[:1] if quick else tried))
+        yield replace(first, rests="-" if quick else stability.of(master))
+        yield from others
 
 
-def block(title: str, found: Iterable[tuple[Result, str]]) -> Block:
-    """The table of a problem; what stands under it says why something is missing."""
-    return Block(title, HEAD, tuple(one.row(rests) for one, rests in found))
+def table(title: str, found: Sequence[Result]) -> Iterator[str]:
+    """Of a problem, a line each; under it stands why something is missing."""
+    yield from Block(title, HEAD, tuple(one.row() for one in found)).lines()
+    told = (f"  {one.master}, {one.label}: {one.unable}" for one in found if one.unable)
+    yield from dict.fromkeys(told)
 
 
-def reasons(found: Iterable[Result]) -> Iterator[str]:
-    """Why masters have no figures, a line each."""
-    told = dict.fromkeys(f"  {one.master} at {one.label}: {one.unable}" for one in found if one.unable)
-    return iter(told)
+def keep(found: Sequence[Result], path: Path) -> None:
+    """Results as JSON, for a picture of several runs."""
+    path.write_text(json.dumps([asdict(one) for one in found], indent=1), encoding="utf-8")
+
+
+def known(path: Path) -> list[Result]:
+    """What `keep` wrote; nothing where there is no file."""
+    if not path.is_file():
+        return []
+    return [Result(**one) for one in json.loads(path.read_text(encoding="utf-8"))]

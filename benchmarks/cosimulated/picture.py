@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from cosimulated.comparison import Result
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from cosimulated.comparison import Result
 
 # Okabe and Ito's colours, which the colour-blind tell apart, too; markers tell lines of one colour apart
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
@@ -17,12 +18,12 @@ ELSEWHERE = "xsv^Dd+"  # of other tools, which have broken lines
 ACROSS = 2  # panels in a row
 
 
-def draw(found: Mapping[str, Sequence[Result]], own: Sequence[str], path: Path) -> None:
-    """`found` by problem; ways in `own` are this project's, drawn with full lines."""
+def draw(found: Mapping[str, Sequence[Result]], path: Path) -> None:
+    """`found` by the problems' titles; this project's ways have full lines."""
     down = -(-len(found) // ACROSS)
     figure = Figure(figsize=(11.0, 4.6 * down), layout="constrained")
     panels = figure.subplots(down, ACROSS, squeeze=False).ravel()
-    looks = styles([one.master for results in found.values() for one in results], own)
+    looks = styles([one for results in found.values() for one in results])
     for axes, (title, results) in zip(panels, found.items(), strict=False):
         _panel(axes, title, results, looks)
     for axes in panels[len(found) :]:
@@ -30,11 +31,11 @@ def draw(found: Mapping[str, Sequence[Result]], own: Sequence[str], path: Path) 
     figure.savefig(path, dpi=110)
 
 
-def styles(masters: Sequence[str], own: Sequence[str]) -> dict[str, dict[str, object]]:
+def styles(results: Sequence[Result]) -> dict[str, dict[str, object]]:
     """How each master is drawn, the same in all panels."""
     looks: dict[str, dict[str, object]] = {}
     for ours in (True, False):
-        names = [name for name in dict.fromkeys(masters) if (name in own) == ours]
+        names = dict.fromkeys(one.master for one in results if one.own == ours)
         for k, name in enumerate(names):
             looks[name] = {
                 "color": COLOURS[k % len(COLOURS)],

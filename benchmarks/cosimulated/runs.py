@@ -74,7 +74,7 @@ class Problem(Protocol):
         ...
 
     @property
-    def own(self) -> Mapping[str, Mapping[str, object]]:
+    def ways(self) -> Mapping[str, Mapping[str, object]]:
         """Ways of this project's master, as [run] of a scene has them, by title."""
         ...
 
@@ -105,6 +105,11 @@ class Master(Protocol):
     @property
     def title(self) -> str:
         """The tool, and what is chosen of it."""
+        ...
+
+    @property
+    def own(self) -> bool:
+        """Whether it is this project's."""
         ...
 
     def settings(self, problem: Problem) -> list[Setting]:

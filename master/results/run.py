@@ -48,7 +48,7 @@ def run_scene(
         scratch = Scratch()
         folder = scratch.path
     with interrupts_noted(), claimed(folder) as results:
-        compile_ahead(scene, in_process, _told if progress else lambda what: None)
+        compile_ahead(scene, in_process, *([_told] if progress else []))
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from touchdown.master.verbs import animate, report, run, scenes
+from touchdown.master.verbs import run
 from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
-from touchdown.master.verbs.machines import catalogue, new
+from touchdown.master.verbs.machines import catalogue, new, scenes
+from touchdown.master.verbs.reports import animate, report
 from touchdown.master.verbs.studies import (
     advise,
     compare,

@@ -1,4 +1,4 @@
-"""fmpy's SSP runner. It reads no values of a package, so it is handed them, as its function has a place for."""
+"""fmpy's SSP runner. It reads no values of a package, so it is handed them as its parameter set."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from pathlib import Path
 
 from drive_fmpy import readable
 from driver import Drop, values
-from following import Followed, Options, main
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import Parameter, ParameterSet
+from following import Followed, Options, main
 
 
 def follow(drop: Drop, _: Options) -> Followed:
@@ -27,7 +27,9 @@ def follow(drop: Drop, _: Options) -> Followed:
             parameter_set=ParameterSet(parameters=given),
         )
     wanted = [".".join(names) for names in drop.wanted]
-    return Followed([[float(row[name]) for name in wanted] for row in rows], len(rows) * len(drop.components))
+    return Followed(
+        [[float(row[name]) for name in wanted] for row in rows], len(rows) * len(drop.components)
+    )
 
 
 main(follow)

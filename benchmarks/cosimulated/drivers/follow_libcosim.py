@@ -62,7 +62,11 @@ def controlled_execution(drop: Drop, options: Options) -> CosimExecution:
         index = execution.add_local_slave(CosimLocalSlave(f"{folder}/{component.attrib['source']}", name))
         slaves[name], references[name] = index, variables(execution, index)
         for variable, value in values(component).items():
-            start = execution.real_initial_value if isinstance(value, float) else execution.integer_initial_value
+            start = (
+                execution.real_initial_value
+                if isinstance(value, float)
+                else execution.integer_initial_value
+            )
             assert start(index, references[name][variable], value)
 
     def ends(name: str, *names: str) -> list[int]:

@@ -2,8 +2,8 @@
 
     python follow_TOOL.py SYSTEM.ssp ANSWER.npz OPTIONS COMPONENT.VARIABLE...
 
-OPTIONS is JSON, of the tool's own. Drivers run in the tools' environments, without the project; the modules of
-tests/master/interop/peers, which read packages, are on their path.
+OPTIONS is JSON, of the tool's own. Drivers run in the tools' environments, without the project; the modules
+of tests/master/interop/peers, which read packages, are on their path.
 """
 
 from __future__ import annotations

@@ -9,12 +9,13 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
-import numpy as np
-from cosimulated.runs import Motion, Problem, Setting, UnableError
 import environments
+import numpy as np
 from environments import UnavailableError, interpreter, title
 
+from cosimulated.runs import Motion, Problem, Setting, UnableError
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.ssp.write import write_package
 
@@ -27,6 +28,7 @@ TIMEOUT = 900.0  # s
 class Other:
     """A way of a tool; `options` are those of its driver."""
 
+    own: ClassVar[bool] = False
     tool: str
     way: str = ""
     options: Mapping[str, object] = field(default_factory=dict)
@@ -94,8 +96,16 @@ class Controlled(Other):
     def to(self, joules: float, problem: Problem) -> Setting:
         """Steps up to the problem's longest."""
         longest = problem.tried.divided
-        ecco = {**self.ecco, "max_step_size": longest, "abs_tolerance": joules, "rel_tolerance": joules}
+        first = min(self.ecco["step_size"], longest)
+        tolerances = {"abs_tolerance": joules, "rel_tolerance": joules}
+        ecco = {**self.ecco, **tolerances, "step_size": first, "max_step_size": longest}
         return Setting(f"{joules:g} J", {"macro_step": longest}, {"ecco": ecco, "bonds": problem.bonds})
 
     def at(self, step: float) -> None:
         """It has none of its own."""
+
+    def run(self, problem: Problem, setting: Setting) -> Motion:
+        """By power bonds."""
+        if not problem.bonds:
+            raise UnableError("its power bonds are of a force and a velocity")
+        return super().run(problem, setting)

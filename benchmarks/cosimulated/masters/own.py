@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
-from cosimulated.runs import Motion, Problem, Setting, UnableError
 
+from cosimulated.runs import Motion, Problem, Setting, UnableError
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import opened, simulate
@@ -19,6 +20,7 @@ DIVIDING = "halving"
 class Own:
     """A way, as [run] of a scene has it."""
 
+    own: ClassVar[bool] = True
     way: str
     run_table: Mapping[str, object]
 

@@ -4,10 +4,11 @@ by 0.1 m at t = 0."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import bodies
 import numpy as np
+
 from cosimulated.problems.coupled import Coupled
 from cosimulated.runs import Motion, Tried
 
@@ -22,7 +23,9 @@ class Car(Coupled):
 
     title = "Quarter car over a step of 0.1 m, 2 s"
     giver, taker = "chassis", "wheel"
-    tried = Tried((8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2e-4), 8e-3, (1e-5, 1e-7, 1e-9), (1.0, 0.1, 1e-2, 1e-3, 1e-4))
+    tried = Tried(
+        (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2e-4), 8e-3, (1e-5, 1e-7, 1e-9), (1.0, 0.1, 1e-2, 1e-3, 1e-4)
+    )
 
     def parts(self) -> Mapping[str, bodies.Settings]:
         """Chassis and wheel."""
@@ -43,7 +46,3 @@ class Car(Coupled):
         full, *due = self.stored(self.exact(np.append(0.0, motion.rows[:, 4])))
         change = (self.stored(motion.rows[:, :4]) - due) / full
         return float(change[np.argmax(np.abs(change))])
-
-    def damped(self, step: float) -> Car:
-        """As it is, over 500 macro steps, or over 4 s."""
-        return replace(self, duration=max(500.0 * step, 4.0))

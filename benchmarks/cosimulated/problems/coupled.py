@@ -10,8 +10,8 @@ from typing import ClassVar
 
 import bodies
 import numpy as np
-from cosimulated.runs import Bond, Motion, Tried
 
+from cosimulated.runs import Bond, Motion, Tried
 from touchdown.master.scene.scene import Scene
 
 UNSTOPPED = {"stop_residual": 1e9}  # what makes energy is to be seen
@@ -29,7 +29,7 @@ class Coupled(ABC):
     taker: ClassVar[str]
     tried: ClassVar[Tried]
     packed: ClassVar[str] = "jacobi-hold"
-    own: ClassVar[Mapping[str, Mapping[str, object]]] = {
+    ways: ClassVar[Mapping[str, Mapping[str, object]]] = {
         "hold": {"scheme": "hold", **UNSTOPPED},
         "jacobi-hold": {"scheme": "jacobi-hold", **UNSTOPPED},
         "smooth": {"bonds": "smooth", **UNSTOPPED},

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import bodies
 import numpy as np
+
 from cosimulated.problems.coupled import Coupled
-from cosimulated.runs import Tried
+from cosimulated.runs import Bond, Tried
 
 DAMPING = 0.01  # N s/m, where the masses are to come to rest
 
@@ -22,7 +23,7 @@ class Oscillator(Coupled):
 
     title = "Two masses on springs, undamped, 10 s"
     giver, taker = "s1", "s2"
-    tried = Tried((1e-2, 3e-3, 1e-3, 3e-4, 1e-4), 1e-2, (1e-4, 1e-6, 1e-8), (1e2, 1e1, 1.0, 1e-1, 1e-2))
+    tried = Tried((1e-2, 3e-3, 1e-3, 3e-4), 1e-2, (1e-4, 1e-6, 1e-8), (1e2, 1e1, 1.0, 1e-1))
 
     def parts(self) -> Mapping[str, bodies.Settings]:
         """The masses."""
@@ -36,6 +37,46 @@ class Oscillator(Coupled):
         """In motion and in springs."""
         return bodies.energy(states)
 
-    def damped(self, step: float) -> Oscillator:
+    def damped(self, step: float) -> Oscillator | None:
         """Over 2000 macro steps, or over 20 s."""
         return replace(self, damping=DAMPING, duration=max(2000.0 * step, 20.0))
+
+
+@dataclass(frozen=True)
+class PositionAlone(Oscillator):
+    """The velocity does not come back."""
+
+    title = "The same, only the position comes back"
+    tried = Tried((1e-2, 1e-3), 1e-2, (1e-4, 1e-6), ())
+
+    def wires(self) -> Sequence[object]:
+        """Without the velocity."""
+        return list(super().wires())[:2]
+
+    @property
+    def bonds(self) -> tuple[Bond, ...]:
+        """No power is exchanged by name."""
+        return ()
+
+    def damped(self, step: float) -> None:
+        """Not asked again."""
+
+
+@dataclass(frozen=True)
+class VelocityAlone(Oscillator):
+    """The position does not come back: the giver integrates the velocity."""
+
+    title = "The same, only the velocity comes back"
+    tried = Tried((1e-2, 1e-3), 1e-2, (1e-4, 1e-6), (1e1, 1e-1))
+
+    def parts(self) -> Mapping[str, bodies.Settings]:
+        """The giver follows."""
+        giver, taker = super().parts().values()
+        return {self.giver: {**giver, "follows": 1.0}, self.taker: taker}
+
+    def wires(self) -> Sequence[object]:
+        """Without the position."""
+        return list(super().wires())[::2]
+
+    def damped(self, step: float) -> None:
+        """Not asked again."""

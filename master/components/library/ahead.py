@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from multiprocessing import parent_process
 from threading import Thread
 from typing import Any
 
@@ -43,12 +44,15 @@ class _New:
     size: int  # bytes of its memory
 
 
-def compile_ahead(scene: Scene, in_process: bool, say: Callable[[str], object]) -> None:
+def compile_ahead(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:
     """Compile what is new of a scene's models, as many at a time as there are processors.
 
     say(what is being done, and why) is called once where that is worth it: where two models are new, and
-    two processors there. What fails here fails again, and is said, where the scene runs.
+    two processors there. What fails here fails again, and is said, where the scene runs. In a process that
+    runs beside others nothing is done: the one that starts them compiles for all.
     """
+    if parent_process() is not None:
+        return
     processors = len(os.sched_getaffinity(0))
     new = sorted(_new(scene, in_process), key=lambda model: -model.size)
     if len(new) < 2 or processors < 2:

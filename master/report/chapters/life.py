@@ -10,6 +10,7 @@ from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Absent, Block, Lacking, Table, Text
 
 USUAL = 2.0  # s_0 that makers ask for under shocks
+STATED = "stated by scene or catalogue"
 MOST_DROPS = 1e6  # more are said to be more
 
 
@@ -38,7 +39,7 @@ def _static(found: dict[str, Rated]) -> Table:
         [
             seat,
             quantity(one.capacity.static, "N", 3),
-            "stated by scene or catalogue" if one.stated else "ISO 76, from the geometry",
+            STATED if one.stated.static else "ISO 76, from the geometry",
             quantity(one.equivalent_load, "N", 3),
             digits(one.static_safety, 3),
             digits(one.pressure_safety, 3),
@@ -57,6 +58,7 @@ def _fatigue(found: dict[str, Rated]) -> Table:
         [
             seat,
             quantity(one.capacity.dynamic, "N", 3),
+            STATED if one.stated.dynamic else "ISO 281, from the geometry",
             digits(one.turns, 3),
             share(one.damage),
             f"more than {MOST_DROPS:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
@@ -65,7 +67,7 @@ def _fatigue(found: dict[str, Rated]) -> Table:
         ]
         for seat, one in found.items()
     ]
-    head = ["Seat", "Dynamic rating C (ISO 281)", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
+    head = ["Seat", "Dynamic rating C", "C is", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
     return Table("Fatigue: such drops until one in ten bearings has failed", head, rows, 1)
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
@@ -10,24 +13,23 @@ from touchdown.master.report.facts.numbers import listed, quantity
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Block, Lacking, Picture, Table
 from touchdown.master.report.pictures.machine import (
-    Cylinder,
     Section,
     SideView,
     Support,
-    disc,
+    draw_side,
     sections,
-    side_view,
 )
 from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.stresses import stressed
 from touchdown.master.scene.scene import ComponentSpec
 from touchdown.master.studies.rotor.report import find_rotor
-from touchdown.rotor.beams.element import Element, split
+from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft
 
 SECTION = ("journal_radius", "clearance")
 BALLS = ("balls.count", "balls.diameter", "balls.pitch_diameter")
-STEPS = 6  # in which a cone is drawn
+STEEL = 7830.0  # kg/m3, of the disc that stands for a rigid rotor
+ARM = 0.012  # m, of its shaft beyond the last bearing
 MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
 
 
@@ -48,7 +50,7 @@ def _side_view(subject: Subject) -> Iterator[Block]:
         yield Lacking("The rotor from the side", f"{error}.")
         return
     names = listed([s.label for s in view.supports])
-    svg = inline(lambda figure: side_view(figure, view), "machine", f"Side view of the rotor with {names}")
+    svg = inline(partial(draw_side, view=view), "machine", f"Side view of the rotor with {names}")
     yield Picture(svg, f"The rotor from the side, to scale. {about}")
 
 
@@ -63,7 +65,7 @@ def _view(subject: Subject) -> tuple[SideView, str]:
         return _flexible(subject, body, shaft), (
             f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "
             f"{quantity(float(shaft.positions()[-1]), 'm')} long. Blue: touchdown bearings; orange: "
-            "magnetic bearings; black tips: sensors; diamonds: point masses; purple triangles: unbalances. "
+            "magnetic bearings; black tips: sensors; discs and diamonds: point masses; purple triangles: unbalances. "
             "Where a part states no size, its outline is a symbol."
         )
     return _rigid(subject, body)
@@ -77,32 +79,8 @@ def _shaft(subject: Subject, spec: ComponentSpec) -> Shaft:
 
 def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:
     position = shaft.positions()
-    cylinders = [
-        cylinder
-        for at, e in zip(position, shaft.elements, strict=False)
-        for cylinder in _cylinders(float(at), e)
-    ]
     stations = {s.name: float(position[s.node - 1]) for s in (*shaft.stations, *shaft.sensors)}
-    return SideView(
-        cylinders,
-        list(_supports(subject, body, stations)),
-        [float(position[p.node - 1]) for p in shaft.points],
-        [float(position[u.node - 1]) for u in shaft.unbalances],
-    )
-
-
-def _cylinders(at: float, element: Element) -> Iterator[Cylinder]:
-    """An element that begins at `at` (m), what is around it from the outside in; cones as steps."""
-    for piece in split(element, STEPS) if element.varies else [element]:
-        section = piece.section(0.5)
-        for outer in (
-            *(layer.outer_diameter for layer in reversed(section.layers)),
-            section.sleeve_diameter,
-        ):
-            if outer:
-                yield Cylinder(at, piece.length, outer, sleeve=True)
-        yield Cylinder(at, piece.length, section.outer_diameter, section.inner_diameter)
-        at += piece.length
+    return SideView(shaft, list(_supports(subject, body, stations)))
 
 
 def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
@@ -111,20 +89,31 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
     sizes = [f"{body}.{name}" for name in ("mass", "inertia")]
     if not all(name in system for name in sizes):
         raise TouchdownError(f"{body} ({subject.result.scene.components[body].fmu}) states no geometry")
-    diameter, width = disc(*(system.value(name) for name in sizes))
+    diameter, width = _disc(*(system.value(name) for name in sizes))
     ports = {a.body_port: 0.0 for a in system.attachments if a.body == body}
     supports = list(_supports(subject, body, ports))
-    radius = next((s.inner for s in supports if s.kind == TOUCHDOWN and s.inner), 0.3 * diameter)
-    wide = max([0.012, *(2.0 * s.width for s in supports)])
-    placed = _beside(supports, width)
-    ends = [s.position for s in placed]
-    start, stop = min([-0.5 * width, *ends]) - wide, max([0.5 * width, *ends]) + wide
-    shaft = Cylinder(start, stop - start, radius)
-    return SideView([shaft, Cylinder(-0.5 * width, width, diameter)], placed), (
+    journal = next((s.inner for s in supports if s.kind == TOUCHDOWN and s.inner), 0.3 * diameter)
+    arm = ARM + max([0.0, *(abs(s.position) for s in _beside(supports, width))]) - 0.5 * width
+    middle = arm + 0.5 * width
+    pieces = [(arm, journal), (width, diameter), (arm, journal)]
+    shaft = Shaft("disc", tuple(_steel(*piece) for piece in pieces))
+    placed = [replace(s, position=middle + s.position) for s in _beside(supports, width)]
+    return SideView(shaft, placed), (
         "The rotor is rigid and moves in one plane: all bearings act there, and are drawn side by side. "
         f"Its shape is not stated; drawn is a steel disc of its mass and polar inertia, "
         f"{quantity(diameter, 'm', 3)} by {quantity(width, 'm', 3)}."
     )
+
+
+def _disc(mass: float, inertia: float) -> tuple[float, float]:
+    """Diameter and width (m) of a steel disc with a mass (kg) and a polar inertia (kg m2)."""
+    radius = math.sqrt(2.0 * inertia / mass)
+    return 2.0 * radius, mass / (STEEL * math.pi * radius**2)
+
+
+def _steel(length: float, diameter: float) -> Element:
+    """To be drawn (m)."""
+    return Element(length=length, outer_diameter=diameter, modulus=207e9, density=STEEL, poisson=0.3)
 
 
 def _beside(supports: list[Support], width: float) -> list[Support]:
@@ -171,7 +160,7 @@ def _sections(subject: Subject) -> Iterator[Block]:
         return
     clearances = listed([f"{quantity(s.clearance, 'm')} at {s.label}" for s in found])
     alt = f"Touchdown bearings along their axes: {listed([s.label for s in found])}"
-    svg = inline(lambda figure: sections(figure, found), "sections", alt)
+    svg = inline(partial(sections, bearings=found), "sections", alt)
     yield Picture(
         svg,
         f"The touchdown bearings along their axes, to scale; the radial clearance of {clearances} is as "

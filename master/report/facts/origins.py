@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from enum import StrEnum
 from functools import cache
 
-from touchdown.fmus.recipes import preset
+from touchdown.bearings.catalogue import Bearing, CatalogueError, bearing
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 
@@ -27,18 +26,19 @@ def origin_of(spec: ComponentSpec, variable: str) -> Origin:
         return Origin.SET if variable in spec.own else Origin.SCENE
     if variable in spec.inherited:
         return Origin.TAKEN_OVER
-    if variable in catalogued(spec.preset):
+    entry = catalogued(spec.preset)
+    if entry is not None and variable in entry.settings():
         return Origin.CATALOGUE
     return Origin.DEFAULT
 
 
 @cache
-def catalogued(name: str | None) -> Mapping[str, float]:
-    """What a bearing of the catalogue sets; nothing where it is gone from there since."""
+def catalogued(preset: str | None) -> Bearing | None:
+    """The entry of a component's preset; None without one, or where it is gone since."""
     try:
-        return preset(name) if name is not None else {}
-    except KeyError:
-        return {}
+        return bearing(preset) if preset is not None else None
+    except CatalogueError:
+        return None
 
 
 def run_origin(scene: Scene, key: str) -> Origin:

@@ -34,12 +34,12 @@ class Rated:
 
     bearing: rating.RatedBearing
     loads: Loads
-    stated: float  # N, static rating of a row as the scene has it; 0: it states none
+    stated: rating.Capacity  # N, of a row, as scene or catalogue state them; 0: they do not
 
     @cached_property
     def capacity(self) -> rating.Capacity:
         """Static and dynamic load rating of the whole bearing (N)."""
-        return rating.capacity(self.bearing, static=self.stated)
+        return rating.capacity(self.bearing, self.stated.static, self.stated.dynamic)
 
     def pressure(self, race: str) -> np.ndarray:
         """The largest on a race, `rating.INNER` or OUTER, over the recorded times (Pa, (rows,))."""
@@ -99,9 +99,10 @@ def rated(subject: Subject, a: Attachment) -> Rated | str:
     if lacking:
         return f"{a.bearing} has no {' and no '.join(lacking)}, or it was not recorded"
     names = [n for n in component.variables if n.startswith("balls.")]
+    entry = catalogued(subject.result.scene.components[a.bearing].preset)
     try:
         values = dict(zip(names, component.read(names), strict=True))
-        bearing = rating.RatedBearing.of(values)
+        bearing = rating.RatedBearing.of(values, entry.contact_angle if entry else 0.0)
     except KeyError as error:
         return f"{a.bearing} does not state {error.args[0]}"
     except ValueError as error:
@@ -117,8 +118,11 @@ def rated(subject: Subject, a: Attachment) -> Rated | str:
     return Rated(bearing, loads, _stated(subject, a))
 
 
-def _stated(subject: Subject, a: Attachment) -> float:
-    """Static rating of a row (N) as the scene or the catalogue has it; 0 where only a default would."""
+def _stated(subject: Subject, a: Attachment) -> rating.Capacity:
+    """Ratings of a row (N) as the scene or the catalogue has them; 0 where only a default would."""
     spec = subject.result.scene.components[a.bearing]
-    stated = None if origin_of(spec, STATIC) is Origin.DEFAULT else subject.setting(a, STATIC)
-    return stated or catalogued(spec.preset).get(STATIC, 0.0)
+    entry = catalogued(spec.preset)
+    own = origin_of(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)
+    static = subject.setting(a, STATIC) if own else None
+    known = (entry.static_rating, entry.dynamic_rating) if entry else (0.0, 0.0)
+    return rating.Capacity(static or known[0], known[1])

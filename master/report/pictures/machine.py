@@ -12,22 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Annulus, Circle, Rectangle
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREY, ORANGE, PURPLE, sized
+from touchdown.master.studies.rotor.figure import AXIS, CORE, EDGE, MM, SLEEVE, side_view
+from touchdown.rotor.beams.shaft import Shaft
 
-MM = 1e3
-CORE, SLEEVE, EDGE = "#c8d3dc", "#e6d9bd", "#7f8a93"
 FLATTEST, HIGHEST = 0.16, 0.5  # height over width of a side view
-STEEL = 7830.0  # kg/m3, of the disc that stands for a rigid rotor
-
-
-@dataclass(frozen=True)
-class Cylinder:
-    """A piece of a rotor (m): where it begins on the axis, and its size."""
-
-    start: float
-    length: float
-    outer: float  # diameters
-    inner: float = 0.0
-    sleeve: bool = False  # laminations and the like, around the core
 
 
 @dataclass(frozen=True)
@@ -46,34 +34,34 @@ class Support:
 class SideView:
     """All that is drawn from the side."""
 
-    cylinders: Sequence[Cylinder]
+    shaft: Shaft
     supports: Sequence[Support]
-    masses: Sequence[float] = ()  # m, where on the axis
-    unbalances: Sequence[float] = ()
 
     @property
     def ends(self) -> tuple[float, float]:
         """Of the rotor and its supports on the axis (m)."""
-        starts = [*(c.start for c in self.cylinders), *(s.position - s.width for s in self.supports)]
-        stops = [
-            *(c.start + c.length for c in self.cylinders),
-            *(s.position + s.width for s in self.supports),
-        ]
+        starts = [0.0, *(s.position - s.width for s in self.supports)]
+        stops = [float(self.shaft.positions()[-1]), *(s.position + s.width for s in self.supports)]
         return min(starts), max(stops)
 
     @property
     def radius(self) -> float:
         """The largest (m)."""
-        return 0.5 * max(*(c.outer for c in self.cylinders), *(s.outer for s in self.supports), 1e-3)
+        widest = (e.widest for e in self.shaft.elements)
+        return 0.5 * max(*widest, *(s.outer for s in self.supports), 1e-3)
+
+    def surface(self, place: float) -> float:
+        """The rotor's radius at a place on its axis (m), the smaller one at a step."""
+        positions = self.shaft.positions()
+        there = [
+            e.widest
+            for at, e in zip(positions, self.shaft.elements, strict=False)
+            if at - 1e-9 <= place <= at + e.length + 1e-9
+        ]
+        return 0.5 * min(there, default=0.0)
 
 
-def disc(mass: float, inertia: float) -> tuple[float, float]:
-    """Diameter and width (m) of a steel disc with a mass (kg) and a polar inertia (kg m2)."""
-    radius = math.sqrt(2.0 * inertia / mass)
-    return 2.0 * radius, mass / (STEEL * math.pi * radius**2)
-
-
-def side_view(figure: Figure, view: SideView) -> None:
+def draw_side(figure: Figure, view: SideView) -> None:
     """Rotor, bearings, magnetic bearings and sensors in mm, equal scales both ways."""
     begin, end = (MM * place for place in view.ends)
     radius = MM * view.radius
@@ -82,45 +70,25 @@ def side_view(figure: Figure, view: SideView) -> None:
     reach = max(reach, FLATTEST * half)
     middle = 0.5 * (begin + end)
     axes = sized(figure, 9.4, 0.9 + 8.6 * reach / half).subplots()
-    _draw_rotor(axes, view)
+    side_view(axes, view.shaft, named=False)
+    _draw_unbalances(axes, view)
     for support in view.supports:
         _draw_support(axes, support, view, radius)
-    axes.plot([begin - 0.02 * half, end + 0.02 * half], [0, 0], "-.", color=EDGE, lw=0.7)
     axes.set_xlim(middle - half, middle + half)
     axes.set_ylim(-reach, reach)
     axes.set_aspect("equal")
-    axes.set_xlabel("position along the axis [mm]")
-    axes.set_ylabel("radius [mm]")
+    axes.set_xlabel(AXIS)
     _name_supports(axes, view, reach)
 
 
-def _draw_rotor(axes: Axes, view: SideView) -> None:
-    for c in sorted(view.cylinders, key=lambda c: not c.sleeve):
-        _box(axes, c.start, c.length, c.outer, SLEEVE if c.sleeve else CORE)
-    for c in view.cylinders:
-        if c.inner and not c.sleeve:
-            _box(axes, c.start, c.length, c.inner, "#ffffff")
-    for place in view.masses:
-        axes.plot(MM * place, 0.0, "D", color=EDGE, ms=5)
-    for place in view.unbalances:
-        radius = MM * _surface(view, place)
-        axes.plot(MM * place, radius, "v", color=PURPLE, ms=6, zorder=4)
-
-
-def _box(axes: Axes, at: float, length: float, diameter: float, colour: str) -> None:
-    corner = (MM * at, -0.5 * MM * diameter)
-    axes.add_patch(Rectangle(corner, MM * length, MM * diameter, fc=colour, ec=EDGE, lw=0.6))
-
-
-def _surface(view: SideView, place: float) -> float:
-    """The rotor's radius at a place on its axis (m), the smaller one at a step."""
-    there = [c.outer for c in view.cylinders if c.start - 1e-9 <= place <= c.start + c.length + 1e-9]
-    return 0.5 * min(there, default=0.0)
+def _draw_unbalances(axes: Axes, view: SideView) -> None:
+    for place in {float(view.shaft.positions()[u.node - 1]) for u in view.shaft.unbalances}:
+        axes.plot(MM * place, MM * view.surface(place), "v", color=PURPLE, ms=6, zorder=4)
 
 
 def _draw_support(axes: Axes, s: Support, view: SideView, radius: float) -> None:
     """Above and below the rotor: a ball between rings, a wound pole, or a sensor's tip."""
-    inner = MM * (0.5 * s.inner or _surface(view, s.position))
+    inner = MM * (0.5 * s.inner or view.surface(s.position))
     at = MM * s.position
     if s.kind == "sensor":
         axes.plot([at, at], [inner + 0.06 * radius, inner + 0.35 * radius], color=BLACK, lw=1.6)

@@ -38,6 +38,8 @@ PAINTS = {  # colour of a picture: word of the page's style
     GREY: "grey",
     "#c8d3dc": "core",  # of drawn machines
     "#e6d9bd": "sleeve",
+    "#ece3d0": "sleeve",
+    "#b3c6b1": "disc",
     "#7f8a93": "edge",
     "#b0b0b0": "line",  # matplotlib's grid
     "#cccccc": "line",  # and frame of legends

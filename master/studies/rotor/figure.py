@@ -121,7 +121,7 @@ def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
         return np.multiply(values, height)
 
     for k, axes in enumerate(panels):
-        _side_view(axes, shaft, named=k == 0)
+        side_view(axes, shaft, named=k == 0)
         shape = portrait.shapes[:, k]
         axes.plot(MM * shaft.positions(), height * shape, ".-", color=ORANGE, lw=1.5, ms=4)
         right = axes.secondary_yaxis("right", functions=(to_shape, from_shape))
@@ -147,7 +147,7 @@ def rest(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     sized(figure, WIDTH, 7.0 + view_height)
     ratios = (view_height, 2.8, 2.8)
     view, deflection, bending = figure.subplots(3, 1, sharex=True, height_ratios=ratios)
-    _side_view(view, shaft, named=True)
+    side_view(view, shaft, named=True)
     _supports(view, shaft)
     _to_scale(view, shaft)
     deflection.plot(position, 1e6 * lying.deflection, ".-", color=BLUE, lw=1.4, ms=4)
@@ -194,7 +194,7 @@ def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
     return list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
 
 
-def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
+def side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
     """Outlines of the elements and discs in mm, to scale; places by name."""
     position = MM * shaft.positions()
     for at, e in zip(position, shaft.elements, strict=False):
@@ -258,7 +258,7 @@ def drawing(figure: FigureBase, shaft: Shaft) -> list[Axes]:
     """The rotor's side view alone, to scale."""
     sized(figure, WIDTH, 1.2 + _window(shaft).height)
     axes = figure.subplots()
-    _side_view(axes, shaft, named=True)
+    side_view(axes, shaft, named=True)
     window = _window(shaft)
     axes.set_xlim(window.left, window.right)
     axes.set_ylim(-window.reach, window.reach)

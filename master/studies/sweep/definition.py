@@ -28,6 +28,7 @@ from touchdown.master.studies.sweep.design import Design
 
 FILE = "sweep.json"
 UNSAID = ("name", "title", "about", "folder")  # of a scene: they change no number
+OF_COMPONENT = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
 SAID = 3  # differences that are told
 
 
@@ -111,16 +112,19 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
 
 
 def origins(scene: Scene) -> dict[str, str]:
-    """By component: a hash over what it is made of, a file's content or the project's own sources."""
+    """By component: a hash over what it is made of, files' content or the project's own sources."""
     found: dict[str, str] = {}
     for name, spec in scene.components.items():
         source = locate(spec.fmu, scene.folder)
-        if isinstance(source, Path):
-            content = source.read_bytes() if source.is_file() else b""
-            found[name] = hashlib.sha256(content).hexdigest()
-        else:
-            found[name] = source.content
+        found[name] = _content(source) if isinstance(source, Path) else source.content
+        file, _, _ = (spec.preset or "").rpartition(":")  # a catalogue of the user's own
+        if file:
+            found[name] += _content(scene.folder / file)
     return found
+
+
+def _content(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes() if path.is_file() else b"").hexdigest()
 
 
 # -- names and values --------------------------------------------------------------------------------
@@ -141,20 +145,14 @@ def _targets(scene: Scene, design: Design) -> list[tuple[str, ...]]:
 def _matching(scene: Scene, name: str) -> list[str]:
     """The settings that a name with * or ? means; another name means itself."""
     component, dot, variable = name.partition(".")
-    components = fnmatch.filter(scene.components, component) if _is_pattern(component) else [component]
-    if not _is_pattern(variable):
-        found = [f"{one}{dot}{variable}" for one in components]
-        known = [f"{one}{dot}{variable}" for one in scene.components]
-    else:
-        known = [full for full in _settable(scene) if full.partition(".")[0] in components]
-        found = fnmatch.filter(known, name)
+    components = scene.matching(component)
+    if not any(sign in variable for sign in "*?"):
+        return [f"{one}{dot}{variable}" for one in components]
+    known = [full for full in _settable(scene) if full.partition(".")[0] in components]
+    found = fnmatch.filter(known, name)
     if not found:
         raise TouchdownError(f"no component has a setting {name}; {one_of(name, known)}")
     return found
-
-
-def _is_pattern(name: str) -> bool:
-    return "*" in name or "?" in name
 
 
 def _settable(scene: Scene) -> list[str]:
@@ -197,17 +195,12 @@ def _value(first: Scene, system: System, setting: str, given: object) -> object:
     """A value in SI, or as a word; `system` is that of the `first` point."""
     varied = first.set({setting: given})
     component, _, variable = setting.partition(".")
-    if setting == "run.scheme" or variable in (
-        "preset",
-        "every",
-    ):  # these change what is connected, or more
+    if setting == "run.scheme" or variable in ("preset", "every"):  # what is connected may change
         open_system(varied, in_process=True).close()
     if component == "run":
         taken = getattr(varied.run, variable)
         return float(taken) if variable in UNITS else str(getattr(taken, "name", taken))
-    if variable in system.components[component].variables:
-        return float(checked(system.components[component], variable, given))
-    if variable in ("preset", "every", "isolate", "native"):
+    if variable in OF_COMPONENT:
         return str(given)
     return float(checked(system.components[component], variable, given))
 
@@ -223,11 +216,13 @@ def read_definition(folder: Path) -> Definition:
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
         return Definition(**{**given, "columns": tuple(columns), "part": tuple(given["part"])})
     except FileNotFoundError:
-        raise TouchdownError(f"{folder} holds no sweep: there is no {FILE}") from None
+        raise TouchdownError(f"there is no sweep in {folder}: it has no {FILE}") from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     except (ValueError, TypeError, KeyError):
-        raise TouchdownError(f"{path} cannot be read; it is of another version, or damaged") from None
+        raise TouchdownError(
+            f"{path} cannot be read; it is of another version, or damaged. Take another folder"
+        ) from None
 
 
 def differences(there: Definition, here: Definition) -> list[str]:

@@ -20,7 +20,6 @@ from touchdown.master.common.files import replacing, writing_to
 
 FILE = "members.jsonl"
 COSTS = ("wall_time_s", "start_up_s", "wall_time_per_simulated_s")  # figures of the machine, not the drop
-FINAL = (Ended.COMPLETED, Ended.STOPPED)  # would end so again
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from touchdown.master.common.files import replacing, writing_to
 from touchdown.master.results.folder import claimed
 from touchdown.master.studies.sweep import definition, journal
 from touchdown.master.studies.sweep.definition import Definition, differences, read_definition
-from touchdown.master.studies.sweep.journal import FINAL, Member, read_journal, write_journal
+from touchdown.master.studies.sweep.journal import Member, read_journal, write_journal
 from touchdown.master.studies.sweep.report import write_table
 
 if TYPE_CHECKING:
@@ -129,12 +129,12 @@ def _or_not_run(members: dict[int, Member], number: int, asked: Definition) -> M
 
 
 def _take(members: dict[int, Member], more: dict[int, Member], source: Path) -> None:
-    """Add members of another folder; of one that is in both, the one that ran to an end."""
+    """Add members of another folder; of one that is in both, the one that did not fail."""
     for number, member in more.items():
         known = members.get(number)
-        if known is None or known.ended not in FINAL:
+        if known is None or known.failed:
             members[number] = member
-        elif member.ended in FINAL and member.summary != known.summary:
+        elif not member.failed and member.summary != known.summary:
             one, other = known.summary, member.summary
             key = next(key for key in {**one, **other} if one.get(key) != other.get(key))
             raise TouchdownError(

@@ -13,6 +13,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.processes.pool import TaskOutcome, run_all
+from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.results.folder import claimed
 from touchdown.master.results.result import RECORDING
@@ -26,7 +27,7 @@ from touchdown.master.studies.sweep.definition import (
     refuse_other,
 )
 from touchdown.master.studies.sweep.design import Design
-from touchdown.master.studies.sweep.journal import FINAL, Journal, Member, cut_torn_line, read_journal
+from touchdown.master.studies.sweep.journal import Journal, Member, cut_torn_line, read_journal
 from touchdown.master.studies.sweep.results import Sweep, write_results
 
 UNDER_WAY = ".under-way"  # where members run whose recordings are not kept
@@ -73,7 +74,7 @@ def sweep(
     """Run `scene` at every point of `design`; done() after each member.
 
     Each member that ends is a line of members.jsonl in `folder`; at the end all stand in sweep.nc and
-    sweep.csv. Members that `folder` has already are `kept`, not run again, unless their processes died.
+    sweep.csv. Members that `folder` has already are `kept`, not run again, unless they failed.
     A member that fails says so and the others go on. After Ctrl-C those that have not run are INTERRUPTED.
     One sweep at a time has the folder. Raises TouchdownError where a setting cannot be, and where `folder`
     holds another sweep. A script that calls it needs `if __name__ == "__main__":`, as all do that start
@@ -115,9 +116,9 @@ def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
 
 def _is_there(member: Member | None, kept_in: Path | None) -> bool:
     """Whether a member need not be run; its recording must be `kept_in` a folder, if in any."""
-    if member is None or member.ended not in FINAL:
+    if member is None or member.failed:  # of what may have changed: a full disk
         return False
-    return kept_in is None or bool(member.failed) or (kept_in / RECORDING).is_file()
+    return kept_in is None or (kept_in / RECORDING).is_file()
 
 
 @dataclass(frozen=True)
@@ -170,6 +171,7 @@ def _run(
 
         ended = run_on_cluster(work, tasks, running.cluster, done, heard)
     else:
+        _make_ready(tasks)
         ended = run_all(work, tasks, running.jobs, done, heard)
     for place, outcome in enumerate(ended):
         if outcome.ended is Ended.INTERRUPTED:
@@ -179,8 +181,15 @@ def _run(
 
 def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
     """A member for each task, `jobs` at a time in processes of their own; those not run say why."""
+    _make_ready(tasks)
     outcomes = run_all(carrying(_run_task), tasks, jobs, done)
     return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
+
+
+def _make_ready(tasks: Sequence[Task]) -> None:
+    """Have compiled what the tasks' processes would each compile."""
+    if tasks:
+        compile_ahead(tasks[0].scene, tasks[0].execution.in_process)
 
 
 def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:

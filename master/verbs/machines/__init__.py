@@ -1,1 +1,1 @@
-"""Verbs about machines of one's own: their bearings, and a scene to start from."""
+"""Verbs about machines: the scenes and bearings that there are, and one of one's own."""

@@ -11,7 +11,7 @@ from touchdown.master.verbs.verb import Verb
 EXAMPLES = (
     'touchdown catalogue --bore "70 mm"',
     "touchdown catalogue 7014",
-    "touchdown catalogue 7014 --toml > bearings.toml",
+    "touchdown catalogue 7014 --toml",
 )
 
 

@@ -99,12 +99,14 @@ def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.ended import Ended
     from touchdown.master.interop.scenes import find_scene
+    from touchdown.master.studies.sweep.maps.field import refuse_axes
     from touchdown.master.studies.sweep.sweep import Running, sweep
 
     chosen = find_scene(options.scene).set(settings(options))
     if options.duration is not None:
         chosen = chosen.set({"run.duration": options.duration})
     design = _design(options)
+    refuse_axes(options.over, design.names)
     running = Running(
         chosen_jobs(options), options.dask or "", options.in_process, options.keep, options.anew
     )

@@ -58,8 +58,8 @@ def _darken(artist: Artist) -> None:
         artist.set_markerfacecolor(marker[0])
         artist.set_markeredgecolor(marker[1])
     elif isinstance(artist, Patch):
-        edge = dark(artist.get_edgecolor())
-        artist.set_facecolor(dark(artist.get_facecolor()))
+        edge = _unless_none(artist.get_edgecolor())
+        artist.set_facecolor(_unless_none(artist.get_facecolor()))
         artist.set_edgecolor(edge)
     elif isinstance(artist, Collection):
         edges = [dark(colour) for colour in artist.get_edgecolor()]
@@ -78,4 +78,5 @@ def _darken(artist: Artist) -> None:
 
 
 def _unless_none(colour: Any) -> Any:
-    return colour if isinstance(colour, str) and colour == "none" else dark(colour)
+    """`dark`, but what is not drawn stays so: an artist's own transparency would override the colour's."""
+    return "none" if to_rgba(colour)[3] == 0.0 else dark(colour)

@@ -37,6 +37,15 @@ class Field(Generic[Value]):
         return len(counts) == 2 and len(self.spots) == counts[0] * counts[1] > max(counts)
 
 
+def refuse_axes(over: Sequence[str], varying: Sequence[str]) -> None:
+    """Raise TouchdownError where a map cannot be drawn `over` these settings; none may be named."""
+    for name in over:
+        if name not in varying:
+            raise TouchdownError(f"a map over {name}: it does not vary; {one_of(name, varying)}")
+    if len(over) > 2:
+        raise TouchdownError(f"a map over {', '.join(over)}: it has two axes; name one setting or two")
+
+
 def field(
     definition: Definition, members: Sequence[Member], over: Sequence[str] = ()
 ) -> Field[list[Member]]:
@@ -52,12 +61,10 @@ def field(
     }
     varying = [name for name, values in given.items() if len(set(map(str, values))) > 1]
     phases = [c.name for c in definition.columns if all(name.endswith(f".{ANGLE}") for name in c.settings)]
+    refuse_axes(over, varying)
     axes = list(over) or [name for name in varying if name not in phases][:2] or varying[:1]
-    for name in axes:
-        if name not in varying:
-            raise TouchdownError(f"a map over {name}: it does not vary; {one_of(name, varying)}")
-    if not 1 <= len(axes) <= 2:
-        raise TouchdownError("a map needs one or two settings that vary; name them with --over")
+    if not axes:
+        raise TouchdownError("no setting varies; a map needs one or two that do")
     columns = [column_of(name, given[name]) for name in axes]
     spots: dict[Place, list[Member]] = {}
     for i, member in enumerate(members):

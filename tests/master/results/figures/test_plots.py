@@ -255,6 +255,18 @@ def test_the_first_impact_is_an_inset_of_the_forces(landed: Finished) -> None:
     assert 0.3 < time[np.argmax(force)] < 1.2  # ms
 
 
+def test_an_inset_hides_no_force(landed: Finished) -> None:
+    """The rotor still bounces under it in so short a run."""
+    (seat,) = touchdown_seats(landed.system)
+    figure = sheet()
+    for axes in forces(figure, landed, seat):
+        for inset in axes.child_axes:
+            left, bottom = axes.transAxes.inverted().transform(inset.get_window_extent().p0)
+            for line in axes.lines:
+                x, y = axes.transAxes.inverted().transform(axes.transData.transform(line.get_xydata())).T
+                assert y[x > left].max(initial=0.0) < bottom
+
+
 def test_a_journal_that_has_not_touched_has_no_inset(tmp_path: Path) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
     result = run_scene(scene, tmp_path, in_process=True, pictures=False)

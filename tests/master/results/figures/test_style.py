@@ -124,6 +124,9 @@ def test_a_figure_on_dark_ground_has_the_dark_colours() -> None:
     assert to_hex(circle.get_edgecolor()) == ON_DARK[ORANGE]
     assert contrast(circle.get_facecolor()[:3], ON_DARK[BLACK]) > 7.0  # text on it can be read
     assert to_hex(note.get_color()) == ON_DARK[PURPLE]
+    frame = axes.get_legend().get_frame()
+    assert to_hex(frame.get_facecolor()) == DARK
+    assert frame.get_edgecolor()[3] == 0.0, "no frame where there was none"
     assert to_hex(note.arrow_patch.get_facecolor()) == ON_DARK[GREEN]
 
 

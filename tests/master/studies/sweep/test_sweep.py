@@ -66,6 +66,7 @@ def command(*arguments: object) -> int:
         (["--tie", "rotor.mass=1,2", "--tie", "rotor.x=1"], "equally many values"),
         (["--tie", "rotor.mass=1,2", "--vary", "rotor.mass=3"], "rotor.mass varies twice"),
         (["--list", "no.csv"], "cannot read no.csv"),
+        (["--vary", "rotor.mass=1,2", "--over", "rotor.x"], "a map over rotor.x: it does not vary"),
         (["--vary", "rotor.mass=1,2", "--shard", "3"], "--shard 3: write K/N"),
         (["--vary", "rotor.mass=1,2", "--shard", "3/2"], "shard 3 of 2"),
         (["--vary", "rotor.mass=1,2", "--shard", "3/3"], "shard 3 of 3 has no point"),
@@ -214,14 +215,14 @@ def test_shards_are_merged_to_the_byte(tmp_path: Path) -> None:
     design = Design.grid({"rotor.mass": [1.0, 2.0, 3.0], "run.macro_step": ["100 us", "1 s"]})
     whole = swept(tmp_path / "whole", design)
     assert [bool(m.failed) for m in whole] == [False, True] * 3
-    parts = [tmp_path / f"part-{k}" for k in (1, 2, 3)]
+    parts = [tmp_path / f"part-{k}" for k in (1, 2)]
     for k, part in enumerate(parts, start=1):
-        swept(part, design.shard(k, 3))
+        swept(part, design.shard(k, 2))
     half = tmp_path / "half"
-    found = merge(parts[:2], half)
-    assert [m.failed for m in found if m.number in (3, 6)] == ["not run", "not run"]
+    found = merge(parts[:1], half)
+    assert [m.failed for m in found] == ["", "not run"] * 3
     went_on = swept(half, design)
-    assert [m.kept for m in went_on] == [True, True, False, True, True, False]
+    assert [m.kept for m in went_on] == [True, False] * 3
     merge(parts, tmp_path / "merged")
     for other in ("half", "merged"):
         for name in ("sweep.nc", "sweep.csv"):
@@ -236,7 +237,7 @@ def test_shards_are_merged_to_the_byte(tmp_path: Path) -> None:
         merge([parts[0]], half)
     with pytest.raises(TouchdownError, match=r"of different sweeps: run.duration is"):
         merge([half, *swept_elsewhere(tmp_path)], None)
-    with pytest.raises(TouchdownError, match="holds no sweep"):
+    with pytest.raises(TouchdownError, match="there is no sweep in"):
         merge([tmp_path / "nowhere"], None)
 
 
