@@ -60,14 +60,15 @@ ECCO = {  # names and values as in libcosimpy's test of a quarter car, but for t
     "p_gain": 0.2,
     "i_gain": 0.15,
 }
+SLOW = 10_000  # macro steps
 OTHERS: tuple[Other, ...] = (
     Other("libcosim"),
     Controlled("libcosim", "step control", ecco=ECCO),
     Other("ecos"),
     Other("fmpy"),
-    Other("cofmupy", "jacobi", {"cosim_method": "jacobi"}),
-    Other("cofmupy", "gauss-seidel", {"cosim_method": "gauss_seidel"}),
-    Other("cofmupy", "iterative", {"cosim_method": "gauss_seidel", "iterative": True}),
+    Other("cofmupy", "jacobi", {"cosim_method": "jacobi"}, SLOW),
+    Other("cofmupy", "gauss-seidel", {"cosim_method": "gauss_seidel"}, SLOW),
+    Other("cofmupy", "iterative", {"cosim_method": "gauss_seidel", "iterative": True}, SLOW),
 )
 
 
@@ -116,6 +117,9 @@ def asked(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--tune", action="store_true", help="only the step control's other parameters, on the car"
     )
+    parser.add_argument(
+        "--no-stable", action="store_true", help="no search for stable steps, which takes long"
+    )
     parser.add_argument("-o", "--output", type=Path, default=Path("runs/masters"))
     options = parser.parse_args(arguments)
     for key, known in (("problems", PROBLEMS), ("tools", tools)):
@@ -128,7 +132,8 @@ def asked(arguments: list[str] | None) -> argparse.Namespace:
 
 def tabled(problem: Problem, masters: Sequence[Master], options: argparse.Namespace) -> list[Result]:
     """What all masters give on a problem, which is printed."""
-    found = list(comparison.compared(masters, problem, options.quick))
+    stability = None if options.quick or options.no_stable else comparison.Stability(problem)
+    found = list(comparison.compared(masters, problem, stability, options.quick))
     print(*comparison.table(problem.title, found), sep="\n", flush=True)
     return found
 

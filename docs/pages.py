@@ -46,7 +46,10 @@ PATH = re.compile(
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
-    "Learn": ("start", "first-drop", "own-bearing", "wanted-error", "glossary"),
+    "Learn": (
+        *("start", "first-drop", "own-bearing", "wanted-error", "whirl-map", "rotor-to-report"),
+        "glossary",
+    ),
     "Use": (
         *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere"),
         *("native", "rotors", "coupling", "bonds", "api"),

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue import CatalogueError as CatalogueError
+from touchdown.bearings.catalogue.source import FROM_SOURCE
 from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
@@ -134,9 +135,12 @@ def _from_rotor(path: Path) -> Recipe:
 
 
 def parameter_sets(model: Model) -> dict[str, dict[str, float]]:
-    """By name, what the sets give to parameters of `model`: those of bearings with all that it takes."""
+    """By designation, what the source's bearings give to parameters of `model`, if it has their balls.
+
+    They are what an FMU brings along: all of the catalogue would be more than the rest of it.
+    """
     names = {s.variable.name for s in slots(model) if s.causality is Causality.PARAMETER}
-    known = {name: preset(name) for name in presets()}
+    known = {bearing.designation: bearing.settings() for bearing in FROM_SOURCE}
     return {
         name: {n: v for n, v in values.items() if n in names}
         for name, values in known.items()
@@ -149,9 +153,22 @@ def presets() -> list[str]:
     return catalogue.built_in()
 
 
-def find_preset(name: str, folder: Path) -> str:
-    """What `preset` takes for what a scene in `folder` calls `name`. Raises CatalogueError."""
-    return catalogue.reference(name, folder)
+def find_preset(name: str, *folders: Path) -> str:
+    """What `preset` takes for the bearing called `name` in the first of `folders` where there is one.
+
+    Raises CatalogueError, that of the first folder, where there is none.
+    """
+    file = name.rpartition(":")[0]
+    there = [folder for folder in folders if not file or (folder / file).is_file()] or folders[:1]
+    missed: CatalogueError | None = None
+    for folder in there:
+        try:
+            return catalogue.reference(name, folder)
+        except CatalogueError as error:
+            if not error.known:  # a mistake in a file, not a name that may be elsewhere
+                raise
+            missed = missed or error
+    raise missed or CatalogueError(f"there is no preset {name}", presets())
 
 
 def preset(found: str) -> dict[str, float]:

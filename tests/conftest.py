@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -50,17 +51,33 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         warm_up()
 
 
+class OnDemand(Mapping[str, Path]):
+    """Something made of each of the project's FMUs when it is first asked for."""
+
+    def __init__(self, make: Callable[[str], Path]) -> None:
+        self._made = cache(make)
+
+    def __getitem__(self, name: str) -> Path:
+        return self._made(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(names())
+
+    def __len__(self) -> int:
+        return len(names())
+
+
 @pytest.fixture(scope="session")
 def built() -> Mapping[str, Path]:
-    """The project's FMUs by name, built from the present sources."""
-    return {name: cached(recipe(name)) for name in names()}
+    """The project's FMUs by name, built from the present sources, which compiles their models."""
+    return OnDemand(lambda name: cached(recipe(name)))
 
 
 @pytest.fixture(scope="session")
 def unpacked(built: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Path]:
     """Folders of the unpacked FMUs by name."""
     folder = tmp_path_factory.mktemp("unpacked")
-    return {name: Path(extract(str(path), str(folder / name))) for name, path in built.items()}
+    return OnDemand(lambda name: Path(extract(str(built[name]), str(folder / name))))
 
 
 @pytest.fixture(scope="session")

@@ -93,14 +93,16 @@ class Stability:
             return damped.rests(master.run(damped, setting))
 
 
-def compared(masters: Iterable[Master], problem: Problem, quick: bool) -> Iterator[Result]:
-    """All settings of all masters; `quick`: the coarsest of each, and no search for stable steps."""
-    stability = Stability(problem)
+def compared(
+    masters: Iterable[Master], problem: Problem, stability: Stability | None, coarsest: bool
+) -> Iterator[Result]:
+    """All settings of all masters, or the coarsest of each; stable steps where they are looked for."""
     for master in masters:
         tried = master.settings(problem)
-        first, *others = (result(master, problem, setting) for setting in (tried[:1] if quick else tried))
-        yield replace(first, rests="-" if quick else stability.of(master))
-        yield from others
+        found = [result(master, problem, setting) for setting in (tried[:1] if coarsest else tried)]
+        for one in found[:1]:
+            yield replace(one, rests=stability.of(master) if stability else "-")
+        yield from found[1:]
 
 
 def table(title: str, found: Sequence[Result]) -> Iterator[str]:

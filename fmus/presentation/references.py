@@ -121,7 +121,7 @@ def _pushed(time: float) -> dict[str, float]:
 def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> list[Row]:
     """Time (s) and outputs at the start and after each step; those of single modes, and zeros, left out.
 
-    Nothing where the model refuses to start or to step.
+    Nothing where the model refuses to start or to step, or has nothing to tell.
     """
     instance = trial.instance
     inputs = {s.variable.name: s.index for s in exposed if s.causality is Causality.INPUT}
@@ -140,7 +140,7 @@ def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> lis
     except trial.refused:
         return []
     told = [name for name in found[0] if name == "time" or any(row[name] for row in found)]
-    return [{name: row[name] for name in told} for row in found]
+    return [{name: row[name] for name in told} for row in found] if len(told) > 1 else []
 
 
 def _stored(instance: Any, slot: Slot) -> float:

@@ -113,7 +113,8 @@ def check(
     names: Mapping[str, str] | None = None,
     call_timeout: float = CALL_TIMEOUT,
 ) -> Report:
-    """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run.
+    """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run,
+    and the experiments that it brings along, held to their results.
 
     role: "bearing", "rotor", "amb" or "housing", whether it can stand in for one; names: what it calls the
     variables of the contract. An FMU at a path runs in a process of its own, where each call may take

@@ -9,10 +9,15 @@ from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.progress import bar_over
 from touchdown.master.results.result import Result
+from touchdown.master.studies.sweep.definition import FILE as SWEEP
+from touchdown.master.studies.sweep.results import Sweep
+from touchdown.master.studies.sweep.results import read as read_sweep
 
 
-def report(run: Result | PathLike, path: PathLike | None = None, *, pdf: bool = False) -> list[Path]:
-    """Write the report of a run, given its result or its folder, as one page; returns the files.
+def report(
+    run: Result | Sweep | PathLike, path: PathLike | None = None, *, pdf: bool = False
+) -> list[Path]:
+    """Write the report of a run or a sweep, given itself or its folder, as one page; returns the files.
 
     `path`: of the page; None: report.html in the run's folder. pdf: print it, too, beside the page, by a
     Chromium on the PATH. The page needs nothing beside it. Raises TouchdownError where there is no such
@@ -26,14 +31,20 @@ def report(run: Result | PathLike, path: PathLike | None = None, *, pdf: bool = 
     # matplotlib, which these import, is slow to come
     from touchdown.master.report.page.pdf import browser, print_page
     from touchdown.master.report.page.writing import PAGE, make_room, report_on, write_page
+    from touchdown.master.report.sweeps import report_on_sweep
 
     if pdf:
         browser()  # first of all: a page takes seconds
-    result = run if isinstance(run, Result) else open_result(run)
-    page = Path(path) if path else result.folder / PAGE
+    found = run if isinstance(run, (Result, Sweep)) else _read(Path(run))
+    page = Path(path) if path else found.folder / PAGE
     make_room(page)
-    write_page(report_on(result), page)
+    write_page(report_on_sweep(found) if isinstance(found, Sweep) else report_on(found), page)
     return [page, print_page(page, page.with_suffix(".pdf"))] if pdf else [page]
+
+
+def _read(folder: Path) -> Result | Sweep:
+    """What a run or a sweep left in a folder. Raises TouchdownError where there is neither."""
+    return read_sweep(folder) if (folder / SWEEP).is_file() else open_result(folder)
 
 
 def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: bool = False) -> Path:

@@ -1,4 +1,4 @@
-"""Check an FMU: is it valid, what can it stand in for, and does it run."""
+"""Check an FMU: is it valid, what can it stand in for, does it run, and as where it was built."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def load_scene(name: str) -> Scene:
     A folder stands for the scene.toml in it, which goes by the folder's name.
     """
     path = locate(name)
-    own = path.absolute().parent.name if path.name == SCENE_FILE else path.stem
+    own = path.resolve().parent.name if path.name == SCENE_FILE else path.stem
     return parse(tables(path), own, path.parent)
 
 

@@ -83,11 +83,12 @@ class Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
 
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
-        catalogue or of a file (FILE.toml:NAME, from the scene's folder), COMPONENT.every how many macro
-        steps a component takes in one, COMPONENT.isolate whether its FMU is stepped in a process of its
-        own, COMPONENT.native whether one of the project's own is taken as its native FMU. A COMPONENT with
-        * or ? is all whose names match: "bearing_*.friction.dynamic". Raises TouchdownError where there is
-        no such component, key or preset; a component's variables are looked up when a run begins.
+        catalogue or of a file (FILE.toml:NAME, from the scene's folder or the current one), COMPONENT.every
+        how many macro steps a component takes in one, COMPONENT.isolate whether its FMU is stepped in a
+        process of its own, COMPONENT.native whether one of the project's own is taken as its native FMU. A
+        COMPONENT with * or ? is all whose names match: "bearing_*.friction.dynamic". Raises TouchdownError
+        where there is no such component, key or preset; a component's variables are looked up when a run
+        begins.
         """
         scene = self
         for name, value in settings.items():
@@ -117,7 +118,7 @@ class Scene:
             return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
         spec = self._component(head)
         if tail == "preset":
-            preset = checked_preset(value, head, self.folder)
+            preset = checked_preset(value, head, self.folder, Path())
             changed = replace(spec, preset=preset, own=_with(spec.own, tail))
         elif tail == "every":
             changed = replace(spec, every=whole(value, name))
@@ -194,8 +195,8 @@ def _source(fmu: str) -> str:
     return str(Path(fmu).expanduser().absolute()) if is_file(fmu) else fmu
 
 
-def checked_preset(name: object, where: str, folder: Path) -> str | None:
-    """A bearing of the catalogue, or of a file that lies in `folder` or is named from there; or None.
+def checked_preset(name: object, where: str, *folders: Path) -> str | None:
+    """A bearing of the catalogue, or of a file that one of `folders` has or that is named from it; or None.
 
     Raises TouchdownError where there is none of that name.
     """
@@ -205,7 +206,7 @@ def checked_preset(name: object, where: str, folder: Path) -> str | None:
     from touchdown.fmus.recipes import CatalogueError, find_preset
 
     try:
-        return find_preset(str(name), folder)
+        return find_preset(str(name), *folders)
     except CatalogueError as error:
         remedy = f"; {one_of(str(name), error.known)}" if error.known else ""
         raise TouchdownError(f"{where}: {error}{remedy}") from None

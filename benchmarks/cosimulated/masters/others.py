@@ -26,12 +26,13 @@ TIMEOUT = 900.0  # s
 
 @dataclass(frozen=True)
 class Other:
-    """A way of a tool; `options` are those of its driver."""
+    """A way of a tool; `options` are those of its driver. It is asked for `most` macro steps at most."""
 
     own: ClassVar[bool] = False
     tool: str
     way: str = ""
     options: Mapping[str, object] = field(default_factory=dict)
+    most: int = 1_000_000
 
     @property
     def title(self) -> str:
@@ -54,8 +55,12 @@ class Other:
             raise UnableError(str(reason)) from reason
         with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
             package, answer = Path(folder, "system.ssp"), Path(folder, "answer.npz")
+            scene = problem.scene({**setting.run, "scheme": problem.packed})
+            steps = scene.run.duration / scene.run.macro_step
+            if steps > self.most:
+                raise UnableError(f"{steps:.0f} macro steps; it is slow, and asked for {self.most} at most")
             try:
-                write_package(problem.scene({**setting.run, "scheme": problem.packed}), package, True)
+                write_package(scene, package, True)
             except TouchdownError as error:
                 raise UnableError(str(error)) from error
             self._follow([python, DRIVERS / f"follow_{self.tool}.py", package, answer], problem, setting)

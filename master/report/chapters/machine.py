@@ -65,8 +65,8 @@ def _view(subject: Subject) -> tuple[SideView, str]:
         return _flexible(subject, body, shaft), (
             f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "
             f"{quantity(float(shaft.positions()[-1]), 'm')} long. Blue: touchdown bearings; orange: "
-            "magnetic bearings; black tips: sensors; discs and diamonds: point masses; purple triangles: unbalances. "
-            "Where a part states no size, its outline is a symbol."
+            "magnetic bearings; tips: sensors; discs and diamonds: point masses; purple triangles: "
+            "unbalances. Where a part states no size, its outline is a symbol."
         )
     return _rigid(subject, body)
 

@@ -23,6 +23,7 @@ from touchdown.master.results.result import Result
 HERE = Path(__file__).parent
 TEMPLATES, ASSETS = HERE / "templates", HERE / "assets"
 PAGE = "report.html"
+ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."
 _CODE = re.compile(r"`([^`]+)`")
 
 
@@ -30,22 +31,31 @@ _CODE = re.compile(r"`([^`]+)`")
 class Page:
     """What the page's template prints."""
 
+    kind: str
     title: str
     headline: str
     made: str  # when and with what
     sections: Sequence[Section]
+    about: str  # what to know of its order
 
 
 def report_on(result: Result) -> Page:
     """The report of a run."""
     subject = Subject(result)
-    when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     return Page(
+        kind="Report on a rotor drop",
         title=result.scene.title,
         headline=headline(subject),
-        made=f"Scene {result.scene.name}, report of {when} by touchdown-cosim {VERSION}.",
+        made=made_now(f"Scene {result.scene.name}"),
         sections=[section(chapter, subject) for chapter in CHAPTERS],
+        about=ORDER,
     )
+
+
+def made_now(of: str) -> str:
+    """Of what a page is, when it was made, and with what."""
+    when = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    return f"{of}, report of {when} by touchdown-cosim {VERSION}."
 
 
 def make_room(path: Path) -> None:

@@ -15,6 +15,7 @@ from touchdown.master.results.figures.style import BLACK, BLUE, GREY, ORANGE, PU
 from touchdown.master.studies.rotor.figure import AXIS, CORE, EDGE, MM, SLEEVE, side_view
 from touchdown.rotor.beams.shaft import Shaft
 
+SYMBOL = 0.45  # of the rotor's largest radius: how tall a support is drawn that states no size
 FLATTEST, HIGHEST = 0.16, 0.5  # height over width of a side view
 
 
@@ -65,7 +66,8 @@ def draw_side(figure: Figure, view: SideView) -> None:
     """Rotor, bearings, magnetic bearings and sensors in mm, equal scales both ways."""
     begin, end = (MM * place for place in view.ends)
     radius = MM * view.radius
-    reach = 1.75 * radius
+    tallest = max([radius, *(MM * _span(view, s)[1] for s in view.supports)])
+    reach = 1.5 * tallest
     half = max(0.53 * (end - begin), reach / HIGHEST)
     reach = max(reach, FLATTEST * half)
     middle = 0.5 * (begin + end)
@@ -86,15 +88,20 @@ def _draw_unbalances(axes: Axes, view: SideView) -> None:
         axes.plot(MM * place, MM * view.surface(place), "v", color=PURPLE, ms=6, zorder=4)
 
 
+def _span(view: SideView, s: Support) -> tuple[float, float]:
+    """Radii between which a support is drawn (m); where it states no size, those of a symbol."""
+    inner = 0.5 * s.inner or view.surface(s.position)
+    return inner, 0.5 * s.outer or inner + SYMBOL * view.radius
+
+
 def _draw_support(axes: Axes, s: Support, view: SideView, radius: float) -> None:
     """Above and below the rotor: a ball between rings, a wound pole, or a sensor's tip."""
-    inner = MM * (0.5 * s.inner or view.surface(s.position))
+    inner, outer = (MM * r for r in _span(view, s))
     at = MM * s.position
     if s.kind == "sensor":
         axes.plot([at, at], [inner + 0.06 * radius, inner + 0.35 * radius], color=BLACK, lw=1.6)
         axes.plot(at, inner + 0.06 * radius, "v", color=BLACK, ms=4)
         return
-    outer = MM * 0.5 * s.outer or inner + 0.45 * radius
     width = MM * s.width or 0.35 * radius
     for sign in (1.0, -1.0):
         low = sign * inner if sign > 0 else -outer
@@ -116,7 +123,7 @@ def _name_supports(axes: Axes, view: SideView, reach: float) -> None:
     for s in view.supports:
         top.setdefault(round(MM * s.position), []).append(s.label)
     for k, (place, names) in enumerate(sorted(top.items())):
-        level = 0.97 if k % 2 == 0 else 0.83
+        level = 0.98 if k % 2 == 0 else 0.86
         axes.text(place, level * reach, "\n".join(names), ha="center", va="top", fontsize="small")
 
 

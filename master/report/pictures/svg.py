@@ -50,23 +50,30 @@ _FONT = re.compile(r"font: ([\d.]+)px [^;]*")
 _REFERENCE = re.compile(r"url\(#([^)]+)\)")
 
 
-def inline(draw: Callable[[Figure], object], name: str, alt: str, wide: bool = False) -> str:
+def inline(
+    draw: Callable[[Figure], object], name: str, alt: str, wide: bool = False, themed: bool = True
+) -> str:
     """What `draw` puts on an empty figure, as an SVG element for a page.
 
     name: what begins the ids inside, one for each picture of a page; alt: what it shows, in words;
-    wide: it is drawn wider than a page, which shows it smaller, so that its text has to be larger.
+    wide: it is drawn wider than a page, which shows it smaller, so that its text has to be larger;
+    themed: its colours follow the page's, or else it stays as drawn, on white.
     """
     written = StringIO()
     with mpl.rc_context({**STYLE, "font.size": WIDE_FONT if wide else FONT}):
         figure = sheet()
-        figure.patch.set_visible(False)
+        figure.patch.set_visible(not themed)
         draw(figure)
         _without_first_line(figure)
         for axes in figure.axes:
             axes.patch.set_visible(False)
         figure.savefig(written, format="svg", metadata={"Date": None, "Creator": None})
     text = written.getvalue()
-    return _for_page(ElementTree.fromstring(text[text.index("<svg") :]), name, alt)
+    root = ElementTree.fromstring(text[text.index("<svg") :])
+    if themed:
+        for element in root.iter():
+            _themed(element)
+    return _for_page(root, name, alt)
 
 
 def _without_first_line(figure: Figure) -> None:
@@ -85,7 +92,7 @@ def _for_page(root: ElementTree.Element, name: str, alt: str) -> str:
     used = _used(root)
     for element in root.iter():
         _renamed(element, used, name)
-        _coloured(element)
+        _plain(element)
     width = root.attrib.pop("width")
     root.attrib.pop("height")
     root.set("role", "img")
@@ -122,18 +129,21 @@ def _renamed(element: ElementTree.Element, used: set[str], name: str) -> None:
             element.set(key, _REFERENCE.sub(rf"url(#{name}-\1)", value))
 
 
-def _coloured(element: ElementTree.Element) -> None:
-    """Colours as words of the page's style, its font, and coordinates of two decimals."""
-    tag = element.tag.rpartition("}")[2]
+def _plain(element: ElementTree.Element) -> None:
+    """Coordinates of two decimals, and text in the page's font."""
     if "d" in element.attrib:
         element.set("d", _LONG.sub(r"\1", element.get("d", "")).replace("\n", ""))
-    style = element.get("style", "")
-    if tag == "text":
-        style = _FONT.sub(r"font-size: \1px", style)
-        if "fill" not in style:
-            style += "; fill: var(--ink)"
-    elif tag in ("path", "use") and "fill" not in style and "stroke" in style and tag == "use":
-        style += "; fill: var(--ink)"
+    if "style" in element.attrib:
+        element.set("style", _FONT.sub(r"font-size: \1px", element.get("style", "")))
+
+
+def _themed(element: ElementTree.Element) -> None:
+    """Colours as words of the page's style; what has none is black in SVG, and the page's ink here."""
+    tag, style = element.tag.rpartition("}")[2], element.get("style", "")
+    if (tag == "text" and "fill" not in style) or (
+        tag == "use" and "stroke" in style and "fill" not in style
+    ):
+        style += "; fill: #000000"
     style = _COLOUR.sub(lambda match: _paint(match[0]), style)
     if style:
         element.set("style", style)

@@ -78,14 +78,24 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
 
     Raises TouchdownError where one of them is there and `force` does not say to replace it.
     """
-    for name in made.files:
-        if (folder / name).exists() and not force:
+    if folder.exists() and not folder.is_dir():
+        raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
+    for name, text in made.files.items():
+        if not force and (folder / name).exists() and not _holds(folder / name, text):
             raise TouchdownError(f"{folder / name} is there already; choose another folder, or --force")
     with writing_to(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in made.files.items():
             (folder / name).write_text(text, encoding="utf-8")
     return folder / SCENE_FILE
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a file is what it is to become."""
+    try:
+        return path.read_text(encoding="utf-8") == text
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 class _Bearings:
@@ -117,7 +127,7 @@ class _Bearings:
         file, colon, inside = found.rpartition(":")
         if not colon:
             return name
-        text = Path(file).read_text(encoding="utf-8")
+        text = Path(file).read_text(encoding="utf-8-sig")
         if self.files.setdefault(OWN_FILE, text) != text:
             raise TouchdownError(
                 f"--bearings: bearings of two files cannot both become {OWN_FILE}; join them"

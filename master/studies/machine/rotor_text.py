@@ -41,7 +41,7 @@ def with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> t
 def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
     """The text of `shaft`'s file, changed to that of `wanted`: its stations and who levitates it.
 
-    Comments and layout stay where that is possible.
+    Comments and layout stay where that is possible. Raises TouchdownError where it cannot be written.
     """
     if wanted == shaft:
         return text
@@ -61,7 +61,10 @@ def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
             return changed
     except ModelError:
         pass
-    return written(wanted)
+    try:
+        return written(wanted)
+    except ModelError as error:
+        raise TouchdownError(f"the places of the magnetic bearings cannot be added: {error}") from None
 
 
 def _same(shaft: Shaft, wanted: Shaft) -> bool:

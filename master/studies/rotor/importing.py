@@ -27,8 +27,8 @@ def import_rotor(
     rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
     """
     try:
-        is_path = isinstance(source, (str, os.PathLike))
-        found = read(os.fspath(source), speed) if is_path else from_ross(source, speed)
+        named = isinstance(source, (str, os.PathLike))
+        found = read(os.fspath(source), speed) if named else from_ross(source, speed)
         shaft = placed(found, at, amb, sensors)
         written(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
     except ModelError as error:

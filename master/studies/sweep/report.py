@@ -67,8 +67,6 @@ def report_lines(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[
     """What the command shows of a sweep, and complaints about `picks`."""
     figures, complaints = picked(members, picks)
     lines = [table(members, figures), *verdict_lines(members)]
-    if kept := sum(member.kept for member in members):
-        lines.append(f"{kept} of {len(members)} were finished before and not run again")
     if why := failures(members):
         lines += ["failed:", *why]
     return lines, complaints

@@ -54,4 +54,4 @@ def execute(options: argparse.Namespace) -> int:
     return FAILED if failed else 0
 
 
-VERB = Verb("check", "check FMUs: validity, contract, a dry run", EXAMPLES, declare, execute)
+VERB = Verb("check", "check FMUs: validity, contract, a dry run, proofs", EXAMPLES, declare, execute)

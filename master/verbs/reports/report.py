@@ -11,12 +11,14 @@ from touchdown.master.verbs.verb import Verb
 EXAMPLES = (
     "touchdown report runs/disk-caged-simplified",
     "touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf",
+    "touchdown report runs/sweep-disk-caged-simplified",
 )
 
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("folder", metavar="RUN", type=Path, help="folder that `touchdown run` wrote")
+    meant = "folder that `touchdown run` or `touchdown sweep` wrote"
+    verb.add_argument("folder", metavar="RUN|SWEEP", type=Path, help=meant)
     add_output(verb, "RUN/report.html", "file")
     verb.add_argument("--pdf", action="store_true", help="print it as PDF, too, by a Chromium on the PATH")
 
@@ -30,4 +32,4 @@ def execute(options: argparse.Namespace) -> int:
     return 0
 
 
-VERB = Verb("report", "a run as a page to hand on", EXAMPLES, declare, execute)
+VERB = Verb("report", "a run or a sweep as a page to hand on", EXAMPLES, declare, execute)

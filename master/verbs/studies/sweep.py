@@ -111,9 +111,12 @@ def execute(options: argparse.Namespace) -> int:
         chosen_jobs(options), options.dask or "", options.in_process, options.keep, options.anew
     )
     folder = options.output or Path("runs") / f"sweep-{chosen.name}{_tail(design)}"
-    print(f"{len(design)} runs: {design.about}", flush=True)
+    shard = f", shard {options.shard} of" if options.shard else ":"
+    print(f"{len(design)} runs{shard} {design.about}", flush=True)
     with bar_over(len(design), "runs", options.quiet) as bar:
         found = sweep(chosen, design, folder, running, bar.update)
+    if kept := sum(member.kept for member in found):
+        print(f"{kept} of {len(found)} were finished before and not run again")
     show_sweep(found, folder, options)
     if any(m.ended is Ended.INTERRUPTED for m in found):
         return broken_off()

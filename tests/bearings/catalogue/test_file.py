@@ -88,6 +88,23 @@ def test_a_scene_takes_it(folder: Path) -> None:
         load_scene(str(path))
 
 
+def test_a_setting_finds_it_from_where_the_user_stands(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the scene's own folder does not have."""
+    monkeypatch.chdir(folder)
+    scene = load_scene("disk-caged-simplified")
+    found = f"{folder / 'bearings.toml'}:our 7014"
+    for name in ("our 7014", "bearings.toml:our 7014"):
+        assert scene.set({"bearing.preset": name}).components["bearing"].preset == found
+    with pytest.raises(TouchdownError, match="bearing: there is no preset our 701; did you mean"):
+        scene.set({"bearing.preset": "our 701"})
+    (folder / "bearings.toml").write_text("[a", encoding="utf-8")
+    with pytest.raises(TouchdownError, match="not valid TOML"):
+        scene.set({"bearing.preset": "our 7014"})
+    assert scene.set({"bearing.preset": "7014"}).components["bearing"].preset == "7014"
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -84,6 +84,17 @@ def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:
         touchdown.animate(touchdown.run(scene, in_process=True), tmp_path / "none.gif")
 
 
+def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "9 ms"})
+    varied = {"bearing.clearance": ["0.2 mm", "0.25 mm"]}
+    touchdown.sweep(scene, varied, tmp_path / "sweep", jobs=1, in_process=True)
+    assert command("report", tmp_path / "sweep").status == 0
+    text = (tmp_path / "sweep" / "report.html").read_text(encoding="utf-8")
+    assert "0 of 2 drops whirl (0\N{NO-BREAK SPACE}%)" in text.replace("0 %", "0\N{NO-BREAK SPACE}%")
+    assert "The map of stress: not in this report" in text
+    assert "all drops ran to their end" in text
+
+
 def test_the_rows_of_a_chart_keep_all_peaks() -> None:
     random = np.random.default_rng(1)
     time = np.linspace(0.0, 5.0, 200_001)

@@ -30,7 +30,7 @@ def _ticks(values: Sequence[object]) -> tuple[list[int], list[str]]:
     """Places and labels, thinned where they would not fit."""
     every = -(-len(values) // MOST_TICKS)
     places = list(range(0, len(values), every))
-    labels = [f"{values[i]:.4g}" if isinstance(values[i], float) else str(values[i]) for i in places]
+    labels = [f"{values[i]:.6g}" if isinstance(values[i], float) else str(values[i]) for i in places]
     return places, labels
 
 

@@ -65,7 +65,8 @@ class MapPlot:
                 getattr(self, name)(figure.add_subplot(), over)
             except TouchdownError:  # there is nothing of it
                 continue
-            figure.suptitle(str(self._definition.scene["title"]), wrap=True)
+            scene = self._definition.scene["name"]  # its title may tell what varies here
+            figure.suptitle(f"Scene {scene}, {len(self._members)} drops")
             with writing_to(folder):
                 figure.savefig(folder / f"{name}-map.png", dpi=150)
             drawn.append(folder / f"{name}-map.png")

@@ -157,6 +157,38 @@ def test_files_that_are_there_stay(here: Path, capsys: pytest.CaptureFixture[str
     assert made("--amb", "A,B", "--force") == 0
 
 
+def test_a_rotor_that_lies_in_the_folder_stays(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Nothing of it has to be changed; where something has, that is for --force."""
+    mine = here / "mine"
+    mine.mkdir()
+    text = ROTOR.replace("B = 8", "B = 8\namb_A = 3\namb_B = 7")
+    held = text.replace("[material.steel]", 'levitated_at = ["amb_A", "amb_B"]\n[material.steel]')
+    (mine / "rotor.toml").write_text(held, encoding="utf-8")
+    (here / "other.toml").write_text(text, encoding="utf-8")
+    assert main(["new", "mine", "--rotor", "mine/rotor.toml", "--bearings", "7014"]) == 0
+    assert (mine / "rotor.toml").read_text(encoding="utf-8") == held
+    assert main(["new", "other.toml", "--rotor", "mine/rotor.toml", "--bearings", "7014"]) == FAILED
+    assert "other.toml is a file" in capsys.readouterr().err
+
+
+def test_places_that_cannot_be_added_are_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A sensor has the name that the magnetic bearing's place would get."""
+    (here / "rotor.toml").write_text(f"{ROTOR}\n[sensors]\namb_A = 3\n", encoding="utf-8")
+    assert made("--amb", "A,B") == FAILED
+    said = capsys.readouterr().err.strip()
+    assert "cannot be added" in said
+    assert "\n" not in said
+
+
+def test_a_folder_goes_by_its_name_wherever_it_is_named_from(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made("--amb", "A,B")
+    (here / "mine" / "inner").mkdir()
+    monkeypatch.chdir(here / "mine" / "inner")
+    assert touchdown.load("..").name == "mine"
+
+
 def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A bearing beside the centre of mass, a journal thicker than its bore, no unbalance."""
     text = ROTOR.replace("A = 2  # drive end", "A = 7").replace("300 g.mm", "0 g.mm")
