@@ -101,9 +101,11 @@ def main(arguments: list[str] | None = None) -> int:
             ways = [Own(way, table) for way, table in problem.ways.items()]
             others = [other for other in OTHERS if other.tool in options.tools]
             comparison.keep(tabled(problem, [*ways, *others], options), options.output / f"{name}.json")
-    drawn = {title: comparison.known(options.output / f"{name}.json") for name, title in SHOWN.items()}
-    draw({title: found for title, found in drawn.items() if found}, options.output / "masters.png")
-    print(f"\npicture, of all problems that were ever run into it, in {options.output}")
+    known = {title: comparison.known(options.output / f"{name}.json") for name, title in SHOWN.items()}
+    drawn = {title: found for title, found in known.items() if found}
+    if drawn:
+        draw(drawn, options.output / "masters.png")
+        print(f"\npicture, of all problems that were ever run into it, in {options.output}")
     return 0
 
 
@@ -127,6 +129,8 @@ def asked(arguments: list[str] | None) -> argparse.Namespace:
         if not set(chosen) <= set(known):
             parser.error(f"--{key} {','.join(chosen)}: of {', '.join(known)}")
         setattr(options, key, chosen)
+    if bodies.COMPILER is None:
+        parser.error("needs a C compiler, for FMUs in C")
     return options
 
 
