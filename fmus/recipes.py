@@ -16,6 +16,7 @@ from pathlib import Path
 
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue import CatalogueError as CatalogueError
+from touchdown.bearings.catalogue.source import FROM_SOURCE
 from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
@@ -134,9 +135,12 @@ def _from_rotor(path: Path) -> Recipe:
 
 
 def parameter_sets(model: Model) -> dict[str, dict[str, float]]:
-    """By name, what the sets give to parameters of `model`: those of bearings with all that it takes."""
+    """By name, what the sets give to parameters of `model`: those of bearings with all that it takes.
+
+    Of the source's bearings only: all sizes would be a quarter of a megabyte in every FMU.
+    """
     names = {s.variable.name for s in slots(model) if s.causality is Causality.PARAMETER}
-    known = {name: preset(name) for name in presets()}
+    known = {bearing.designation: bearing.settings() for bearing in FROM_SOURCE}
     return {
         name: {n: v for n, v in values.items() if n in names}
         for name, values in known.items()
