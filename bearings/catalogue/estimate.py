@@ -129,11 +129,11 @@ def _rings(n: Mapping[str, float]) -> Rings:
     shoulders = inner + 2.0 * height, outer - 2.0 * height
     cut_inner = _segment(n["inner_groove"] * ball, height) * math.pi * (inner + height)
     cut_outer = _segment(n["outer_groove"] * ball, height) * math.pi * (outer - height)
-    mass_inner = STEEL * (0.25 * math.pi * width * (shoulders[0] ** 2 - n["bore"] ** 2) - cut_inner)
-    mass_outer = STEEL * (0.25 * math.pi * width * (n["outside"] ** 2 - shoulders[1] ** 2) - cut_outer)
-    rows = n["rows"]
+    rows, disc = n["rows"], 0.25 * math.pi * width  # rows stand side by side in the width
+    mass_inner = STEEL * (disc * (shoulders[0] ** 2 - n["bore"] ** 2) - rows * cut_inner)
+    mass_outer = STEEL * (disc * (n["outside"] ** 2 - shoulders[1] ** 2) - rows * cut_outer)
     inertia = 0.125 * mass_inner * (n["bore"] ** 2 + shoulders[0] ** 2)
-    return Rings(rows * mass_inner, rows * inertia, rows * mass_outer)
+    return Rings(mass_inner, inertia, mass_outer)
 
 
 def _segment(radius: float, height: float) -> float:

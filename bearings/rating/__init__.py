@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from touchdown.bearings.rating.bearing import INNER, OUTER, RatedBearing
 from touchdown.bearings.rating.capacity import (
+    BALL_SHARE,
     PRESSURE_LIMIT,
     Capacity,
     capacity,
@@ -24,6 +25,7 @@ from touchdown.bearings.rating.hertz import PointContact, point_contact
 from touchdown.bearings.rating.life import basic_life, reference_life
 
 __all__ = [
+    "BALL_SHARE",
     "INNER",
     "OUTER",
     "PRESSURE_LIMIT",

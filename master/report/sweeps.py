@@ -71,9 +71,14 @@ def headline(sweep: Sweep) -> str:
     count = sum(bool(whirling(member.summary)) for member in told)
     part = clopper_pearson(count, len(told))
     said = share(part.value)
-    if any(word in sweep.definition.about.lower() for word in SAMPLED):
+    if _is_sample(sweep.definition.about):
         said += f"; {share(part.low)} to {share(part.high)} of all with 95 % confidence"
     return f"{count} of {len(told)} drops whirl ({said}).{unsaid}"
+
+
+def _is_sample(about: str) -> bool:
+    """Whether drops are drawn one by one; each point of a product with phases, say, has several."""
+    return any(word in about.lower() for word in SAMPLED) and "; " not in about
 
 
 def _done(sweep: Sweep) -> list[Member]:

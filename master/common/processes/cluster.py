@@ -37,8 +37,8 @@ def run_on_cluster(
     with _connected(address) as client:
         try:
             for place, outcome in _outcomes(client, work, tasks):
-                ended[place] = outcome
                 heard(place, outcome)
+                ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
                 done()
         except KeyboardInterrupt:
             pass

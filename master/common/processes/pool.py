@@ -65,8 +65,8 @@ def run_all(
     crew = _Crew(work, tasks, max(1, min(jobs, len(tasks))))
     try:
         for place, outcome in crew.outcomes():
-            ended[place] = outcome
             heard(place, outcome)
+            ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
             done()
     except KeyboardInterrupt:
         pass

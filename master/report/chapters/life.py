@@ -10,7 +10,6 @@ from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Absent, Block, Lacking, Table, Text
 
 USUAL = 2.0  # s_0 that makers ask for under shocks
-STATED = "stated by scene or catalogue"
 MOST_DROPS = 1e6  # more are said to be more
 
 
@@ -39,7 +38,7 @@ def _static(found: dict[str, Rated]) -> Table:
         [
             seat,
             quantity(one.capacity.static, "N", 3),
-            STATED if one.stated.static else "ISO 76, from the geometry",
+            one.stated.static,
             quantity(one.equivalent_load, "N", 3),
             digits(one.static_safety, 3),
             digits(one.pressure_safety, 3),
@@ -47,7 +46,7 @@ def _static(found: dict[str, Rated]) -> Table:
         for seat, one in found.items()
     ]
     head = [
-        *("Seat", "Static rating C₀", "C₀ is", "Equivalent load P₀", "s₀ = C₀/P₀"),
+        *("Seat", "Static rating C₀", "C₀ from", "Equivalent load P₀", "s₀ = C₀/P₀"),
         "Safety against 4.2 GPa",
     ]
     return Table("Static safety at the largest ball load of the run", head, rows, 1)
@@ -58,7 +57,7 @@ def _fatigue(found: dict[str, Rated]) -> Table:
         [
             seat,
             quantity(one.capacity.dynamic, "N", 3),
-            STATED if one.stated.dynamic else "ISO 281, from the geometry",
+            one.stated.dynamic,
             digits(one.turns, 3),
             share(one.damage),
             f"more than {MOST_DROPS:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
@@ -67,7 +66,7 @@ def _fatigue(found: dict[str, Rated]) -> Table:
         ]
         for seat, one in found.items()
     ]
-    head = ["Seat", "Dynamic rating C", "C is", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
+    head = ["Seat", "Dynamic rating C", "C from", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
     return Table("Fatigue: such drops until one in ten bearings has failed", head, rows, 1)
 
 

@@ -29,17 +29,26 @@ class Loads:
 
 
 @dataclass(frozen=True)
+class Stated:
+    """Load ratings of a row as scene or catalogue have them, and where each is from, in words."""
+
+    row: rating.Capacity  # N; 0: there is none, and the standard's formula stands for it
+    static: str
+    dynamic: str
+
+
+@dataclass(frozen=True)
 class Rated:
-    """A bearing, its ratings, and its loads."""
+    """A bearing, its ratings, and its loads. The model's ball force is taken as the normal one."""
 
     bearing: rating.RatedBearing
     loads: Loads
-    stated: rating.Capacity  # N, of a row, as scene or catalogue state them; 0: they do not
+    stated: Stated
 
     @cached_property
     def capacity(self) -> rating.Capacity:
         """Static and dynamic load rating of the whole bearing (N)."""
-        return rating.capacity(self.bearing, self.stated.static, self.stated.dynamic)
+        return rating.capacity(self.bearing, self.stated.row.static, self.stated.row.dynamic)
 
     def pressure(self, race: str) -> np.ndarray:
         """The largest on a race, `rating.INNER` or OUTER, over the recorded times (Pa, (rows,))."""
@@ -64,7 +73,8 @@ class Rated:
     @property
     def equivalent_load(self) -> float:
         """Static radial load (N) under which the most loaded ball carries the run's peak (ISO 76)."""
-        return self.loads.peak * self.bearing.rows * self.bearing.count / 5.0
+        b = self.bearing
+        return self.loads.peak * b.rows * b.count * math.cos(b.contact_angle) / rating.BALL_SHARE
 
     @property
     def static_safety(self) -> float:
@@ -118,11 +128,24 @@ def rated(subject: Subject, a: Attachment) -> Rated | str:
     return Rated(bearing, loads, _stated(subject, a))
 
 
-def _stated(subject: Subject, a: Attachment) -> rating.Capacity:
-    """Ratings of a row (N) as the scene or the catalogue has them; 0 where only a default would."""
+def _stated(subject: Subject, a: Attachment) -> Stated:
+    """What the scene or the catalogue has; a model's default is not taken for a rating."""
     spec = subject.result.scene.components[a.bearing]
     entry = catalogued(spec.preset)
     own = origin_of(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)
     static = subject.setting(a, STATIC) if own else None
-    known = (entry.static_rating, entry.dynamic_rating) if entry else (0.0, 0.0)
-    return rating.Capacity(static or known[0], known[1])
+    known, from_entry = rating.Capacity(0.0, 0.0), {}
+    if entry:
+        known, from_entry = rating.Capacity(entry.static_rating, entry.dynamic_rating), entry.origins
+    return Stated(
+        rating.Capacity(static or known.static, known.dynamic),
+        "the scene" if static else _origin(from_entry.get("static_rating", ""), "ISO 76", known.static),
+        _origin(from_entry.get("dynamic_rating", ""), "ISO 281", known.dynamic),
+    )
+
+
+def _origin(of_entry: str, standard: str, known: float) -> str:
+    """Where a rating is from: the catalogue, which may have it by the standard, or the geometry at hand."""
+    if not known:
+        return f"{standard}, from the geometry"
+    return f"the catalogue: {of_entry}" if of_entry else "the catalogue"

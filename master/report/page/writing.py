@@ -23,6 +23,7 @@ from touchdown.master.results.result import Result
 HERE = Path(__file__).parent
 TEMPLATES, ASSETS = HERE / "templates", HERE / "assets"
 PAGE = "report.html"
+SUFFIXES = (".html", ".htm")
 ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."
 _CODE = re.compile(r"`([^`]+)`")
 
@@ -62,6 +63,10 @@ def make_room(path: Path) -> None:
     """Make the folder of a page at `path`. Raises TouchdownError where there can be no page."""
     if path.is_dir():
         raise TouchdownError(f"{path} is a folder; give -o the name of a file, such as {path / PAGE}")
+    if path.suffix.lower() not in SUFFIXES:
+        raise TouchdownError(
+            f"{path.name} is no name of a page; give -o one that ends in .html (--pdf prints beside it)"
+        )
     with writing_to(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
 

@@ -101,7 +101,7 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
         version=VERSION,
         scene=plain,
         scheme=asdict(scene.run.scheme),
-        made_of=origins(scene),
+        made_of=origins(scene) | _varied_catalogues(scene, columns, design),
         in_process=in_process,
         about=design.about,
         columns=tuple(columns),
@@ -120,6 +120,20 @@ def origins(scene: Scene) -> dict[str, str]:
         file, _, _ = (spec.preset or "").rpartition(":")  # a catalogue of the user's own
         if file:
             found[name] += _content(scene.folder / file)
+    return found
+
+
+def _varied_catalogues(scene: Scene, columns: Sequence[Column], design: Design) -> dict[str, str]:
+    """By file: a hash over each catalogue of the user's own that a preset varies over."""
+    found: dict[str, str] = {}
+    for place, column in enumerate(columns):
+        component, _, variable = column.settings[0].partition(".")
+        if variable == "preset":
+            for value in dict.fromkeys(str(point[place]) for point in design.points):
+                preset = scene.set({f"{component}.preset": value}).components[component].preset or ""
+                file, _, _ = preset.rpartition(":")
+                if file:
+                    found[Path(file).name] = _content(scene.folder / file)
     return found
 
 

@@ -109,7 +109,7 @@ def _append(path: Path, line: bytes) -> None:
             while line:
                 line = line[file.write(line) :]
             os.fsync(file.fileno())
-        except OSError:
+        except BaseException:  # a signal's, too
             file.truncate(before)
             raise
 

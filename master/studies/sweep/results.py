@@ -86,7 +86,7 @@ def read(folder: Path) -> Sweep:
     """The sweep in `folder` as it is now, also while it runs. Raises TouchdownError where there is none."""
     asked = read_definition(folder)
     members = _read_members(folder, asked)
-    return Sweep(asked, tuple(_or_not_run(members, n, asked) for n in asked.numbers), folder)
+    return _whole(asked, members, folder)
 
 
 def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
@@ -110,14 +110,19 @@ def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
                 f"{part} and {parts[0]} are of different sweeps: {'; '.join(found)}; leave one of them out"
             )
         _take(members, _read_members(part, asked), part)
-    ordered = tuple(_or_not_run(members, n, asked) for n in asked.numbers)
-    merged = Sweep(asked, ordered, folder or parts[0])
-    if folder is not None:
-        with claimed(folder), writing_to(folder):
-            asked.write(folder)
-            write_journal(folder / journal.FILE, [members[n] for n in sorted(members)])
-            write_results(merged, folder)
+    if folder is None:
+        return _whole(asked, members, parts[0])
+    with claimed(folder), writing_to(folder):
+        _take(members, _read_members(folder, asked), folder)  # what a sweep added there before it ended
+        merged = _whole(asked, members, folder)
+        asked.write(folder)
+        write_journal(folder / journal.FILE, [members[n] for n in sorted(members)])
+        write_results(merged, folder)
     return merged
+
+
+def _whole(asked: Definition, members: dict[int, Member], folder: Path) -> Sweep:
+    return Sweep(asked, tuple(_or_not_run(members, n, asked) for n in asked.numbers), folder)
 
 
 def _read_members(folder: Path, asked: Definition) -> dict[int, Member]:

@@ -147,3 +147,17 @@ def test_what_is_not_there_is_named(folder: Path) -> None:
     with pytest.raises(CatalogueError) as caught:
         reference("x", folder)
     assert caught.value.known == ("our 7014", *built_in())
+
+
+def test_two_rows_in_twice_the_width_weigh_as_two_bearings(tmp_path: Path) -> None:
+    sizes = 'bore = "70 mm"\noutside = "110 mm"\n'
+    (tmp_path / "bearings.toml").write_text(
+        f'["one"]\nkind = "angular contact"\n{sizes}width = "20 mm"\n'
+        f'["pair"]\nkind = "angular contact"\n{sizes}width = "40 mm"\nrows = 2\n',
+        encoding="utf-8",
+    )
+    found = own(tmp_path)
+    one, pair = found["one"], found["pair"]
+    assert pair.ring.mass == pytest.approx(2.0 * one.ring.mass)
+    assert pair.ring.inertia == pytest.approx(2.0 * one.ring.inertia)
+    assert pair.outer_ring == pytest.approx(2.0 * one.outer_ring)

@@ -17,6 +17,7 @@ from touchdown.master.report.facts.numbers import digits, listed, quantity
 from touchdown.master.report.facts.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Table
+from touchdown.master.report.sweeps import _is_sample
 
 
 def test_a_run_is_read_back_as_it_was(dropped: Path) -> None:
@@ -95,6 +96,15 @@ def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
     assert "all drops ran to their end" in text
 
 
+def test_only_drops_drawn_one_by_one_tell_of_all() -> None:
+    """Those of several phases at each drawn point are not independent of each other."""
+    drawn = touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
+    phases = touchdown.Design.grid({"rotor.unbalance_angle": ["0 deg", "180 deg"]})
+    assert _is_sample(drawn.about)
+    assert not _is_sample((drawn * phases).about)
+    assert not _is_sample(phases.about)
+
+
 def test_the_rows_of_a_chart_keep_all_peaks() -> None:
     random = np.random.default_rng(1)
     time = np.linspace(0.0, 5.0, 200_001)
@@ -139,6 +149,7 @@ def test_what_cannot_be_reported_is_one_line(command: Command, tmp_path: Path, d
     (tmp_path / "empty").mkdir()
     assert "no summary.json" in command("report", tmp_path / "empty").line
     assert "is a folder" in command("report", dropped, "-o", tmp_path).line
+    assert "ends in .html" in command("report", dropped, "-o", tmp_path / "drop.pdf").line
     assert "ends in .mp4 or .gif" in command("animate", dropped, "-o", tmp_path / "drop.avi").line
 
 
