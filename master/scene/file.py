@@ -28,8 +28,8 @@ mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
 "A.x" = "shaft_x"     # a variable of the contract, and what this FMU calls it; or names = "FILE.toml"
 
-[set."bearing_*"]      # last, what several share: all components whose names match; or run, or one of them
-friction.dynamic = 0.2
+[set."bearing_*"]      # what several share: all components whose names match; or run, or one of them. What
+friction.dynamic = 0.2 # [components] here, or in a scene that extends this one, says of one counts there
 
 A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
 gives takes the place of what stands there, table by table; a component that names its fmu is a new one.
@@ -38,10 +38,10 @@ gives takes the place of what stands there, table by table; a component that nam
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -130,14 +130,42 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
     )
-    return _with_all(scene, flat(table(data.get("set", {}), f"scene {name}: [set]")))
+    layers = data.get("set", {})
+    return _with_shared(scene, layers if isinstance(layers, list) else [_shared(data, f"scene {name}")])
 
 
-def _with_all(scene: Scene, settings: Mapping[str, object]) -> Scene:
-    """A scene with the settings of its file's [set], which are the scene's, not made beside it."""
-    there = scene.set(settings)
+class _Shared(NamedTuple):
+    """The settings of a file's [set], and what is said of single components more exactly."""
+
+    settings: Mapping[str, object]
+    exact: frozenset[str]  # by [components] of the same file, or of one that extends it
+
+
+def _shared(data: Mapping[str, Any], where: str) -> _Shared:
+    return _Shared(flat(table(data.get("set", {}), f"{where}: [set]")), _exact(data))
+
+
+def _exact(data: Mapping[str, Any]) -> frozenset[str]:
+    """COMPONENT.NAME of all that [components] sets, run.KEY of all that [run] does."""
+    parts = {name: entries(part) or {} for name, part in (entries(data.get("components")) or {}).items()}
+    of_parts = {
+        f"{name}.{setting}"
+        for name, part in parts.items()
+        for setting in (*part, *flat(entries(part.get("set")) or {}))
+    }
+    return frozenset(of_parts | {f"run.{key}" for key in entries(data.get("run")) or {}})
+
+
+def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
+    """A scene with the settings of its files' [set], which are the scene's, not made beside it."""
+    there = scene
+    for layer in layers:
+        for name, value in layer.settings.items():
+            head, dot, tail = name.partition(".")
+            settings = [f"{component}{dot}{tail}" for component in scene.matching(head)]
+            there = there.set({setting: value for setting in settings if setting not in layer.exact})
     components = {name: replace(spec, own=()) for name, spec in there.components.items()}
-    return replace(there, components=components)
+    return replace(there, components=components, own=scene.own)
 
 
 def _component(value: object, where: str, folder: Path) -> ComponentSpec:
@@ -161,8 +189,12 @@ def read_names(path: Path) -> dict[str, str]:
 
 
 def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
-    """The tables of a scene's file over those of the scene it extends; `before`: files that led here."""
+    """The tables of a scene's file over those of the scene it extends; `before`: files that led here.
+
+    Their [set] are a list, that of the first file first.
+    """
     data = _toml(path, "scene")
+    data["set"] = [_shared(data, f"scene {path}")]
     if "extends" not in data:
         return data
     base = str(data.pop("extends"))
@@ -174,7 +206,10 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
         raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
     if start.resolve() in (*before, path.resolve()):
         raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
-    return _over(tables(start, (*before, path.resolve())), data)
+    under = tables(start, (*before, path.resolve()))
+    exact = _exact(data)
+    layers = [layer._replace(exact=layer.exact | exact) for layer in under["set"]]
+    return _over(under, data) | {"set": [*layers, *data["set"]]}
 
 
 def _toml(path: Path, what: str) -> dict[str, Any]:

@@ -49,7 +49,7 @@ def test_a_pattern_without_a_match_is_refused() -> None:
 
 
 def test_a_file_sets_what_several_share(tmp_path: Path) -> None:
-    """Last, over what the scene it extends says, too; a swap takes it over as the scene's."""
+    """Over what the scene it extends says, too; a swap takes it over as the scene's."""
     path = tmp_path / "mine.toml"
     path.write_text(
         f'extends = "{SCENE}"\n[set]\n"run.duration" = "20 ms"\n'
@@ -60,6 +60,7 @@ def test_a_file_sets_what_several_share(tmp_path: Path) -> None:
     assert given(scene, "friction.dynamic") == [0.2, 0.2]
     assert scene.run.duration == 0.02
     assert scene.components["bearing_A"].own == ()
+    assert scene.own == ()
     swapped = scene.swap(bearing_A="bushing").components["bearing_A"]
     assert (swapped.preset, swapped.inherited["friction.dynamic"]) == (None, 0.2)
 
@@ -69,3 +70,18 @@ def test_a_file_s_pattern_without_a_match_is_refused(tmp_path: Path) -> None:
     path.write_text(f'extends = "{SCENE}"\n[set]\n"brg_*.clearance" = 1\n', encoding="utf-8")
     with pytest.raises(TouchdownError, match="no component of scene mine matches"):
         load_scene(str(path))
+
+
+def test_what_is_said_of_one_component_counts_there(tmp_path: Path) -> None:
+    """In the same file, and in one that extends it, whose own patterns count over both."""
+    shared = '[set."bearing_*"]\nclearance = "0.25 mm"\n'
+    (tmp_path / "base.toml").write_text(
+        f'extends = "{SCENE}"\n{shared}[components.bearing_A.set]\nclearance = "0.3 mm"\n', "utf-8"
+    )
+    one = tmp_path / "one.toml"
+    one.write_text('extends = "base.toml"\n[components.bearing_B.set]\nclearance = "0.4 mm"\n', "utf-8")
+    assert given(load_scene(str(tmp_path / "base.toml")), "clearance") == ["0.3 mm", "0.25 mm"]
+    assert given(load_scene(str(one)), "clearance") == ["0.3 mm", "0.4 mm"]
+    both = tmp_path / "both.toml"
+    both.write_text('extends = "one.toml"\n[set."bearing_*"]\nclearance = "0.2 mm"\n', "utf-8")
+    assert given(load_scene(str(both)), "clearance") == ["0.2 mm", "0.2 mm"]
