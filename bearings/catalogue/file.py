@@ -57,6 +57,10 @@ def read(path: Path) -> dict[str, Bearing]:
 
 def _bearing(name: str, table: Any, where: str, file: str) -> Bearing:
     """A bearing of its table."""
+    if not name.isprintable():
+        raise CatalogueError(
+            f"{where.partition(chr(91))[0]}a bearing cannot be called {name!r}; leave out line breaks"
+        )
     if not isinstance(table, dict):
         raise CatalogueError(f"{where} must be a table, with {', '.join(NEEDED)} of a bearing")
     kind = table.get("kind", DEEP_GROOVE)

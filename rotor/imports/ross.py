@@ -280,9 +280,13 @@ def _coefficient(part: Part, name: str, speed: float | None) -> float:
         if len(values) == 1 or speed is None:
             value = float(values[0])
         else:
-            value = float(
-                np.interp(abs(speed), np.asarray(part.values.get("frequency"), dtype=float), values)
-            )
+            given_at = np.asarray(part.values.get("frequency"), dtype=float)
+            if np.any(np.diff(given_at) <= 0.0) or not given_at[0] <= abs(speed) <= given_at[-1]:
+                raise ImportedRotorError(
+                    f"{part.where}: {name} is given from {given_at[0]:g} to {given_at[-1]:g} rad/s, which "
+                    f"must rise; --speed {speed:g} rad/s is not in it"
+                )
+            value = float(np.interp(abs(speed), given_at, values))
     except (TypeError, ValueError):
         raise ImportedRotorError(f"{part.where}: {name} cannot be read as numbers over frequency") from None
     if not math.isfinite(value):

@@ -36,7 +36,7 @@ class CriticalMap:
     stiffness: np.ndarray  # (K,), N/m, of each support
     speeds: np.ndarray  # (K, L), rad/s, ascending; nan where there are less
     marked: tuple[Support, ...]
-    own: np.ndarray  # (L,), rad/s; nan where there are less, empty where a place has no support
+    own: np.ndarray  # (up to L,), rad/s; empty where a place has no support
 
 
 def critical_speeds(basis: Basis, supports: Sequence[Support]) -> np.ndarray:

@@ -96,7 +96,7 @@ class Stage:
     def __init__(self, motions: Sequence[Motion], title: str) -> None:
         self.figure = Figure(figsize=(INCH * len(motions), HEIGHT))
         FigureCanvasAgg(self.figure)
-        self.figure.text(0.5, 0.965, title, ha="center", va="center", fontsize=11)
+        self.figure.text(0.5, 0.965, title, ha="center", va="center", fontsize=11, parse_math=False)
         self._clock = self.figure.text(0.5, 0.925, "", ha="center", va="center", fontsize=9.5)
         self._motions = motions
         self._panels = [_Panel(self._axes(k, len(motions)), m) for k, m in enumerate(motions)]
@@ -137,7 +137,8 @@ class _Panel:
         axes.add_collection(self._marks)
         self._arrow = axes.quiver([0], [0], [0], [0], angles="xy", scale_units="xy", scale=1.0,
                                   color=FORCE, width=0.012, zorder=5)  # fmt: skip
-        axes.text(0.0, 1.02 * reach, motion.shape.title, ha="center", va="bottom", fontsize=10)
+        name = motion.shape.title
+        axes.text(0.0, 1.02 * reach, name, ha="center", va="bottom", fontsize=10, parse_math=False)
         self._told = axes.text(0.0, -1.02 * reach, "", ha="center", va="top", fontsize=9)
 
     def _draw_bearing(self, axes: Axes) -> None:

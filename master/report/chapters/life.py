@@ -86,7 +86,7 @@ def _words(found: dict[str, Rated]) -> list[Block]:
             Text(f"At {listed(close)} the safety against dents is below {USUAL:g}, usual under shocks.")
         )
     if all(math.isinf(one.drops) or one.drops > MOST_DROPS for one in found.values()):
-        said.append(Text("Fatigue is not what ends these bearings: heat, skidding and dents come first."))
+        said.append(Text("Fatigue: this run takes less than a millionth of a life."))
     said.append(
         Text(
             "Both count this run only; a rotor that still turns at its end goes on. P₀ is the radial load "

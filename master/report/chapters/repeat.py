@@ -12,7 +12,7 @@ from touchdown.fmus.version import VERSION
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Block, Code, Download, Lacking, Table, Text
 from touchdown.master.scene.file import shipped
-from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.scene import ComponentSpec, Scene
 
 LIBRARIES = ("numba", "numpy", "scipy", "fmpy", "matplotlib")
 
@@ -55,6 +55,9 @@ def command_of(scene: Scene) -> str | None:
     for key in scene.own:
         words += ["--set", f"run.{key}={_value(scene.resolved()['run'], key)}"]
     for component, spec in scene.components.items():
+        for key, value in (("every", spec.every), ("isolate", spec.isolate), ("native", spec.native)):
+            if value != getattr(ComponentSpec, key):  # said again where the scene's file says it, too
+                words += ["--set", f"{component}.{key}={str(value).lower()}"]
         for variable in spec.own:
             value = spec.preset if variable == "preset" else spec.set[variable]
             words += ["--set", f"{component}.{variable}={value}"]

@@ -134,10 +134,10 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
         )
     yield from ((f"{warning.rstrip('.')}.", True) for warning in result.warnings)
     made = number(subject.summary.get("energy_made_of_turnover"))
-    if made is not None and made > NOT_ACCURATE:
+    if made is not None and abs(made) > NOT_ACCURATE:
         yield (
-            f"The coupling made {share(made)} of the energy that crossed it; a shorter run.macro_step "
-            "shows what hangs on that.",
+            f"The coupling {'made' if made > 0.0 else 'lost'} {share(abs(made))} of the energy that crossed "
+            "it; a shorter run.macro_step shows what hangs on that.",
             True,
         )
     if unbalanced(subject.run.system) and subject.seats:

@@ -16,6 +16,7 @@ from touchdown.master.results.result import RECORDING
 LOCK = ".touchdown.lock"
 SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
 ENDING = "ending.json"  # the components as they ended
+MADE_OF_IT = ("report.html", "report.pdf", "drop.gif", "drop.mp4")  # by other commands, as they name it
 RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
@@ -82,8 +83,7 @@ def _left(folder: Path) -> Iterator[Path]:
     pictures = list(_pictures(folder))
     yield folder / SUMMARY
     yield from pictures
-    yield folder / TABLE
-    yield folder / ENDING
+    yield from (folder / name for name in (TABLE, ENDING, *MADE_OF_IT))
     recording = (folder / RECORDING).resolve()  # a link stays
     yield recording
     for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):

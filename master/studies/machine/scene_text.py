@@ -70,7 +70,7 @@ def _rotor(d: Design) -> Iterator[str]:
 
 def _speed_rule(d: Design) -> str:
     """How fast `sensible_speed` has a machine turn."""
-    bore = f"{MOST_BORE_SPEED * MM:g} mm rpm over the bore"
+    bore = f"{MOST_BORE_SPEED * MM:,.0f} mm rpm over the bore"
     if d.bending is None:
         return bore
     return f"{BELOW_BENDING:g} of the first bending frequency, {d.bending:.4g} Hz, and at most {bore}"

@@ -28,8 +28,12 @@ from touchdown.master.studies.sweep.definition import (
 )
 from touchdown.master.studies.sweep.design import Design
 from touchdown.master.studies.sweep.journal import Journal, Member, cut_torn_line, read_journal
-from touchdown.master.studies.sweep.results import Sweep, write_results
+from touchdown.master.studies.sweep.results import DATASET, TABLE, Sweep, write_results
 
+MADE_OF_IT = (  # what an earlier sweep may have left, beside its journal
+    *(DATASET, TABLE, "whirl-map.png", "force-map.png", "stress-map.png"),
+    *("report.html", "report.pdf"),
+)
 UNDER_WAY = ".under-way"  # where members run whose recordings are not kept
 
 
@@ -108,7 +112,8 @@ def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
     with writing_to(folder):
         shutil.rmtree(folder / UNDER_WAY, ignore_errors=True)
         if not begun or running.anew:
-            path.unlink(missing_ok=True)
+            for left in (journal.FILE, *MADE_OF_IT):
+                (folder / left).unlink(missing_ok=True)
             asked.write(folder)
         cut_torn_line(path)
     return read_journal(path, asked.by_number)

@@ -10,6 +10,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.rcsetup import cycler
+from matplotlib.text import Text
 
 from touchdown.master.results.figures.style.palette import BLACK, COLOURS, WHITE
 
@@ -55,9 +56,16 @@ def roomy() -> ConstrainedLayoutEngine:
     return ConstrainedLayoutEngine(w_pad=MARGIN, h_pad=0.5 * MARGIN)
 
 
+class Sheet(Figure):
+    """A figure whose title is the user's words: a dollar sign in it begins no formula."""
+
+    def suptitle(self, t: str, **kwargs: Any) -> Text:
+        return super().suptitle(t, **{"parse_math": False, **kwargs})
+
+
 def sheet(width: float = 6.4, height: float = 4.8) -> Figure:
     """An empty figure (inch) for a file: no window shows it."""
-    return Figure(figsize=(width, height), layout=roomy())
+    return Sheet(figsize=(width, height), layout=roomy())
 
 
 def drawable(figure: FigureBase | None) -> FigureBase:
@@ -66,7 +74,7 @@ def drawable(figure: FigureBase | None) -> FigureBase:
         return figure
     from matplotlib import pyplot  # looks for a display: only where one may be wanted
 
-    return pyplot.figure(layout=roomy())
+    return pyplot.figure(FigureClass=Sheet, layout=roomy())
 
 
 def sized(figure: FigureBase, width: float, height: float) -> FigureBase:

@@ -50,8 +50,10 @@ class Row:
     @property
     def agrees(self) -> bool | None:
         """Whether they agree; None where there is nothing to compare."""
-        if self.source is None or self.ours is None:
+        if self.source is None:
             return None
+        if self.ours is None:
+            return False
         if self.holds is not None:
             return self.holds
         if isinstance(self.source, tuple):
@@ -65,8 +67,7 @@ class Row:
     def verdict(self) -> str:
         """Whether they agree, and why not."""
         if self.agrees is None:
-            missing = "the source has it in its picture alone" if self.source is None else UNEXPLAINED
-            return f"{UNCOMPARED}: {self.why or missing}"
+            return f"{UNCOMPARED}: {self.why or 'the source has it in its picture alone'}"
         if self.agrees:
             return f"{AGREES}; {self.why}" if self.why else AGREES
         return f"{DIFFERS}: {self.why or UNEXPLAINED}"

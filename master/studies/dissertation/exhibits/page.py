@@ -18,8 +18,10 @@ HEAD = """# The source's figures and tables
 Every figure and table of O. Halminen, *Multibody models for examination of touchdown bearing systems*
 (LUT, 2016) that the models here can give, beside the values that its text states; what it shows in a
 picture alone has no value to compare. A number agrees where it is as near as the column "within" says, or
-in the source's range. What a deviation hinges on, and what was fitted, stands beside it;
-[physics.md](physics.md) explains the models and the source's errata.
+in the source's range: for frequencies a few percent, for stresses and what is chaotic up to 50 %. Rows of
+dimensions, masses and clearances only show that the models were given the source's. What a deviation hinges
+on, and what was fitted, stands beside it; [physics.md](physics.md) explains the models and the source's
+errata.
 
 This page is made by `touchdown figure all -o docs`; `touchdown figure 25` makes one of them anew.
 """

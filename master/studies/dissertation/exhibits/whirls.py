@@ -17,9 +17,10 @@ EDGE = "which phases whirl is decided by little; `touchdown verdict` finds the e
 
 
 def verdict_row(what: str, source: str, runs: Sequence[Result], why: str = EDGE) -> Row:
-    """The source's SETTLES or WHIRLS beside how many of `runs` whirl; most of them decide."""
+    """The source's SETTLES or WHIRLS beside how many of `runs` whirl; most of them decide, none where
+    half do."""
     count = whirling(runs)
-    mostly = WHIRLS if 2 * count > len(runs) else SETTLES
+    mostly = "either" if 2 * count == len(runs) else WHIRLS if 2 * count > len(runs) else SETTLES
     clear = count in (0, len(runs))
     told = "" if clear and mostly == source else why
     return Row(what, source, f"{count} of {len(runs)} whirl", holds=mostly == source, why=told)
