@@ -136,8 +136,8 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
     made = number(subject.summary.get("energy_made_of_turnover"))
     if made is not None and abs(made) > NOT_ACCURATE:
         yield (
-            f"The coupling {'made' if made > 0.0 else 'lost'} {share(abs(made))} of the energy that crossed "
-            "it; a shorter run.macro_step shows what hangs on that.",
+            f"The coupling {'made' if made > 0.0 else 'lost'} {share(abs(made))} of the energy that "
+            "crossed it; a shorter run.macro_step shows what hangs on that.",
             True,
         )
     if unbalanced(subject.run.system) and subject.seats:
