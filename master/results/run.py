@@ -14,7 +14,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.common.progress import bars
-from touchdown.master.components.library.ahead import compile_ahead
+from touchdown.master.components.library.ahead import compile_beside, new_models
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
@@ -48,7 +48,7 @@ def run_scene(
         scratch = Scratch()
         folder = scratch.path
     with interrupts_noted(), claimed(folder) as results:
-        compile_ahead(scene, in_process, *([_told] if progress else []))
+        make_ready(scene, in_process, *([_told] if progress else []))
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:
@@ -69,6 +69,16 @@ def run_scene(
         finally:
             system.close()
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:
+    """Have compiled what is new of a scene, beside each other; say(what) where that takes a while.
+
+    Raises TouchdownError for a mistake in the scene, which is not to wait for that.
+    """
+    if models := new_models(scene, in_process):
+        open_system(scene, in_process=True).close()
+        compile_beside(models, say)
 
 
 def _told(what: str) -> None:

@@ -37,6 +37,7 @@ gives takes the place of what stands there, table by table; a component that nam
 
 from __future__ import annotations
 
+import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -84,7 +85,7 @@ def locate(name: str) -> Path:
     """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
     if name.endswith(".toml"):
         return Path(name)
-    if name not in shipped() and (Path(name) / SCENE_FILE).is_file():
+    if name not in shipped() and os.path.isfile(Path(name) / SCENE_FILE):
         return Path(name) / SCENE_FILE
     try:
         return shipped()[name]

@@ -201,7 +201,7 @@ def test_two_versions_in_one_process(alone: Alone, unpacked: Mapping[str, Path],
     shutil.copy(ROOT / "src" / "touchdown" / "__init__.py", package)
     for name in ("modelkit", "rotor", "bearings", "fmus"):
         shutil.copytree(ROOT / name, package / name, ignore=shutil.ignore_patterns("__pycache__"))
-    housing = package / "bearings" / "housing.py"
+    housing = package / "bearings" / "surroundings" / "housing.py"
     text = housing.read_text(encoding="utf-8")
     changed = text.replace("stiffness: float = real(", "stiffness: float = real(0.5 * ", 1)
     assert changed != text

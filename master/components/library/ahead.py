@@ -11,7 +11,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import parent_process
@@ -35,7 +35,7 @@ _STEP = 1e-6  # s
 
 
 @dataclass(frozen=True)
-class _New:
+class NewModel:
     """A model that was not compiled yet."""
 
     title: str
@@ -44,22 +44,26 @@ class _New:
     size: int  # bytes of its memory
 
 
-def compile_ahead(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:
-    """Compile what is new of a scene's models, as many at a time as there are processors.
+def new_models(scene: Scene, in_process: bool) -> list[NewModel]:
+    """The scene's models without code in the cache, one of each kind, the largest first.
 
-    say(what is being done, and why) is called once where that is worth it: where two models are new, and
-    two processors there. What fails here fails again, and is said, where the scene runs. In a process that
-    runs beside others nothing is done: the one that starts them compiles for all.
+    None in a process that runs beside others: the one that starts them compiles for all.
     """
     if parent_process() is not None:
+        return []
+    return sorted(_new(scene, in_process), key=lambda model: -model.size)
+
+
+def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> None:
+    """Compile models, as many at a time as there are processors; what fails here fails where it is run.
+
+    say(what is being done, and why) is called once where that is worth it: for two models and processors.
+    """
+    workers = min(len(os.sched_getaffinity(0)), len(models))
+    if workers < 2:
         return
-    processors = len(os.sched_getaffinity(0))
-    new = sorted(_new(scene, in_process), key=lambda model: -model.size)
-    if len(new) < 2 or processors < 2:
-        return
-    say(f"compiling {', '.join(model.title for model in new)}: new here, and kept for later runs")
-    workers = min(processors, len(new))
-    left = iter(new)
+    say(f"compiling {', '.join(model.title for model in models)}: new here, and kept for later runs")
+    left = iter(models)
     threads = [Thread(target=_have_compiled, args=(left,), daemon=True) for _ in range(workers)]
     for thread in threads:
         thread.start()
@@ -67,8 +71,7 @@ def compile_ahead(scene: Scene, in_process: bool, say: Callable[[str], object] =
         thread.join()
 
 
-def _new(scene: Scene, in_process: bool) -> Iterable[_New]:
-    """The scene's models without code in the cache, one of each kind."""
+def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
     kinds: set[str] = set()
     for spec in scene.components.values():
         with suppress(TouchdownError):  # said where it is loaded
@@ -79,7 +82,7 @@ def _new(scene: Scene, in_process: bool) -> Iterable[_New]:
                     fmu = (
                         str(scene.folder.absolute() / spec.fmu) if spec.fmu.endswith(".toml") else spec.fmu
                     )
-                    yield _New(source.name, fmu, in_process, source.model.memory.itemsize)
+                    yield NewModel(source.name, fmu, in_process, source.model.memory.itemsize)
 
 
 def _kind(recipe: Recipe) -> str:
@@ -92,7 +95,7 @@ def _is_compiled(recipe: Recipe, in_process: bool) -> bool:
     return is_kept(recipe.model.advance, own if in_process else own.replace("touchdown", package_name(), 1))
 
 
-def _have_compiled(models: Iterable[_New]) -> None:
+def _have_compiled(models: Iterable[NewModel]) -> None:
     """Hand models to a process of its own, one after the other, until none is left or it is gone."""
     command = [sys.executable, "-c", _HOST, json.dumps(sys.path), str(os.getpid())]
     pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL

@@ -16,7 +16,7 @@ from touchdown.modelkit.variables import Causality, Variability
 
 COLUMNS = (
     *("name", "reference", "kind", "causality", "variability", "unit", "minimum", "maximum", "start"),
-    *("description", "value"),
+    *("description", "element", "choices", "value"),
 )
 """Of a variable, in the order of its row in the file; unit and value in SI."""
 

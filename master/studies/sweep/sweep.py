@@ -13,11 +13,10 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.processes.pool import TaskOutcome, run_all
-from touchdown.master.components.library.ahead import compile_ahead
 from touchdown.master.coupling.steppers.carried import carrying
 from touchdown.master.results.folder import claimed
 from touchdown.master.results.result import RECORDING
-from touchdown.master.results.run import run_scene
+from touchdown.master.results.run import make_ready, run_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep import definition, journal
 from touchdown.master.studies.sweep.definition import (
@@ -194,7 +193,7 @@ def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> l
 def _make_ready(tasks: Sequence[Task]) -> None:
     """Have compiled what the tasks' processes would each compile."""
     if tasks:
-        compile_ahead(tasks[0].scene, tasks[0].execution.in_process)
+        make_ready(tasks[0].scene, tasks[0].execution.in_process)
 
 
 def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:

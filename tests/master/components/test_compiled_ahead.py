@@ -10,7 +10,9 @@ import pytest
 
 import touchdown
 from touchdown.fmus.recipes import recipe
+from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.library import ahead
+from touchdown.master.results.run import make_ready
 
 
 @pytest.fixture
@@ -18,7 +20,7 @@ def handed_out(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """Titles of the models that each process would be handed; nothing is compiled."""
     lists: list[list[str]] = []
 
-    def take(models: Iterable[ahead._New]) -> None:
+    def take(models: Iterable[ahead.NewModel]) -> None:
         lists.append([model.title for model in models])
 
     monkeypatch.setattr(ahead, "_have_compiled", take)
@@ -31,7 +33,7 @@ def test_each_new_model_is_handed_out_once(
     in_process: bool, own_cache: Path, handed_out: list[list[str]]
 ) -> None:
     said: list[str] = []
-    ahead.compile_ahead(touchdown.load("rotor1-9000"), in_process, said.append)
+    make_ready(touchdown.load("rotor1-9000"), in_process, said.append)
     assert len(handed_out) == 2
     titles = [title for titles in handed_out for title in titles]
     assert sorted(titles) == ["amb", "housing", "rotor_I", "simplified_cageless"]
@@ -43,13 +45,20 @@ def test_one_processor_compiles_as_it_goes(
     own_cache: Path, handed_out: list[list[str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0})
-    ahead.compile_ahead(touchdown.load("rotor1-9000"), True, pytest.fail)
+    make_ready(touchdown.load("rotor1-9000"), True, pytest.fail)
     assert not handed_out
 
 
 def test_what_is_compiled_is_not_new(own_cache: Path) -> None:
     housing = recipe("housing")
     assert not ahead._is_compiled(housing, in_process=True)
-    ahead._have_compiled(iter([ahead._New("housing", "housing", in_process=True, size=0)]))
+    ahead._have_compiled(iter([ahead.NewModel("housing", "housing", in_process=True, size=0)]))
     assert ahead._is_compiled(housing, in_process=True)
     assert not ahead._is_compiled(housing, in_process=False)
+
+
+def test_a_mistake_does_not_wait_for_the_compiler(own_cache: Path, handed_out: list[list[str]]) -> None:
+    scene = touchdown.load("rotor1-9000").set({"bearing_A.weight": 1.0})
+    with pytest.raises(TouchdownError, match="no variable weight"):
+        make_ready(scene, False)
+    assert not handed_out

@@ -12,7 +12,7 @@ import pytest
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.components.library import load_component
+from touchdown.master.components.library.loading import load_component
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.experiments import (
     FOLDER,
@@ -172,6 +172,6 @@ def twin_at_rest(name: str) -> float:
 
 def twin():
     """A housing, in process."""
-    from touchdown.master.components.library import Stepping
+    from touchdown.master.components.library.loading import Stepping
 
     return load_component("checked", "housing", stepping=Stepping(in_process=True))

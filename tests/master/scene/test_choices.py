@@ -10,7 +10,7 @@ import pytest
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Component
 from touchdown.master.components.interface import interface
-from touchdown.master.components.library import Stepping, load_component
+from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.coupling.assembly import checked
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
