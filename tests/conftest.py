@@ -16,6 +16,7 @@ from warm_up import warm_up
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
+from touchdown.modelkit.kernel.cache_folder import VARIABLE
 
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
@@ -70,7 +71,14 @@ class OnDemand(Mapping[str, Path]):
 @pytest.fixture(scope="session")
 def built() -> Mapping[str, Path]:
     """The project's FMUs by name, built from the present sources, which compiles their models."""
-    return OnDemand(lambda name: cached(recipe(name)))
+    session = os.environ.get(VARIABLE)
+
+    def make(name: str) -> Path:
+        with pytest.MonkeyPatch.context() as patch:  # whatever cache the test that asks first has
+            patch.setenv(VARIABLE, session) if session else patch.delenv(VARIABLE, raising=False)
+            return cached(recipe(name))
+
+    return OnDemand(make)
 
 
 @pytest.fixture(scope="session")
