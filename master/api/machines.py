@@ -10,6 +10,8 @@ from typing import TypedDict, Unpack
 
 from touchdown.bearings.catalogue import Bearing
 from touchdown.master.api.scenes import PathLike, load
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.several import several
 from touchdown.master.common.units import to_si
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.machine.bearings import known
@@ -21,8 +23,8 @@ UNITS = {"speed": "rad/s", "clearance": "m", "mass": "kg", "inertia": "kg.m2"}
 class MachineOptions(TypedDict, total=False):
     """What `new` may be told beside bearings and rotor: numbers in SI, or text with a unit."""
 
-    at: Sequence[str]  # stations of the touchdown bearings
-    amb: Sequence[str]  # stations of the magnetic bearings
+    at: str | Sequence[str]  # stations of the touchdown bearings
+    amb: str | Sequence[str]  # stations of the magnetic bearings
     speed: float | str
     clearance: float | str
     mass: float | str  # of a rigid rotor, without `rotor`
@@ -64,12 +66,17 @@ def new(
     >>> scene.components["bearing_A"].preset
     '7014'
     """
+    unknown = [key for key in options if key not in MachineOptions.__annotations__]
+    if unknown:
+        raise TouchdownError(
+            f"new has no option {unknown[0]}; {one_of(unknown[0], MachineOptions.__annotations__)}"
+        )
     given = {key: to_si(options[key], unit, key) for key, unit in UNITS.items() if key in options}
     wanted = Wanted(
         bearings=(bearings,) if isinstance(bearings, str) else tuple(bearings),
         rotor=None if rotor is None else os.fspath(rotor),
-        at=options.get("at"),
-        amb=options.get("amb"),
+        at=_stations(options.get("at")),
+        amb=_stations(options.get("amb")),
         **{"clearance": CLEARANCE, **given},
     )
     path = Path(os.fspath(folder))
@@ -77,3 +84,10 @@ def new(
     for note in made.notes:
         warnings.warn(note, stacklevel=2)
     return load(write(made, path, force))
+
+
+def _stations(names: str | Sequence[str] | None) -> list[str] | None:
+    """One or more, also as one text with commas between them."""
+    if names is None:
+        return None
+    return [one.strip() for name in several(names) for one in name.split(",")]

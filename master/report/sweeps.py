@@ -38,7 +38,7 @@ from touchdown.master.studies.sweep.report import failures, largest, picked, ver
 from touchdown.master.studies.sweep.results import Sweep
 
 FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
-SAMPLED = ("random", "latin", "sobol")  # ways to choose drops that stand for all that may be
+DRAWN = "random"  # drops that stand for all that may be; those of other samples hang on each other
 MOST_ROWS = 300  # of the table of drops
 WORST = 10  # drops that are listed by their force
 MAPS = {
@@ -53,7 +53,7 @@ def report_on_sweep(sweep: Sweep) -> Page:
     scene = sweep.definition.scene
     return Page(
         kind="Report on many drops",
-        title=str(scene["title"]),
+        title=f"{scene['title']}, over {', '.join(c.name for c in sweep.definition.columns)}",
         headline=headline(sweep),
         made=made_now(f"Sweep of scene {scene['name']}"),
         sections=[_section(*chapter, sweep) for chapter in CHAPTERS],
@@ -78,7 +78,7 @@ def headline(sweep: Sweep) -> str:
 
 def _is_sample(about: str) -> bool:
     """Whether drops are drawn one by one; each point of a product with phases, say, has several."""
-    return any(word in about.lower() for word in SAMPLED) and "; " not in about
+    return DRAWN in about.lower() and "; " not in about
 
 
 def _done(sweep: Sweep) -> list[Member]:

@@ -51,7 +51,10 @@ def _judged(subject: Subject) -> list[Block]:
         return [Lacking("A judgement by energy", "no energy crossed between parts that account for it.")]
     verb = "made" if made > 0.0 else "lost"
     said = f"The coupling {verb} {share(abs(made))} of the energy that crossed it"
-    if abs(made) <= FINE:
+    worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
+    if worst > abs(made):
+        said += f", and at one connection {share(worst)} of what crossed there"
+    if max(abs(made), worst) <= FINE:
         return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
     return [
         Text(

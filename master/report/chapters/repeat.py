@@ -7,11 +7,12 @@ import json
 import platform
 import shlex
 from importlib import metadata
+from pathlib import Path
 
 from touchdown.fmus.version import VERSION
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Block, Code, Download, Lacking, Table, Text
-from touchdown.master.scene.file import shipped
+from touchdown.master.scene.file import SCENE_FILE, shipped
 from touchdown.master.scene.scene import ComponentSpec, Scene
 
 LIBRARIES = ("numba", "numpy", "scipy", "fmpy", "matplotlib")
@@ -72,10 +73,11 @@ def _value(run: object, key: str) -> object:
 
 def _source(scene: Scene) -> str | None:
     """What names the scene in a command."""
-    if scene.name in shipped():
-        return scene.name
-    path = scene.folder / f"{scene.name}.toml"
-    return str(path) if path.is_file() else None
+    own = scene.folder / f"{scene.name}.toml"
+    if own.is_file():
+        return scene.name if own.resolve() == shipped().get(scene.name, Path()).resolve() else str(own)
+    is_machine = scene.folder.resolve().name == scene.name and (scene.folder / SCENE_FILE).is_file()
+    return str(scene.folder) if is_machine else None
 
 
 def _versions(subject: Subject) -> Table:

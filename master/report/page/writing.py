@@ -19,6 +19,8 @@ from touchdown.master.report.contents import CHAPTERS, section
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Section
 from touchdown.master.results.result import Result
+from touchdown.master.scene.scene import Scene
+from touchdown.master.scene.titles import amended
 
 HERE = Path(__file__).parent
 TEMPLATES, ASSETS = HERE / "templates", HERE / "assets"
@@ -45,12 +47,21 @@ def report_on(result: Result) -> Page:
     subject = Subject(result)
     return Page(
         kind="Report on a rotor drop",
-        title=result.scene.title,
+        title=amended(result.scene.title, _changes(result.scene)),
         headline=headline(subject),
         made=made_now(f"Scene {result.scene.name}"),
         sections=[section(chapter, subject) for chapter in CHAPTERS],
         about=ORDER,
     )
+
+
+def _changes(scene: Scene) -> list[str]:
+    """What was set beside the scene, which its title may deny."""
+    return [
+        f"{name}.{key} = {spec.preset if key == 'preset' else spec.set[key]}"
+        for name, spec in scene.components.items()
+        for key in spec.own
+    ]
 
 
 def made_now(of: str) -> str:

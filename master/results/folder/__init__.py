@@ -80,10 +80,11 @@ def _locked(path: Path) -> int:
 
 def _left(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
+    made_of_it = MADE_OF_IT if (folder / ENDING).is_file() else ()  # else such pages are somebody's
     pictures = list(_pictures(folder))
     yield folder / SUMMARY
     yield from pictures
-    yield from (folder / name for name in (TABLE, ENDING, *MADE_OF_IT))
+    yield from (folder / name for name in (TABLE, ENDING, *made_of_it))
     recording = (folder / RECORDING).resolve()  # a link stays
     yield recording
     for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):

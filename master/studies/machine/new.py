@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -56,6 +57,10 @@ class Machine:
 
 def machine(wanted: Wanted, title: str) -> Machine:
     """The files of the machine asked for. Raises TouchdownError for what cannot be."""
+    for name in ("speed", "clearance", "mass", "inertia"):
+        value = getattr(wanted, name)
+        if value is not None and not 0.0 < value < math.inf:
+            raise TouchdownError(f"{name} = {value:g} must be above 0")
     places = _Bearings(wanted.bearings)
     if wanted.rotor is not None:
         if wanted.mass is not None or wanted.inertia is not None:

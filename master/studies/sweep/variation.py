@@ -40,7 +40,8 @@ def parse(text: str, option: str = "--vary") -> Variation:
         raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT")
     if not right:
         raise TouchdownError(f"{what}: the list of values is empty")
-    return Variation(name, _evenly(right, what) if ":" in right else listed(right, what))
+    is_range = ":" in right and ".toml:" not in right  # a preset may be FILE.toml:NAME
+    return Variation(name, _evenly(right, what) if is_range else listed(right, what))
 
 
 def parse_all(texts: Iterable[str], option: str = "--vary") -> dict[str, tuple[str, ...]]:

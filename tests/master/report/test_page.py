@@ -98,11 +98,12 @@ def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
 
 def test_only_drops_drawn_one_by_one_tell_of_all() -> None:
     """Those of several phases at each drawn point are not independent of each other."""
-    drawn = touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
+    drawn = touchdown.Design.random({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
     phases = touchdown.Design.grid({"rotor.unbalance_angle": ["0 deg", "180 deg"]})
     assert _is_sample(drawn.about)
     assert not _is_sample((drawn * phases).about)
     assert not _is_sample(phases.about)
+    assert not _is_sample(touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1).about)
 
 
 def test_the_rows_of_a_chart_keep_all_peaks() -> None:

@@ -68,7 +68,7 @@ def test_what_is_not_there_is_refused_with_its_reason() -> None:
         (Row("", (1.0, 2.0), 2.0), "agrees"),
         (Row("", (1.0, 2.0), (1.5, 2.5), why="wider"), "differs: wider"),
         (Row("", "settles", "0 of 8 whirl", holds=True), "agrees"),
-        (Row("", 2.0, None), "no value to compare: unexplained"),
+        (Row("", 2.0, None), "differs: unexplained"),
         (Row("", None, 2.0), "no value to compare: the source has it in its picture alone"),
     ],
 )
@@ -93,7 +93,9 @@ class Whirling:
     ("whirls", "source", "agrees", "told"),
     [
         (0, SETTLES, True, ""),
-        (2, SETTLES, True, "edge"),
+        (1, SETTLES, True, "edge"),
+        (2, SETTLES, False, "edge"),
+        (2, WHIRLS, False, "edge"),
         (3, SETTLES, False, "edge"),
         (3, WHIRLS, True, "edge"),
         (4, WHIRLS, True, ""),

@@ -128,7 +128,7 @@ def test_a_rotor_that_comes_along_needs_no_places(name: str) -> None:
 def test_a_bearing_of_one_s_own_goes_along(here: Path) -> None:
     own = as_file(bearing("7014")).replace('["7014', '["ours')
     (here / "bearings.toml").write_text(own, encoding="utf-8")
-    scene = touchdown.new("mine", "ours", rotor="rotor.toml", at="AB", amb="AB")
+    scene = touchdown.new("mine", "ours", rotor="rotor.toml", at="A,B", amb="A,B")
     assert (here / "mine" / "bearings.toml").read_text(encoding="utf-8") == own
     assert scene.components["bearing_A"].preset == f"{here / 'mine' / 'bearings.toml'}:ours"
 
