@@ -42,7 +42,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -131,8 +131,9 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
     )
-    layers = data.get("set", {})
-    return _with_shared(scene, layers if isinstance(layers, list) else [_shared(data, f"scene {name}")])
+    given = data.get("set", {})
+    layers = cast("list[_Shared]", given) if isinstance(given, list) else [_shared(data, f"scene {name}")]
+    return _with_shared(scene, layers)
 
 
 class _Shared(NamedTuple):
