@@ -22,8 +22,8 @@ def placed(
     """`shaft` with stations: `seats` for touchdown bearings, and those it is `levitated` at.
 
     A place is the number of a node, from 1, or a distance from node 1 as text with a unit ("120 mm"),
-    where a node is made if there is none. What is given replaces all that was there of its kind; where
-    neither seats nor levitated are, the stations stay. Raises ImportedRotorError, and ModelError for
+    where a node is made if there is none. What is given replaces all that was there of its kind, and what
+    was there by its name; the others stay. Raises ImportedRotorError, and ModelError for
     places that are not on the shaft.
     """
     kinds = [dict(kind or {}) for kind in (seats, levitated, sensors)]
@@ -39,6 +39,9 @@ def placed(
         for kind in where
     )
     if own or ambs:
+        stay = [s for s in shaft.stations if s.name not in names]
+        own = own or tuple(s for s in stay if s.name not in shaft.levitated_at)
+        ambs = ambs or tuple(s for s in stay if s.name in shaft.levitated_at)
         shaft = replace(shaft, stations=own + ambs, levitated_at=tuple(s.name for s in ambs))
     return replace(shaft, sensors=looks) if looks else shaft
 

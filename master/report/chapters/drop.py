@@ -12,7 +12,16 @@ from touchdown.master.report.animation.motion import motions
 from touchdown.master.report.facts.numbers import digits, listed, quantity, share, speed
 from touchdown.master.report.facts.series import Line
 from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
-from touchdown.master.report.page.blocks import Absent, Block, Lacking, Motion, Picture, Series, Table
+from touchdown.master.report.page.blocks import (
+    Absent,
+    Block,
+    Lacking,
+    Motion,
+    Picture,
+    Series,
+    Table,
+    Text,
+)
 from touchdown.master.report.pictures.charts import series
 from touchdown.master.report.pictures.orbit import Orbit, orbits
 from touchdown.master.report.pictures.svg import inline
@@ -88,7 +97,7 @@ def _events(subject: Subject) -> Table:
         "First contact",
         "at",
         "Largest force",
-        "Largest displacement",
+        "Largest displacement in space",
         "Main frequency sideways",
     ]
     return Table("What happened, seat by seat", head, rows, numbers=1)
@@ -169,7 +178,13 @@ def test_figures(subject: Subject) -> list[Block]:
             ]
         )
     head = [
-        *("Seat", "Fall time", "Largest displacement", "of the clearance", "Whirl frequency"),
+        *("Seat", "Fall time", "Largest displacement in space", "over the clearance"),
+        "Whirl frequency",
         "Ring rolls with the rotor after",
     ]
-    return [Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1)]
+    return [
+        Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1),
+        Text(
+            "Displacements are of the journal from its place at the shutdown, the housing's give included."
+        ),
+    ]

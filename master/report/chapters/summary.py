@@ -72,7 +72,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
     for key, unit, factor, label in (
         ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
         ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
-        ("largest_displacement_um", "m", 1e-6, "Largest displacement"),
+        ("largest_displacement_um", "m", 1e-6, "Largest displacement in space"),
     ):
         found = [(v, a) for a in subject.seats if (v := subject.figure(key, a)) is not None]
         if found:

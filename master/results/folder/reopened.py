@@ -12,6 +12,7 @@ from touchdown.master.results.folder import ENDING, SCENE, SUMMARY
 from touchdown.master.results.folder.ending import read_ending
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import RECORDING, Result
+from touchdown.master.scene.file import SCENE_FILE
 from touchdown.master.scene.restored import restored
 
 
@@ -22,6 +23,10 @@ def reopened(folder: Path) -> Result:
     """
     if not folder.is_dir():
         raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
+    if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
+        raise TouchdownError(
+            f"{folder} is a machine's folder; `touchdown run {folder}` first, and give the folder it names"
+        )
     summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
     told = _values(folder, ENDING, "an earlier version left it; run the scene again")
     scene = _values(folder, SCENE, "run the scene again")

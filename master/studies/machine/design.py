@@ -23,6 +23,7 @@ RPM = 2.0 * math.pi / 60.0
 LEVITATION = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
 LEVITATION_DAMPING = 0.3  # ratio
 FORCE = 6.0  # limit of a magnetic bearing's force over the static load
+FAST = 1.5  # times the speed of the rule; above, it is said
 BELOW_BENDING = 0.7  # speed over the first bending frequency
 MOST_BORE_SPEED = 1e3  # m rpm, bore times speed
 CONTACT = 6e10  # N/m^(10/9) per m of width, journal in ring
@@ -71,7 +72,14 @@ class Design:
 
     def notes(self) -> list[str]:
         """What the user is to know of it, one line each."""
-        return pulling({f"at rest {s.component}": s.load for s in self.touchdown})
+        told = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
+        usual = sensible_speed(self.bending, self.bearings)
+        if self.speed > FAST * usual:
+            told.append(
+                f"speed = {self.speed / RPM:.5g} rpm is more than such a machine runs "
+                f"({usual / RPM:.5g} rpm by the rule); a number without a unit is in rad/s"
+            )
+        return told
 
 
 def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) -> tuple[Support, ...]:
@@ -82,10 +90,14 @@ def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) ->
             raise TouchdownError(
                 f"{option} {name}: {shaft.title} has no such station; {one_of(name, known)}"
             )
-    if len(stations) < 2 or len(set(stations)) != len(stations):
-        given = ",".join(stations) or "nothing"
+    if not stations:
         raise TouchdownError(
-            f"{option} {given}: name two stations of the rotor or more, each once; "
+            f"{shaft.title}: its file does not tell which stations are meant (levitated_at does); give "
+            f"{option} and two of {', '.join(known) or 'its stations, of which there are none'}"
+        )
+    if len(stations) < 2 or len(set(stations)) != len(stations):
+        raise TouchdownError(
+            f"{option} {','.join(stations)}: name two stations of the rotor or more, each once; "
             f"there are: {', '.join(known) or 'none'}"
         )
     try:

@@ -31,6 +31,7 @@ from touchdown.rotor.file import shipped, text_of
 
 ROTOR_FILE = "rotor.toml"
 CLEARANCE = 0.25e-3  # m; half an air gap of 0.5 mm
+ROUNDING = 1e-9  # m, of a journal that is to have its clearance
 
 
 @dataclass(frozen=True)
@@ -208,16 +209,17 @@ def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:
 
 
 def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
-    """What the rotor's file is to be looked at for: journals thicker than their bores, no unbalance."""
+    """What the rotor's file is to be looked at for: journals without their clearance, no unbalance."""
     notes = list[str]()
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
         around = shaft.elements[max(node - 2, 0) : node]
         thickest = max(element.widest for element in around)
-        if thickest > bearing.bore:
+        room = bearing.bore - 2.0 * design.clearance
+        if thickest > room + ROUNDING:
             notes.append(
                 f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
-                f"{bearing.designation}, {1e3 * bearing.bore:g} mm; its journal is taken to fit"
+                f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"
             )
     if not any(unbalance.moment for unbalance in shaft.unbalances):
         notes.append(f"the rotor has no unbalance; add [[unbalance]] to its file {ROTOR_FILE}")

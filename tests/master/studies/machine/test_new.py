@@ -211,7 +211,10 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
         (["--at", "A,C"], '--at C: The "drawn" rotor has no such station; there are: A, B'),
         (["--at", "A"], "--at A: name two stations of the rotor or more, each once; there are: A, B"),
         (["--amb", "A,A"], "--amb A,A: name two stations"),
-        (["--amb", ""], "--amb nothing: name two stations"),
+        (
+            ["--amb", ""],
+            "does not tell which stations are meant (levitated_at does); give --amb and two of A, B",
+        ),
         (["--bearings", "7999"], "there is no preset 7999"),
         (["--bearings", "7014,7014,7014"], "names 3 bearings for 2 places"),
         (["--bearings", ","], "--bearings is missing"),
