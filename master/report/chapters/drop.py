@@ -185,6 +185,6 @@ def test_figures(subject: Subject) -> list[Block]:
     return [
         Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1),
         Text(
-            "Displacements are of the journal from its place at the shutdown, the housing's give included."
+            "Displacements are of the journal from its place at the shutdown, with what the housing gives."
         ),
     ]
