@@ -15,9 +15,7 @@ from touchdown.master.common.several import several
 from touchdown.master.common.units import to_si
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.machine.bearings import known
-from touchdown.master.studies.machine.new import CLEARANCE, Wanted, machine, write
-
-UNITS = {"speed": "rad/s", "clearance": "m", "mass": "kg", "inertia": "kg.m2"}
+from touchdown.master.studies.machine.new import CLEARANCE, UNITS, Wanted, machine, write
 
 
 class MachineOptions(TypedDict, total=False):

@@ -30,6 +30,7 @@ from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import shipped, text_of
 
 ROTOR_FILE = "rotor.toml"
+UNITS = {"speed": "rad/s", "clearance": "m", "mass": "kg", "inertia": "kg.m2"}  # of what may be given
 CLEARANCE = 0.25e-3  # m; half an air gap of 0.5 mm
 ROUNDING = 1e-9  # m, of a journal that is to have its clearance
 
@@ -58,10 +59,10 @@ class Machine:
 
 def machine(wanted: Wanted, title: str) -> Machine:
     """The files of the machine asked for. Raises TouchdownError for what cannot be."""
-    for name in ("speed", "clearance", "mass", "inertia"):
+    for name, unit in UNITS.items():
         value = getattr(wanted, name)
         if value is not None and not 0.0 < value < math.inf:
-            raise TouchdownError(f"{name} = {value:g} must be above 0")
+            raise TouchdownError(f"{name} = {value:g} {unit} must be above 0")
     places = _Bearings(wanted.bearings)
     if wanted.rotor is not None:
         if wanted.mass is not None or wanted.inertia is not None:
