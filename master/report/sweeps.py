@@ -120,10 +120,14 @@ def _varied(sweep: Sweep) -> list[Block]:
     columns = sweep.definition.columns
     values = list(zip(*sweep.definition.values, strict=True))
     rows = [_column(column, given) for column, given in zip(columns, values, strict=True)]
-    head = ["Setting", "Values", "from", "to"]
+    head, run = ["Setting", "Values", "from", "to"], sweep.definition.scene["run"]
     return [
         Text(f"How the drops were chosen: {sweep.definition.about}."),
-        Table("What varies; all else is as the scene has it", head, rows, 1),
+        Table("What varies", head, rows, 1),
+        Text(
+            f"Each is followed for {quantity(float(run['duration']), 's')} from the scene's zero on, in macro "
+            f"steps of {quantity(float(run['macro_step']), 's')}."
+        ),
     ]
 
 

@@ -1,9 +1,8 @@
 """A drop in cofmupy, which reads no SSP: the package's content as its configuration.
 
-cofmupy calls every variable of an FMI 2.0 FMU as Real, which integers and choices refuse:
-`Typed` calls each by its
-type. With ORDER in the environment (COMPONENT,...;COMPONENT,...) groups are stepped one after the other,
-else all side by side.
+cofmupy calls every variable of an FMI 2.0 FMU as Real, which integers and choices refuse: `Typed` calls
+each by its type. With ORDER in the environment (COMPONENT,...;COMPONENT,...) groups are stepped one after
+the other, else all side by side.
 """
 
 from __future__ import annotations
