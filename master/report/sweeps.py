@@ -125,8 +125,8 @@ def _varied(sweep: Sweep) -> list[Block]:
         Text(f"How the drops were chosen: {sweep.definition.about}."),
         Table("What varies", head, rows, 1),
         Text(
-            f"Each is followed for {quantity(float(run['duration']), 's')} from the scene's zero on, in macro "
-            f"steps of {quantity(float(run['macro_step']), 's')}."
+            f"Each is followed for {quantity(float(run['duration']), 's')} from the shutdown on, in "
+            f"macro steps of {quantity(float(run['macro_step']), 's')}."
         ),
     ]
 
