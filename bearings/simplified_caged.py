@@ -55,7 +55,7 @@ from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Load
-from touchdown.modelkit.variables import array, group, integer, real
+from touchdown.modelkit.variables import SWITCH, array, choice, group, real
 
 CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
 ORBIT_SCALE = 100.0  # rad/s; of the cage
@@ -85,11 +85,8 @@ class Parameters(RollingParameters):
     """Defaults: SKF 6004 under the disk of section 4.3."""
 
     damping: float = real(0.0, "N.s/m", "damping between the rings, also out of contact (2.7)", minimum=0.0)
-    slip: int = integer(
-        0,
-        "1: cage and balls may slip, driven by friction instead of following the ring",
-        minimum=0,
-        maximum=1,
+    slip: int = choice(
+        0, SWITCH, "cage and balls may slip, driven by friction instead of following the ring"
     )
     cage: Cage = group(Cage)
     rolling: Rolling = group(Rolling)

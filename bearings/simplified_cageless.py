@@ -93,12 +93,21 @@ from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
 from touchdown.modelkit.numerics.words import blank, missing
 from touchdown.modelkit.ports import Interface, Load
-from touchdown.modelkit.variables import array, group, integer, real
+from touchdown.modelkit.variables import SWITCH, Choices, array, choice, group, real
 
 BALL_SPIN_SCALE = 1e3  # rad/s
 ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius
 
 NOMINAL, CORRECTED, AS_PRINTED = range(3)
+RADII = Choices(
+    "PitchRadius",
+    ("nominal", "corrected", "printed"),
+    (
+        "the pitch circle's",
+        "corrected for indentation and play",
+        "corrected with the signs of (5.1) as printed",
+    ),
+)
 
 
 @dataclass(frozen=True)
@@ -117,16 +126,10 @@ class Parameters(RollingParameters):
     )
     balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
-    as_printed: int = integer(
-        0, "1: (2.10) with its last friction term as printed, which breaks momentum", minimum=0, maximum=1
+    as_printed: int = choice(
+        0, SWITCH, "(2.10) with its last friction term as printed, which breaks momentum"
     )
-    corrected_pitch: int = integer(
-        NOMINAL,
-        "radius on which balls run: 0 the pitch circle's, 1 corrected for indentation and play, "
-        "2 corrected with the signs of (5.1) as printed",
-        minimum=0,
-        maximum=2,
-    )
+    corrected_pitch: int = choice(NOMINAL, RADII, "radius on which balls run")
     rolling: RollingResistance = group(RollingResistance)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat, simplified_cageless
-from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.bearings.catalogue import bearing
 from touchdown.modelkit.instance import Instance
 
 MODULES = {
@@ -78,7 +78,7 @@ def shipped_cases(model: str) -> list[Case]:
 
     Their seeds count them.
     """
-    settings = CATALOGUE[SHIPPED[model]].settings()
+    settings = bearing(SHIPPED[model]).settings()
     taken = {name: value for name, value in settings.items() if name.startswith(("balls.", "ring."))}
     taken["clearance"] = 0.3e-3
     if model.endswith("_caged"):

@@ -7,12 +7,18 @@ from touchdown.fmus.version import VERSION
 project = "touchdown-cosim"
 author = "touchdown-cosim developers"
 version = release = VERSION
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
-source_suffix = {".md": "markdown"}
+extensions = ["myst_nb", "sphinx.ext.autodoc"]
+source_suffix = {".md": "myst-nb"}  # those that begin as notebooks are executed, the others are plain pages
 html_theme = "furo"
 html_title = f"touchdown-cosim {VERSION}"
 default_role = "code"  # `name` in a docstring
 myst_heading_anchors = 3
+nb_execution_mode = "force"
+nb_execution_in_temp = True
+nb_execution_raise_on_error = True
+nb_execution_show_tb = True
+nb_execution_timeout = 600  # s per cell: where nothing is compiled yet
+nb_merge_streams = True
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"

@@ -1,12 +1,13 @@
-"""Build the pages of the documentation: README and docs/, the public names, a page of theory per model.
+"""Build the pages of the documentation: README, docs/, notebooks, public names, a page of theory per model.
 
     pip install -e '.[docs]'
     python docs/pages.py            # into build/docs; a warning is an error
 
 Pages are gathered in build/docs-source and handed to Sphinx. Those of the models are made of the
 docstrings and the declared variables, as the documentation inside the FMUs is; those of the public names
-of their docstrings. A link to a file of the repository that is no page takes the file along. A link or a
-path in `code` to what is not there is an error, and so is a picture of the layers that is out of date.
+of their docstrings. Notebooks are executed; a cell that fails is an error. A link to a file of the
+repository that is no page takes the file along. A link or a path in `code` to what is not there is an
+error, and so is a picture of the layers that is out of date.
 """
 
 from __future__ import annotations
@@ -32,15 +33,28 @@ from touchdown.fmus.scripts import scripts
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "build" / "docs-source"
 OUTPUT = ROOT / "build" / "docs"
-TOP = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
+NAMED = {  # files whose pages have other names
+    "README.md": "index.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "CHANGELOG.md": "changelog.md",
+    "docs/README.md": "start.md",
+}
+NOTEBOOKS = ROOT / "docs" / "notebooks"
 FLEXIBLE = "rotor_I"  # any rotor file: their models are one
 PATH = re.compile(
     r"`((?:modelkit|rotor|bearings|fmus|master|src|docs|tests|benchmarks|examples)/[\w./-]*)`"
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
-    "Use": ("results", "systems", "elsewhere", "native", "rotors", "coupling", "bonds", "api"),
-    "Background": ("physics", "stability", "speed", "peers"),
+    "Learn": (
+        *("start", "first-drop", "own-bearing", "wanted-error", "whirl-map", "rotor-to-report"),
+        "glossary",
+    ),
+    "Use": (
+        *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere"),
+        *("native", "rotors", "coupling", "bonds", "api"),
+    ),
+    "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),
 }
@@ -50,7 +64,7 @@ def main() -> int:
     """Gather the pages and build them; returns the exit status."""
     for folder in (SOURCE, OUTPUT):
         shutil.rmtree(folder, ignore_errors=True)
-    for path in [*(ROOT / name for name in TOP), *sorted((ROOT / "docs").glob("*.md"))]:
+    for path in written():
         write(page_of(path), with_links(path))
     if layers.picture() != (ROOT / "docs" / "pictures" / "layers.svg").read_text(encoding="utf-8"):
         sys.exit("docs/pictures/layers.svg is out of date; run docs/pictures/layers.py")
@@ -64,9 +78,15 @@ def main() -> int:
     return sphinx(["-W", "--keep-going", "-q", "-E", "-c", str(ROOT / "docs"), str(SOURCE), str(OUTPUT)])
 
 
+def written() -> list[Path]:
+    """The files of all pages that are written by hand."""
+    docs = ROOT / "docs"
+    return sorted({*(ROOT / name for name in NAMED), *docs.glob("*.md"), *NOTEBOOKS.glob("*.md")})
+
+
 def page_of(path: Path) -> str:
-    """The name of a file's page."""
-    return TOP[path.name] if path.parent == ROOT else path.name
+    """The name of a file's page: all of them lie in one folder."""
+    return NAMED.get(path.relative_to(ROOT).as_posix(), path.name)
 
 
 def write(name: str, text: str) -> None:
@@ -80,6 +100,7 @@ def write(name: str, text: str) -> None:
 
 def with_links(path: Path) -> str:
     """Text of a Markdown file, its links to other files turned to what they are on the site."""
+    pages = set(written())
 
     def turned(match: re.Match[str]) -> str:
         label, target, place = match[1], match[2], match[3] or ""
@@ -88,7 +109,7 @@ def with_links(path: Path) -> str:
         file = Path(os.path.normpath(path.parent / target))
         if not file.is_file():
             sys.exit(f"{path.relative_to(ROOT)}: there is no {target}")
-        if file.suffix == ".md" and file.parent in (ROOT, ROOT / "docs"):
+        if file in pages:
             return f"{label}({page_of(file)}{place})"
         along = Path("files") / file.relative_to(ROOT)
         (SOURCE / along).parent.mkdir(parents=True, exist_ok=True)
@@ -96,10 +117,20 @@ def with_links(path: Path) -> str:
         return f"{label}({along.as_posix()})"
 
     text = path.read_text(encoding="utf-8")
+    if path.parent == NOTEBOOKS:
+        text = with_download(text, path)
     for named in PATH.findall(text):
         if not (ROOT / named).exists():
             sys.exit(f"{path.relative_to(ROOT)}: there is no {named}")
     return LINK.sub(turned, text)
+
+
+def with_download(text: str, path: Path) -> str:
+    """Text of a notebook with a line below its title that offers it as .ipynb, executed."""
+    title = re.search(r"^# .*\n", text, flags=re.MULTILINE)
+    assert title, f"{path.name} has no title"
+    offer = f"\n*This page is a notebook: {{nb-download}}`{path.stem}.ipynb`.*\n"
+    return text[: title.end()] + offer + text[title.end() :]
 
 
 def contents(models: Iterable[str]) -> str:

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import os
+import runpy
 import shutil
 import sys
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
+from touchdown.fmus.presentation import references, terminals
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
 from touchdown.fmus.python.link import Interpreter, linked
-from touchdown.fmus.python.sources import write_host, write_package, write_script
+from touchdown.fmus.python.sources import package_name, write_host, write_package, write_script
 from touchdown.fmus.python.statuses import with_errors
-from touchdown.fmus.recipes import Recipe
+from touchdown.fmus.recipes import Recipe, parameter_sets
 from touchdown.modelkit.kernel import shipped
 from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
 
@@ -36,6 +39,7 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
     entries = _entries(recipe, interpreter)
     entries["documentation/index.html"] = page(recipe, interpreter).encode()
     entries["model.png"] = icon(recipe.model)
+    entries |= terminals.entries(recipe.model)
     for name in [name for name in entries if name.startswith("binaries/")]:
         library = with_errors(entries.pop(name))
         if name.endswith(LIBRARY):
@@ -96,8 +100,20 @@ def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes
         parts = [write_package(Path(temporary)), write_host(Path(temporary))]
         with _untouched_interpreter(recipe.module):
             raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=parts)
+            brought = references.entries(recipe.model, _trial(recipe, script), parameter_sets(recipe.model))
         with zipfile.ZipFile(raw) as archive:
-            return {name: archive.read(name) for name in archive.namelist()}
+            return brought | {name: archive.read(name) for name in archive.namelist()}
+
+
+def _trial(recipe: Recipe, script: Path) -> references.Trial:
+    """The model of a recipe run by the sources that its FMU carries, which lie beside its `script`.
+
+    The machine code that they are compiled to is what the FMU finds here at its first step.
+    """
+    sys.path.insert(0, str(script.parent))
+    declared = runpy.run_path(str(script))
+    running = import_module(f"{package_name()}.modelkit.instance")
+    return references.Trial(running.Instance(declared[recipe.identifier].model), running.ModelError)
 
 
 @contextmanager

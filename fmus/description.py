@@ -7,12 +7,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
+from itertools import zip_longest
 from xml.etree.ElementTree import Element, SubElement, tostring
 
 from touchdown.fmus.version import RELEASED, VERSION
 from touchdown.modelkit.kernel import source_hash
 from touchdown.modelkit.model import Model, Slot, slots
-from touchdown.modelkit.variables import Causality, Scalar, Variability
+from touchdown.modelkit.units import DISPLAYED, display_unit, per_display
+from touchdown.modelkit.variables import Causality, Scalar, Spec, Variability
 
 _SYMBOLS = {
     "m": {"m": 1},
@@ -93,6 +95,7 @@ def describe(
     SubElement(root, "CoSimulation", {"modelIdentifier": identifier, **needs, **CAPABILITIES})
     exposed = slots(model)
     _units(root, exposed)
+    _types(root, exposed)
     categories = SubElement(root, "LogCategories")
     for name, meaning in log_categories.items():
         SubElement(categories, "Category", {"name": name, "description": meaning})
@@ -127,15 +130,31 @@ def _units(root: Element, exposed: Sequence[Slot]) -> None:
         exponents = base_unit(unit)
         if exponents is not None:
             SubElement(element, "BaseUnit", {k: str(v) for k, v in exponents.items()})
-        if unit == "rad/s":
-            SubElement(element, "DisplayUnit", {"name": "rpm", "factor": repr(60 / 6.283185307179586)})
+        for shown in DISPLAYED.get(unit, ()):
+            if shown != unit:
+                factor = repr(per_display(unit, shown))
+                SubElement(element, "DisplayUnit", {"name": shown, "factor": factor})
+
+
+def _types(root: Element, exposed: Sequence[Slot]) -> None:
+    """What whole numbers stand for."""
+    used = {s.variable.spec.choices for s in exposed}
+    if used == {None}:
+        return
+    definitions = SubElement(root, "TypeDefinitions")
+    for choices in sorted((c for c in used if c is not None), key=lambda c: c.name):
+        simple = SubElement(definitions, "SimpleType", {"name": choices.name})
+        items = SubElement(simple, "Enumeration")
+        for value, (word, meaning) in enumerate(zip_longest(choices.words, choices.meanings)):
+            details = {"name": word, "value": str(value)}
+            SubElement(items, "Item", details | ({"description": meaning} if meaning else {}))
 
 
 def causality(slot: Slot) -> tuple[Causality, Variability, str | None]:
     """(causality, variability, initial) of FMI 2.0."""
     spec = slot.variable.spec
     if slot.causality is Causality.PARAMETER:
-        return Causality.PARAMETER, Variability.FIXED, "exact"
+        return Causality.PARAMETER, Variability.TUNABLE if spec.tunable else Variability.FIXED, "exact"
     changes = Variability.DISCRETE if spec.kind is Scalar.INTEGER else Variability.CONTINUOUS
     if slot.causality is Causality.INPUT:
         return Causality.INPUT, changes, None
@@ -158,18 +177,28 @@ def _variable(slot: Slot) -> Element:
         attributes["initial"] = initial
     scalar = Element("ScalarVariable", attributes)
     details: dict[str, str] = {}
+    if spec.choices is not None:
+        details["declaredType"] = spec.choices.name
     if spec.kind is Scalar.REAL:
         details["unit"] = spec.unit
-        if v.name.endswith(("omega", "speed")) and spec.unit == "rad/s":
-            details["displayUnit"] = "rpm"
+        shown = spec.shown or display_unit(spec.unit, spec.nominal or v.default)
+        if shown != spec.unit:
+            details["displayUnit"] = shown
     low = spec.minimum if spec.minimum is not None else spec.above
     for name, value in (("min", low), ("max", spec.maximum), ("nominal", spec.nominal)):
         if value is not None:
             details[name] = repr(float(value)) if spec.kind is Scalar.REAL else str(int(value))
     if role in (Causality.PARAMETER, Causality.INPUT):
         details["start"] = repr(float(v.default)) if spec.kind is Scalar.REAL else str(v.default)
-    SubElement(scalar, "Real" if spec.kind is Scalar.REAL else "Integer", details)
+    SubElement(scalar, fmi_type(spec), details)
     return scalar
+
+
+def fmi_type(spec: Spec) -> str:
+    """What a variable is to FMI 2.0, which reads and sets enumerations as integers."""
+    if spec.choices is not None:
+        return "Enumeration"
+    return "Real" if spec.kind is Scalar.REAL else "Integer"
 
 
 def _structure(root: Element, model: Model, exposed: Sequence[Slot]) -> None:

@@ -14,12 +14,16 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
-from touchdown.bearings.catalogue import CATALOGUE
+from touchdown.bearings import catalogue
+from touchdown.bearings.catalogue import CatalogueError as CatalogueError
+from touchdown.bearings.catalogue.source import FROM_SOURCE
 from touchdown.fmus.python.sources import content_hash
 from touchdown.fmus.scripts import scripts
 from touchdown.fmus.slave import ModelSlave
-from touchdown.fmus.starts import defaults, starting_from
-from touchdown.modelkit.model import Model
+from touchdown.fmus.variants.modes import with_modes
+from touchdown.fmus.variants.starts import defaults, starting_from
+from touchdown.modelkit.model import Model, slots
+from touchdown.modelkit.variables import Causality
 from touchdown.rotor.file import parse, shipped, text_of
 from touchdown.rotor.flexible import flexible_rotor
 
@@ -41,9 +45,16 @@ class {identifier}(ModelSlave):
 
 _STARTING = """
 
-from touchdown.fmus.starts import starting_from
+from touchdown.fmus.variants.starts import starting_from
 
 {identifier}.model = starting_from({identifier}.model, {values!r})
+"""
+
+_WITH_MODES = """
+
+from touchdown.fmus.variants.modes import with_modes
+
+{identifier}.model = with_modes({identifier}.model, {count})
 """
 
 
@@ -74,6 +85,14 @@ class Recipe:
         model = starting_from(self.model, others)
         script = self.script + _STARTING.format(identifier=self.identifier, values=others)
         return replace(self, script=script, content=f"{self.content}{model.content[-17:]}", model=model)
+
+    def with_modes(self, count: int) -> Recipe:
+        """The recipe of an FMU for rotors of `count` modes per plane (`variants.modes`)."""
+        model = with_modes(self.model, count)
+        if model is self.model:
+            return self
+        script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count)
+        return replace(self, script=script, content=f"{self.content}_modes{count}", model=model)
 
 
 def names() -> list[str]:
@@ -115,11 +134,43 @@ def _from_rotor(path: Path) -> Recipe:
     return Recipe(name, identifier, script, f"{content_hash()}_{own}", model)
 
 
+def parameter_sets(model: Model) -> dict[str, dict[str, float]]:
+    """By designation, what the source's bearings give to parameters of `model`, if it has their balls.
+
+    They are what an FMU brings along: all of the catalogue would be more than the rest of it.
+    """
+    names = {s.variable.name for s in slots(model) if s.causality is Causality.PARAMETER}
+    known = {bearing.designation: bearing.settings() for bearing in FROM_SOURCE}
+    return {
+        name: {n: v for n, v in values.items() if n in names}
+        for name, values in known.items()
+        if all(n in names for n in values if n.startswith("balls."))
+    }
+
+
 def presets() -> list[str]:
-    """Names of the sets of parameters that a component may ask for."""
-    return sorted(CATALOGUE)
+    """Names of the sets of parameters that a component may ask for: the bearings of the catalogue."""
+    return catalogue.built_in()
 
 
-def preset(name: str) -> dict[str, float]:
-    """Values in SI by parameter name; a component takes those it has. KeyError for an unknown name."""
-    return CATALOGUE[name].settings()
+def find_preset(name: str, *folders: Path) -> str:
+    """What `preset` takes for the bearing called `name` in the first of `folders` where there is one.
+
+    Raises CatalogueError, that of the first folder, where there is none.
+    """
+    file = name.rpartition(":")[0]
+    there = [folder for folder in folders if not file or (folder / file).is_file()] or folders[:1]
+    missed: CatalogueError | None = None
+    for folder in there:
+        try:
+            return catalogue.reference(name, folder)
+        except CatalogueError as error:
+            if not error.known:  # a mistake in a file, not a name that may be elsewhere
+                raise
+            missed = missed or error
+    raise missed or CatalogueError(f"there is no preset {name}", presets())
+
+
+def preset(found: str) -> dict[str, float]:
+    """Values in SI by parameter name; a component takes those it has. Raises CatalogueError."""
+    return catalogue.bearing(found).settings()

@@ -50,6 +50,7 @@ class ModelSlave(Fmi2Slave):
         self._instance = Instance(self.model)
         self._identity = guid(self.model).encode()
         self._stores = {Scalar.REAL: self._instance.words, Scalar.INTEGER: self._instance.words.view("i8")}
+        self._tunable = {s.index for s in self._instance.slots if s.variable.spec.tunable}
         self._known: dict[tuple[object, ...], np.ndarray] = {}  # vectors of value references checked before
         self._last: dict[tuple[str, str], tuple[list[int], np.ndarray]] = {}
         self._phase = NEW
@@ -151,15 +152,20 @@ class ModelSlave(Fmi2Slave):
         return []
 
     def _set(self, kind: Scalar, vrs: list[int], values: list[Any]) -> None:
-        places = self._places("set", kind, vrs)
+        places, tuning = self._places("set", kind, vrs), False
         if places is None:
-            causes = AT_START if self._phase < STEPPING else (Causality.INPUT,)
-            wrong = self._others(kind, vrs, causes)
+            late = self._phase >= STEPPING
+            wrong = self._others(kind, vrs, AT_START, late)
             if wrong:
                 self._raise(refusals.SET_LATE.format(names=wrong, kind=kind))
-            places = self._note("set", kind, vrs)
+            tuning = late and not self._tunable.isdisjoint(vrs)
+            places = np.array(vrs, dtype=np.intp)
+            if not tuning:  # which is rare, and looked at each time
+                self._known[("set", kind, *vrs)] = places
         self._stores[kind][places] = values
         self._stale = True
+        if tuning:
+            self._instance.tune()
 
     def _get(self, kind: Scalar, vrs: list[int]) -> list[Any]:
         places = self._places("get", kind, vrs)
@@ -167,7 +173,7 @@ class ModelSlave(Fmi2Slave):
             wrong = self._others(kind, vrs, READABLE)
             if wrong:
                 self._raise(refusals.UNREADABLE.format(names=wrong, kind=kind))
-            places = self._note("get", kind, vrs)
+            places = self._known[("get", kind, *vrs)] = np.array(vrs, dtype=np.intp)
         if self._phase < STEPPING:
             self._compute_early(self._others(kind, vrs, AT_START))
         return self._stores[kind][places].tolist()
@@ -194,26 +200,27 @@ class ModelSlave(Fmi2Slave):
             self._last[access, kind] = (list(vrs), places)
         return places
 
-    def _note(self, access: str, kind: Scalar, vrs: list[int]) -> np.ndarray:
-        """Keep a vector that was checked."""
-        places = np.array(vrs, dtype=np.intp)
-        self._known[(access, kind, *vrs)] = places
-        return places
-
     def _forget(self) -> None:
         """What may be set is another matter from now on."""
         self._known.clear()
         self._last.clear()
 
-    def _others(self, kind: Scalar, vrs: list[int], causes: tuple[Causality, ...]) -> str:
-        """Names of the variables among `vrs` that are not of this kind and these causalities."""
+    def _others(
+        self, kind: Scalar, vrs: list[int], causes: tuple[Causality, ...], late: bool = False
+    ) -> str:
+        """Names of the variables among `vrs` that are not of this kind and these causalities.
+
+        late: nor may parameters be that are not tunable.
+        """
         slots = {s.index: s for s in self._instance.slots}
         wrong: list[str] = []
         for i in sorted({vr % 2**32 for vr in vrs}):  # unsigned, as FMI has them
             slot = slots.get(i)
             if slot is None:
                 wrong.append(refusals.UNKNOWN.format(number=i))
-            elif slot.variable.spec.kind is not kind or slot.causality not in causes:
+                continue
+            fixed = late and slot.causality is Causality.PARAMETER and i not in self._tunable
+            if slot.variable.spec.kind is not kind or slot.causality not in causes or fixed:
                 wrong.append(slot.variable.name)
         return ", ".join(wrong)
 

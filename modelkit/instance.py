@@ -71,7 +71,7 @@ class Instance:
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
             raise ModelError(refusals.NO_STEP.format(time=time, step=step))
         if self._outdated:
-            self._settle()
+            self._settle_again()
         status = self.model.advance(self.words, self.work, time, step)
         if status != OK:
             refused = ModelError if status in (BAD_INPUT, BAD_LOAD) else StepSizeError
@@ -88,6 +88,21 @@ class Instance:
         """
         self.state[:] = state
         self._outdated = self._parameters != self._settled_for
+
+    def tune(self) -> None:
+        """Have constants settled again ahead of the next step, as tunable parameters were set."""
+        self._outdated = self._parameters != self._settled_for
+
+    def _settle_again(self) -> None:
+        """Settle for the parameters as they are now; the rest of the state stays what it is.
+
+        A started model has more in use than `settle` knows of, such as the modes that it was told of.
+        """
+        kept = self.save()
+        try:
+            self._settle()
+        finally:
+            self.state[:] = kept
 
     def _settle(self) -> None:
         """Check the parameters, compute what follows from them. Raises ModelError where they cannot be."""

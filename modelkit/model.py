@@ -140,7 +140,7 @@ class Model:
     parameters named in `tabulated` alone; it lies in the memory before `settle` adds the rest.
 
     `Instance` drives it: check the bounds, tabulate, settle, start, advance. The smallest complete example
-    is `bearings.housing`.
+    is `bearings.surroundings.housing`.
     """
 
     name: str

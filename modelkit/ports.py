@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.variables import groups, integer, real
+from touchdown.modelkit.variables import SWITCH, Choices, choice, groups, real
 
 MODES = 20  # of a flexible body that a seat can carry, per plane
 # s; an impact is over once the journal has been free for longer. A light inner ring rattles between journal
@@ -186,24 +186,27 @@ HOLD = 0
 VELOCITY = 1
 ACCELERATION = 2
 MODEL = 3
+ORDERS = Choices(
+    "InterfaceOrder",
+    ("held", "velocity", "acceleration", "model"),
+    (
+        "position held",
+        "extrapolated with the velocity",
+        "extrapolated with velocity and acceleration",
+        "interface model driven by the bearing's own load",
+    ),
+)
 
 
 @dataclass(frozen=True)
 class Interface:
     """How a bearing treats its inputs between communication points, and how finely it steps."""
 
-    order: int = integer(
-        MODEL,
-        "motion within a macro step: 0 held, 1 velocity, 2 acceleration extrapolated, "
-        "3 interface model driven by the bearing's own load",
-        minimum=0,
-        maximum=3,
-    )
-    lead: int = integer(
+    order: int = choice(MODEL, ORDERS, "motion within a macro step")
+    lead: int = choice(
         0,
-        "1: the load handed over is that of the macro step to come, for tools that step all FMUs at once",
-        minimum=0,
-        maximum=1,
+        SWITCH,
+        "the load handed over is that of the macro step to come, for tools that step all FMUs at once",
     )
     tolerance: float = real(
         1e-6, "1", "error of one micro-step over the model's scales", above=0.0, maximum=1e-2

@@ -26,6 +26,25 @@ SCALES: dict[str, tuple[float, str]] = {
 }  # fmt: skip
 
 
+# units that values are shown in, from small to large; of what is 0 at the start, where it is not the first
+DISPLAYED: dict[str, tuple[str, ...]] = {
+    "m": ("um", "mm", "m"),
+    "m/s": ("mm/s", "m/s"),
+    "s": ("us", "ms", "s"),
+    "rad": ("deg",),
+    "rad/s": ("rpm",),
+    "kg": ("g", "kg"),
+    "kg/m3": ("g/cm3",),
+    "kg.m": ("g.mm", "kg.m"),
+    "kg.m2": ("kg.mm2", "kg.cm2", "kg.m2"),
+    "N": ("N", "kN"),
+    "N.m": ("mN.m", "N.m"),
+    "N/m": ("N/m", "kN/m", "MN/m"),
+    "N.s/m": ("N.s/m", "N.s/mm"),
+    "Pa": ("MPa", "GPa"),
+}
+OF_NOTHING = {"s": "ms", "m/s": "m/s", "kg": "kg", "kg.m": "kg.m", "kg.m2": "kg.m2", "N.m": "N.m"}
+
 NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])|(nan|inf)\b)", re.IGNORECASE)
 MICRO = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
 
@@ -37,6 +56,23 @@ class UnitError(ValueError):
 def units_of(unit: str) -> list[str]:
     """Ways to write the SI unit `unit`, itself first."""
     return [unit, *(written for written, (_, si) in SCALES.items() if si == unit)]
+
+
+def display_unit(unit: str, size: float) -> str:
+    """The unit in which people read values of about `size`, in the SI unit `unit`: mm, um, rpm and so on.
+
+    size = 0: it is not known.
+    """
+    written = DISPLAYED.get(unit, (unit,))
+    if size == 0.0:
+        return OF_NOTHING.get(unit, written[0])
+    fitting = [w for w in written if per_display(unit, w) * abs(size) >= 1.0]
+    return fitting[-1] if fitting else written[0]
+
+
+def per_display(unit: str, written: str) -> float:
+    """How many of the unit `written` are one of the SI unit `unit`."""
+    return 1.0 if written == unit else 1.0 / SCALES[written][0]
 
 
 def to_si(value: object, unit: str | None, name: str) -> float:

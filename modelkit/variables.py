@@ -1,8 +1,8 @@
 """Variables, declared once.
 
 A model states its parameters, inputs and outputs as frozen dataclasses whose fields are made by
-`real`, `integer`, `group` or `groups`. Everything else is derived from them: the memory layout a kernel
-reads (``p.contact.stiffness``), the FMU's XML, bounds checks, tables and column headers.
+`real`, `integer`, `choice`, `group` or `groups`. Everything else is derived from them: the memory layout
+a kernel reads (``p.contact.stiffness``), the FMU's XML, bounds checks, tables and column headers.
 """
 
 from __future__ import annotations
@@ -47,6 +47,18 @@ class Variability(StrEnum):
 
 
 @dataclass(frozen=True)
+class Choices:
+    """What whole numbers stand for, by words: the first for 0. `name` is that of FMI's type."""
+
+    name: str
+    words: tuple[str, ...]
+    meanings: tuple[str, ...] = ()  # where words do not say it all
+
+
+SWITCH = Choices("Switch", ("off", "on"))
+
+
+@dataclass(frozen=True)
 class Spec:
     """What is declared of one scalar beside its name and default."""
 
@@ -59,6 +71,9 @@ class Spec:
     nominal: float | None = None
     local: bool = False  # a diagnostic, not part of the coupling
     constant: bool = False  # fixed once initialised
+    tunable: bool = False  # a parameter that may be set between macro steps
+    shown: str | None = None  # unit to show it in, where its size does not tell
+    choices: Choices | None = None
 
 
 @dataclass(frozen=True)
@@ -90,8 +105,16 @@ def real(default: float, unit: str, meaning: str, **bounds: Any) -> Any:
 
 
 def integer(default: int, meaning: str, **bounds: Any) -> Any:
-    """Declare an int64 scalar (a count or a choice)."""
+    """Declare an int64 scalar (a count)."""
     return field(default=default, metadata={"spec": Spec(Scalar.INTEGER, "1", meaning, **bounds)})
+
+
+def choice(default: int, choices: Choices, meaning: str) -> Any:
+    """Declare an int64 scalar that is one of `choices`."""
+    told = ", ".join(f"{number} {word}" for number, word in enumerate(choices.words))
+    most = len(choices.words) - 1
+    spec = Spec(Scalar.INTEGER, "1", f"{meaning}: {told}", minimum=0, maximum=most, choices=choices)
+    return field(default=default, metadata={"spec": spec})
 
 
 def array(*shape: int) -> Any:

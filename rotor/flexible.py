@@ -26,10 +26,11 @@ from touchdown.modelkit.ports import (
     StaticLoad,
 )
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from touchdown.modelkit.variables import as_tuple, group, groups, integer, real
-from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
-from touchdown.rotor.modal.data import MOST_MODES, Derived, tabulate
+from touchdown.modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
+from touchdown.rotor.beams.shaft import MOST_STATIONS, Shaft
+from touchdown.rotor.modal.data import MOST_MODES, Derived, most_modes, tabulate
 from touchdown.rotor.modal.modes import RIGID
+from touchdown.rotor.modal.watched import MOST_WATCHED, watched
 from touchdown.rotor.motion import macro_step, stress_report
 from touchdown.rotor.motion.equations import rhs
 from touchdown.rotor.motion.exchange import take_mode_loads
@@ -45,9 +46,7 @@ class Parameters:
     modes: int = integer(
         5, "modes per plane, the two rigid ones included; 0: all of the finite elements'", minimum=0
     )
-    residual: int = integer(
-        1, "1: the seats keep the flexibility of the modes that are left out", minimum=0, maximum=1
-    )
+    residual: int = choice(1, SWITCH, "the seats keep the flexibility of the modes that are left out")
     damping_ratio: float = real(
         -1.0, "1", "damping ratio of the elastic modes; negative: as the rotor's file says", maximum=1.0
     )
@@ -55,8 +54,10 @@ class Parameters:
     speed: float = real(942.477796076938, "rad/s", "spin speed at the start")
     unbalance_scale: float = real(1.0, "1", "factor on the shaft's unbalances", minimum=0.0)
     unbalance_angle: float = real(0.0, "rad", "angle of the rotor at the start")
-    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0)
-    viscous_drag: float = real(0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0)
+    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0, tunable=True)
+    viscous_drag: float = real(
+        0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0, tunable=True
+    )
     x: float = real(0.0, "m", "horizontal position at the start")
     y: float = real(0.0, "m", "vertical position at the start")
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")
@@ -87,7 +88,7 @@ class Outputs:
     sensor: tuple = groups(PointMotion, MOST_STATIONS)
     energy: Energy = group(Energy)
     stress: stress_report.StressReport = group(stress_report.StressReport)
-    node: tuple = groups(stress_report.NodeStress, MOST_NODES)
+    node: tuple = groups(stress_report.NodeStress, MOST_WATCHED)
     mass: float = real(0.0, "kg", "mass", constant=True)
     polar_inertia: float = real(0.0, "kg.m2", "polar moment of inertia", constant=True)
 
@@ -107,6 +108,7 @@ CONSTANTS, PROBLEMS = constants(
     (
         "modes = {0:g} must be from 2 (rigid) to {1:g}, all that the model has per plane, or 0",
         "stress.node = {0:g}: the rotor's nodes count from 1 to {1:g}",
+        "stress.node = {0:g} is none of the rotor's {1:g} nodes whose stresses are followed",
     ),
 )
 
@@ -114,14 +116,19 @@ CONSTANTS, PROBLEMS = constants(
 @kernel
 def _problem(m):
     """Number of what is wrong between shaft and parameters, or 0."""
-    p, most = m.p, 2 * m.d.nodes
+    p, most, rows = m.p, m.d.most_modes, m.d.stress
     if p.modes > most or p.modes == 1:
         m.told[0], m.told[1] = p.modes, most
         return 1
+    m.told[0], m.told[1] = p.stress.node, m.d.nodes
     if p.stress.node > m.d.nodes:
-        m.told[0], m.told[1] = p.stress.node, m.d.nodes
         return 2
-    return 0
+    if p.stress.node == 0:
+        return 0
+    for i in range(rows.ends):
+        if rows.node[i] == p.stress.node:
+            return 0
+    return 3
 
 
 @kernel
@@ -218,7 +225,7 @@ def tables(shaft: Shaft, p: Parameters) -> np.ndarray:
 
     That is for `settle` to say.
     """
-    there = p.modes == 0 or RIGID <= p.modes <= 2 * shaft.nodes
+    there = p.modes == 0 or RIGID <= p.modes <= most_modes(shaft)
     return _tables(shaft, p.modes if there else RIGID, p.residual)
 
 
@@ -229,7 +236,8 @@ def exposed(shaft: Shaft, name: str) -> str | None:
         return name
     kind, number, tail = match[1], int(match[2]), match[3]
     if kind == "node":
-        return name if number <= shaft.nodes else None
+        nodes = watched(shaft)
+        return f"node[{nodes[number - 1]}]{tail}" if number <= len(nodes) else None
     places = shaft.stations if kind == "station" else shaft.sensors
     return f"{places[number - 1].name}{tail}" if number <= len(places) else None
 

@@ -1,18 +1,19 @@
-"""What is known of a rotor before it is dropped: modes, whirl speeds, and how it lies on its seats."""
+"""What is known of a rotor before it is dropped: modes, whirl, critical speeds, how it lies."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.modal.campbell import whirl_frequencies
+from touchdown.rotor.modal.campbell import Whirl, supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.critical import CriticalMap, critical_map
 from touchdown.rotor.modal.data import seats
-from touchdown.rotor.modal.modes import RIGID, basis
+from touchdown.rotor.modal.modes import RIGID, Basis, basis, fullest
 from touchdown.rotor.statics import Rest, at_rest
 
 HERTZ = 0.5 / math.pi
@@ -33,6 +34,8 @@ class Portrait:
     forward: np.ndarray  # (S, n), Hz, whirl with the spin
     backward: np.ndarray  # (S, n), Hz, whirl against it
     rest: Rest | None  # rigidly held at the seats; None where there are less than two
+    critical: tuple[CriticalMap, ...]  # held where it is levitated, and at its seats; where two nodes are
+    held: Whirl | None  # at the first speed on the shaft's own supports; None where there are none
 
 
 def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> Portrait:
@@ -48,6 +51,7 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
             f"modes = {modes}: {shaft.title} has {len(full.omega)} modes per plane; ask for "
             f"{RIGID} (rigid) to {len(full.omega)}, or 0 for all"
         )
+    held = fullest(shaft, list(dict.fromkeys(s.node for s in (*shaft.stations, *shaft.supports))))
     shapes = full.shapes[0::2, :count]
     turning = np.abs(np.asarray(speeds, dtype=float))
     whirl = HERTZ * whirl_frequencies(full, turning)
@@ -61,7 +65,17 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
         forward=forward,
         backward=backward,
         rest=_at_rest(shaft),
+        critical=tuple(_critical(shaft, held)),
+        held=supported_whirl(held, turning[0], shaft.supports) if shaft.supports else None,
     )
+
+
+def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:
+    """Held by what levitates it, and by its seats."""
+    levitating = [s for s in shaft.stations if s.name in shaft.levitated_at]
+    for places in (levitating, [s for s in shaft.stations if s not in levitating]):
+        if len({s.node for s in places}) > 1:
+            yield critical_map(shaft, full, places)
 
 
 def _kind(mode: int) -> str:

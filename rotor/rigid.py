@@ -40,8 +40,10 @@ class Parameters:
         0.0, "m", "distance of the centre of mass from the shaft centre", minimum=0.0
     )
     unbalance_angle: float = real(0.0, "rad", "angle of the centre of mass at the start")
-    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0)
-    viscous_drag: float = real(0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0)
+    drag: float = real(0.0, "N.m", "constant torque against the spin", minimum=0.0, tunable=True)
+    viscous_drag: float = real(
+        0.0, "N.m.s/rad", "torque against the spin per spin speed", minimum=0.0, tunable=True
+    )
     x: float = real(0.0, "m", "horizontal position at the start")
     y: float = real(0.0, "m", "vertical position at the start")
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")

@@ -66,6 +66,7 @@ def _stresses(shaft: Shaft, q: np.ndarray, gravity: float) -> tuple[np.ndarray, 
         own = beam.matrices(element)
         weight = -gravity * own.mass @ np.array([1.0, 0.0, 1.0, 0.0])
         force1, moment1, force2, moment2 = own.stiffness @ q[2 * i : 2 * i + 4] - weight
-        bending += [bending_per_moment(element) * m for m in (-moment1, moment2)]
-        shear += [shear_per_force(element) * v for v in (force1, -force2)]
+        first, second = element.section(0.0), element.section(1.0)
+        bending += [bending_per_moment(first) * -moment1, bending_per_moment(second) * moment2]
+        shear += [shear_per_force(first) * force1, shear_per_force(second) * -force2]
     return np.array(bending), np.array(shear)

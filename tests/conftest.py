@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from warm_up import warm_up
 
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
+from touchdown.modelkit.kernel.cache_folder import VARIABLE
 
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
@@ -50,17 +52,40 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         warm_up()
 
 
+class OnDemand(Mapping[str, Path]):
+    """Something made of each of the project's FMUs when it is first asked for."""
+
+    def __init__(self, make: Callable[[str], Path]) -> None:
+        self._made = cache(make)
+
+    def __getitem__(self, name: str) -> Path:
+        return self._made(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(names())
+
+    def __len__(self) -> int:
+        return len(names())
+
+
 @pytest.fixture(scope="session")
 def built() -> Mapping[str, Path]:
-    """The project's FMUs by name, built from the present sources."""
-    return {name: cached(recipe(name)) for name in names()}
+    """The project's FMUs by name, built from the present sources, which compiles their models."""
+    session = os.environ.get(VARIABLE)
+
+    def make(name: str) -> Path:
+        with pytest.MonkeyPatch.context() as patch:  # whatever cache the test that asks first has
+            patch.setenv(VARIABLE, session) if session else patch.delenv(VARIABLE, raising=False)
+            return cached(recipe(name))
+
+    return OnDemand(make)
 
 
 @pytest.fixture(scope="session")
 def unpacked(built: Mapping[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Path]:
     """Folders of the unpacked FMUs by name."""
     folder = tmp_path_factory.mktemp("unpacked")
-    return {name: Path(extract(str(path), str(folder / name))) for name, path in built.items()}
+    return OnDemand(lambda name: Path(extract(str(built[name]), str(folder / name))))
 
 
 @pytest.fixture(scope="session")

@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from places import ROOT
 
 from touchdown.master.scene.file import load_scene
 
+if TYPE_CHECKING:
+    from cosimulated import comparison
+
+    Compared = Callable[..., dict[str, dict[str, comparison.Result]]]
+
 BENCHMARKS = ROOT / "benchmarks"
-NEEDS_MORE = {"exudyn_drop"}  # installed by hand
+NEEDS_MORE = {"exudyn_drop", "ross_rotors"}  # installed by hand
 
 
 @pytest.fixture(autouse=True)
@@ -111,3 +118,54 @@ def test_scenes_are_measured_and_drawn(tmp_path: Path) -> None:
     grown = growth.Grown("balls", "s", (1.0, 2.0), (spread([1.0]), spread([2.0])))
     picture.draw([found], [grown], tmp_path / "speed.png")
     assert (tmp_path / "speed.png").stat().st_size > 10_000
+
+
+@pytest.fixture
+def masters_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Compared:
+    """What `masters.py --quick` keeps, by problem and master; it prints all and leaves a picture."""
+    import bodies
+    import fmpy
+
+    if bodies.COMPILER is None or fmpy.platform != bodies.PLATFORM:
+        pytest.skip(f"needs a C compiler for {bodies.PLATFORM}")
+
+    def compared(*arguments: str) -> dict[str, dict[str, comparison.Result]]:
+        import masters
+        from cosimulated import comparison
+
+        assert masters.main(["--quick", "-o", str(tmp_path), *arguments]) == 0
+        printed = capsys.readouterr().out
+        files = {path.stem: comparison.known(path) for path in tmp_path.glob("*.json")}
+        found = {problem: {one.master: one for one in results} for problem, results in files.items()}
+        assert all(f"\n{name} " in printed for results in found.values() for name in results)
+        assert (tmp_path / "masters.png").stat().st_size > 10_000
+        return found
+
+    return compared
+
+
+def test_ways_of_this_master_are_compared(masters_compared: Compared) -> None:
+    """What keeps mean and moment is ahead of what is held, and what repeats is ahead of both."""
+    found = masters_compared("--problems", "car,drop", "--tools", "")
+    car = found["car"]
+    assert car["iterated"].error < 0.1 * car["smooth"].error < 0.1 * car["hold"].error
+    assert car["hold"].calls == 3 * 250
+    assert 0.0 < found["drop"]["interface"].error < 1e-5
+
+
+@pytest.mark.peers
+def test_masters_of_other_tools_are_compared(masters_compared: Compared) -> None:
+    """Tools that step all FMUs at once err as held values do; step control errs less, bonds still less."""
+    found = masters_compared("--problems", "car")["car"]
+    had = {name: one for name, one in found.items() if not one.own and "install" not in one.unable}
+    if not had:
+        pytest.skip("no tool can be had")
+    assert not any(one.unable for name, one in had.items() if not name.startswith("ecos"))  # wants libtbb12
+    plain = found["jacobi-hold"].error
+    for name, one in had.items():
+        if name.endswith("step control"):
+            assert found["smooth"].error < one.error < plain
+        elif name.endswith("gauss-seidel"):
+            assert one.error == pytest.approx(found["hold"].error, rel=1e-2)
+        elif not name.endswith("iterative") and not one.unable:
+            assert one.error == pytest.approx(plain, rel=1e-6)

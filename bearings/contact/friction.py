@@ -18,11 +18,16 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.variables import integer, real
+from touchdown.modelkit.variables import Choices, choice, real
 
 COULOMB = 0
 STRIBECK = 1
 MAKKAR = 2
+LAWS = Choices(
+    "FrictionLaw",
+    ("coulomb", "stribeck", "makkar"),
+    ("Coulomb, regularised", "static and dynamic, Stribeck", "Makkar et al."),
+)
 
 # of the search for the peak of Makkar's curve, from 0 to FADED/g3 where all has risen that rises
 FADED = 3.0
@@ -36,9 +41,7 @@ MOST_STATIC = 100.0  # times the static coefficient; a larger g1 stands for a g2
 class FrictionLaw:
     """Constants of a friction law; speeds in m/s."""
 
-    kind: int = integer(
-        MAKKAR, "friction law: 0 Coulomb, 1 static-dynamic Stribeck, 2 Makkar", minimum=0, maximum=2
-    )
+    kind: int = choice(MAKKAR, LAWS, "friction law")
     static: float = real(0.15, "1", "static coefficient, the peak of the curve", minimum=0.0)
     dynamic: float = real(0.10, "1", "dynamic coefficient, the plateau (g4)", minimum=0.0)
     slope: float = real(100.0, "s/m", "steepness of the curve through zero speed (g5)", above=0.0)

@@ -13,7 +13,7 @@ import math
 from dataclasses import dataclass
 
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import integer, real
+from touchdown.modelkit.variables import SWITCH, choice, integer, real
 
 SAMPLES = 20_000  # around a race, for the check of its curvature
 DENT_SAMPLES = 801  # across a worn dent; odd: one is its middle
@@ -30,9 +30,7 @@ class RaceProfile:
     wear: float = real(0.0, "m", "depth of the worn dent", minimum=0.0)
     wear_angle: float = real(-math.pi / 2, "rad", "where the dent is at the start (s1)")
     wear_width: float = real(0.2, "rad", "width b of the dent", above=0.0)
-    search: int = integer(
-        0, "1: search the contact point even where the race is a circle", minimum=0, maximum=1
-    )
+    search: int = choice(0, SWITCH, "search the contact point even where the race is a circle")
 
 
 @kernel

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from speeds.measured import Block, spread
 from touchdown.fmus.recipes import names, recipe
-from touchdown.master.components.library import built
+from touchdown.master.components.library.sources import built
 
 WAYS = {"in process": ["--in-process"], "native FMUs": ["--native"], "FMUs in Python": []}
 BRIEF = ["--set", "run.duration=1 ms", "--no-pictures", "--quiet"]

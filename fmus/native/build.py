@@ -24,9 +24,11 @@ from touchdown.fmus.native.kernels import bitcode
 from touchdown.fmus.native.tables import Choice, Held, source
 from touchdown.fmus.native.targets import NativeError, Target, chosen, places
 from touchdown.fmus.native.texts import header
+from touchdown.fmus.presentation import references, terminals
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
-from touchdown.fmus.recipes import Recipe
+from touchdown.fmus.recipes import Recipe, parameter_sets
+from touchdown.fmus.variants.modes import refusal
 from touchdown.fmus.version import VERSION
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError
@@ -65,7 +67,11 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
         "modelDescription.xml": _HEAD + tostring(description),
         "documentation/index.html": page(recipe, needs=_needs(model, native, held)).encode(),
         "model.png": icon(model),
+        **terminals.entries(model),
     }
+    if not isinstance(model.advance, InC):  # whose model is the library itself
+        trial = references.Trial(Instance(model), ModelError)
+        entries |= references.entries(model, trial, parameter_sets(model))
     code, texts = _code(model, identity, held)
     made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
     for place, target in places(native.targets).items():
@@ -117,25 +123,12 @@ def _held(model: Model, native: Native) -> Held:
     held: list[Choice] = []
     started: Any = model.parameters()  # with its own number of modes: hosts may set nothing
     for choice in product(dict.fromkeys((*native.modes, started.modes)), (1, 0)):
-        problem = _refusal(model, dict(zip(model.tabulated, choice, strict=True)))
+        problem = refusal(model, dict(zip(model.tabulated, choice, strict=True)))
         if problem and not native.lenient:
             raise NativeError(f"{model.name}: {problem}")
         if not problem:
             held.append(choice)
     return Held(tuple(held))
-
-
-def _refusal(model: Model, parameters: dict[str, int]) -> str:
-    """Why a model does not start with these whole parameters, or ""."""
-    instance = Instance(model)
-    for slot in instance.slots:
-        if slot.variable.name in parameters:
-            instance.integers[slot.index] = parameters[slot.variable.name]
-    try:
-        instance.start(0.0)
-    except ModelError as error:
-        return str(error)
-    return ""
 
 
 def _identity(model: Model, held: Held) -> str:

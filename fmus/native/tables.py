@@ -143,7 +143,8 @@ def _slots(exposed: Sequence[Slot], end: int) -> Iterator[str]:
 
 
 def _access(slot: Slot) -> str:
-    return f"{_KINDS[slot.variable.spec.kind]} | {_CAUSES[slot.causality]}"
+    tunable = " | TUNABLE" if slot.variable.spec.tunable else ""
+    return f"{_KINDS[slot.variable.spec.kind]} | {_CAUSES[slot.causality]}{tunable}"
 
 
 def _begun(model: Model) -> np.ndarray:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Callable
 from enum import Enum, auto
 
 import numpy as np
 
 from touchdown.modelkit.model import Model, slots
 
-SIZE = 64  # pixels
+SIZE, SMALL = 64, 16  # pixels
 FINER = 4  # sub-pixels along each side, for smooth edges
 PALETTE = np.array(
     [[255, 255, 255], [52, 73, 94], [231, 146, 60], [189, 199, 209], [38, 122, 176]], dtype=np.uint8
@@ -30,12 +31,25 @@ class Motif(Enum):
 
 def icon(model: Model) -> bytes:
     """PNG for `model`: a bearing around its journal, a magnetic bearing, a rotor or a housing."""
-    n = SIZE * FINER
+    return _picture(SIZE, lambda picture, x, y: _draw(_motif(model), picture, x, y))
+
+
+def dot() -> bytes:
+    """PNG of a port: a dot."""
+
+    def draw(picture: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
+        picture[np.hypot(x, y) < 0.8] = BLUE
+
+    return _picture(SMALL, draw)
+
+
+def _picture(size: int, draw: Callable[[np.ndarray, np.ndarray, np.ndarray], None]) -> bytes:
+    """PNG of size x size pixels; draw(picture, x, y) paints it, x and y run from -1 to 1."""
+    n = size * FINER
     across = (np.arange(n) + 0.5) / n * 2.0 - 1.0
-    x, y = across[None, :], -across[:, None]
     picture = np.full((n, n), WHITE)
-    _draw(_motif(model), picture, x, y)
-    fine = PALETTE[picture].reshape(SIZE, FINER, SIZE, FINER, 3).astype(float)
+    draw(picture, across[None, :], -across[:, None])
+    fine = PALETTE[picture].reshape(size, FINER, size, FINER, 3).astype(float)
     return _png(fine.mean(axis=(1, 3)).round().astype(np.uint8))
 
 

@@ -14,11 +14,12 @@ from touchdown.fmus.native.in_c import recipe_in_c
 from touchdown.fmus.native.targets import NativeError, chosen
 from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
+from touchdown.fmus.variants.modes import ALL, RIGID, refusal
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.several import several
-from touchdown.master.components.library import locate
+from touchdown.master.components.library.sources import locate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
@@ -36,9 +37,11 @@ def build(
     """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
 
     Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine; native:
-    for hosts without Python anywhere, of the machines `targets` (none: this one's kind), rotors with
-    constants for these numbers of `modes`. Raises TouchdownError for an unknown name, where the folder
-    cannot be written, and where a compiler is missing.
+    for hosts without Python anywhere, of the machines `targets` (none: this one's kind). modes: per plane,
+    the two rigid ones included (0: all): rotors start with so many, and no seat tells of more; native
+    rotors hold constants for each of them and start with the most. Raises TouchdownError for an unknown
+    name, modes that a rotor does not have, where the folder cannot be written, and where a compiler is
+    missing.
 
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
@@ -63,8 +66,9 @@ def built_one_by_one(
         raise TouchdownError("an FMU is native or linked to a Python; choose one")
     try:
         given = names() if fmus is None else several(fmus)
-        recipes = [_recipe(os.fspath(fmu), native) for fmu in given]
-        make = _native(recipes, targets, modes) if native else partial(_in_python, linked=link_python)
+        counts = None if modes is None else tuple(modes)
+        recipes = [_for_modes(_recipe(os.fspath(fmu), native), counts, native) for fmu in given]
+        make = _native(recipes, targets, counts) if native else partial(_in_python, linked=link_python)
         with writing_to(Path(folder)):
             for recipe in recipes:
                 yield make(recipe, Path(folder))
@@ -76,11 +80,28 @@ def _in_python(recipe: Recipe, folder: Path, linked: bool) -> Path:
     return builder.build(recipe, folder, interpreter() if linked else None)
 
 
+def _for_modes(recipe: Recipe, modes: tuple[int, ...] | None, native: bool) -> Recipe:
+    """The recipe for the largest of some numbers of modes. Raises TouchdownError where it cannot be."""
+    if modes is None:
+        return recipe
+    if not modes or any(count < RIGID and count != ALL for count in modes):
+        raise TouchdownError(f"modes = {list(modes)}: give {RIGID} (rigid) or more, or {ALL} for all")
+    if len(modes) > 1 and not native:
+        raise TouchdownError(
+            f"modes = {list(modes)}: an FMU in Python takes any number of modes; give the one to start with"
+        )
+    changed = recipe.with_modes(ALL if ALL in modes else max(modes))
+    problem = refusal(changed.model, {}) if changed.model.tabulated and not native else ""
+    if problem:
+        raise TouchdownError(f"{recipe.name}: {problem}")
+    return changed
+
+
 def _native(
-    recipes: Sequence[Recipe], targets: Iterable[str], modes: Iterable[int] | None
+    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None
 ) -> Callable[[Recipe, Path], Path]:
     """How to build each of `recipes`, whose kernels are compiled beside each other first."""
-    native = Native(chosen(list(several(targets))), MODES if modes is None else tuple(modes), modes is None)
+    native = Native(chosen(list(several(targets))), modes or MODES, modes is None)
     native.check()
     prepare(recipes)
     return partial(build_native, native=native)
@@ -92,7 +113,8 @@ def check(
     names: Mapping[str, str] | None = None,
     call_timeout: float = CALL_TIMEOUT,
 ) -> Report:
-    """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run.
+    """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run,
+    and the experiments that it brings along, held to their results.
 
     role: "bearing", "rotor", "amb" or "housing", whether it can stand in for one; names: what it calls the
     variables of the contract. An FMU at a path runs in a process of its own, where each call may take

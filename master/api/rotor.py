@@ -5,21 +5,32 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
-from touchdown.master.studies.rotor.report import MODES, SPEED, described, find_rotor, report_text
+from touchdown.master.studies.rotor.importing import import_rotor
+from touchdown.master.studies.rotor.report import (
+    MODES,
+    SPEED,
+    described,
+    find_rotor,
+    report_text,
+    supported,
+)
 from touchdown.modelkit.kernel.cache_folder import kept, put
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import written
+from touchdown.rotor.imports.places import Places
+from touchdown.rotor.modal.critical import critical_speeds
+from touchdown.rotor.modal.modes import fullest
 from touchdown.rotor.portrait import Portrait
 
 if TYPE_CHECKING:
@@ -59,7 +70,7 @@ class Rotor(Shaft):
     """
 
     def __post_init__(self) -> None:
-        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at"):
+        for part in ("elements", "points", "unbalances", "stations", "sensors", "levitated_at", "supports"):
             object.__setattr__(self, part, tuple(getattr(self, part)))
 
     @classmethod
@@ -69,6 +80,30 @@ class Rotor(Shaft):
         Raises TouchdownError where there is no such rotor, or its file has a mistake.
         """
         return cls._of(find_rotor(os.fspath(name_or_path)))
+
+    @classmethod
+    def imported(
+        cls,
+        source: Any,
+        at: Places | None = None,
+        amb: Places | None = None,
+        sensors: Places | None = None,
+        speed: float | None = None,
+    ) -> Rotor:
+        """A rotor of others': the path of a file that ROSS saved (.toml, .json) or of a table of sections
+        (.csv), or a `ross.Rotor`; its `about` says what is left out or otherwise.
+
+        at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
+        only motion is asked for; each a node (from 1), or text such as "120 mm" from node 1, by name.
+        speed: rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
+
+        >>> with open("pump.csv", "w") as file:
+        ...     print("length [mm], outer diameter [mm], material\\n300, 30, steel", file=file)
+        >>> rotor = touchdown.Rotor.imported("pump.csv", at={"A": "20 mm", "B": "280 mm"})
+        >>> rotor
+        <Rotor pump: 12 elements, 13 nodes, 1.6604 kg, 0.3 m, stations: A at node 2, B at node 12>
+        """
+        return cls._of(import_rotor(source, at, amb, sensors, speed))
 
     @classmethod
     def _of(cls, shaft: Shaft) -> Rotor:
@@ -81,6 +116,22 @@ class Rotor(Shaft):
         """
         return described(self, SPEED, modes).frequencies
 
+    def critical_speeds(self, supports: Mapping[str, float] | None = None) -> np.ndarray:
+        """Undamped, ascending (rad/s): those of the forward whirl, or all where the planes differ.
+
+        supports: stiffness in N/m of stations by name, beside its own `supports`. Raises TouchdownError
+        where it is not held at two nodes or more.
+
+        >>> rotor = touchdown.Rotor.load("rotor_II")
+        >>> rotor.critical_speeds({"amb_A": 20e6, "amb_B": 20e6})[:3].round(1)
+        array([ 561.2,  784.2, 4453.1])
+        """
+        shaft = supported(self, supports or {})
+        if len({s.node for s in shaft.supports if s.stiffness > 0.0}) < 2:
+            raise TouchdownError(f"critical speeds need supports at two nodes of {self.title} or more")
+        held_at = list(dict.fromkeys(s.node for s in shaft.supports))
+        return critical_speeds(fullest(shaft, held_at), shaft.supports)
+
     def whirl(self, speed: float, modes: int = MODES) -> tuple[np.ndarray, np.ndarray]:
         """Of the free rotor at `speed` (rad/s): whirl against the spin, and with it, by mode (Hz).
 
@@ -91,7 +142,7 @@ class Rotor(Shaft):
 
     @property
     def plot(self) -> RotorPlot:
-        """Pictures: `plot.modes()`, `plot.campbell()`, `plot.rest()`, each of which returns its axes."""
+        """Pictures: `plot.modes()`, `.campbell()`, `.critical()`, `.rest()`; each returns its axes."""
         return RotorPlot(lambda: described(self, SPEED, MODES))
 
     def save(self, path: PathLike) -> Path:
@@ -165,6 +216,19 @@ class RotorPlot:
         from touchdown.master.studies.rotor.figure import campbell
 
         return campbell(drawable(figure), self._portrait())
+
+    def critical(self, figure: FigureBase | None = None) -> list[Axes]:
+        """Undamped critical speeds [rpm] over the stiffness of its supports [N/m], its own ones marked.
+
+        Raises TouchdownError where no two nodes hold it.
+        """
+        from touchdown.master.results.figures.style import drawable
+        from touchdown.master.studies.rotor.figure import critical
+
+        portrait = self._portrait()
+        if not portrait.critical:
+            raise TouchdownError("this picture needs stations at two nodes or more, to hold the rotor")
+        return critical(drawable(figure), portrait)
 
     def rest(self, figure: FigureBase | None = None) -> list[Axes]:
         """How it lies on its seats: deflection [µm] and bending stress [MPa].

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from touchdown.master.api.scenes import PathLike, as_scene
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.results.folder.reopened import reopened
 from touchdown.master.results.result import Result
-from touchdown.master.results.run import run_scene
+from touchdown.master.results.run import Pictures, run_scene
 from touchdown.master.scene.scene import Scene
 
 
@@ -16,13 +18,14 @@ def run(
     *,
     in_process: bool = False,
     csv: bool = False,
-    pictures: bool = False,
+    pictures: Pictures = False,
     progress: bool = False,
 ) -> Result:
     """Run a scene, given itself, by name or by path.
 
     `folder` gets summary.json, scene.json, result.h5 and, where asked for, result.csv and pictures; without
-    one nothing is left on disk once the result is not used any more. in_process: step the models without
+    one nothing is left on disk once the result is not used any more. pictures="dark": on a dark ground.
+    in_process: step the models without
     FMUs, the same to the bit and faster; progress: show a bar.
 
     Raises TouchdownError where the run cannot start. One that stops part-way returns what it recorded, and
@@ -33,6 +36,21 @@ def run(
     >>> round(1e3 * result.summary["first_contact_time_s"], 1)  # ms after the shutdown
     7.9
     """
+    if pictures not in (True, False, "dark"):
+        raise TouchdownError(f'pictures = {pictures!r} must be True, False or "dark"')
     return run_scene(
         as_scene(scene), None if folder is None else Path(folder), in_process, csv, pictures, progress
     )
+
+
+def open_result(folder: PathLike) -> Result:
+    """What a run left in a folder, read back as `run` returned it; the recording is read when it is used.
+
+    Raises TouchdownError where the folder is not that of a run that is over.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> kept = touchdown.run(scene, "runs/kept", in_process=True).folder
+    >>> touchdown.open_result(kept).summary["completed"]
+    True
+    """
+    return reopened(Path(folder))

@@ -21,7 +21,7 @@ def scenes() -> dict[str, str]:
 
 
 def load(name_or_path: PathLike) -> Scene:
-    """A scene of the project's by name, or of yours by the path of a .toml or an SSP package (.ssp).
+    """A scene by name or path: of the project's, a .toml of yours, an SSP package, a run's scene.json.
 
     Raises TouchdownError where there is none, or it has a mistake.
 

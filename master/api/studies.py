@@ -6,6 +6,7 @@ import math
 import tempfile
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -13,7 +14,6 @@ from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.progress import bar_over, growing_bar, named_progress
 from touchdown.master.common.several import several
-from touchdown.master.common.units import plain
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES, scheme
 from touchdown.master.scene.tables import above_zero
@@ -21,8 +21,10 @@ from touchdown.master.studies.drop.levitation import shortened
 from touchdown.master.studies.schemes import compare as schemes_study
 from touchdown.master.studies.schemes.compare import STEPS, Asked, Comparison, pieces
 from touchdown.master.studies.sweep import sweep as sweep_study
-from touchdown.master.studies.sweep.report import Member
-from touchdown.master.studies.sweep.sweep import Execution
+from touchdown.master.studies.sweep.design import Design, designed
+from touchdown.master.studies.sweep.results import Sweep
+from touchdown.master.studies.sweep.results import merge as merged
+from touchdown.master.studies.sweep.sweep import Running as SweepRunning
 from touchdown.master.studies.verdict.report import write_report
 from touchdown.master.studies.verdict.study import Plan, Running, Study, study_verdict
 
@@ -31,34 +33,53 @@ Item = TypeVar("Item")
 
 def sweep(
     scene: PathLike | Scene,
-    variations: Mapping[str, object],
+    variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]],
     folder: PathLike | None = None,
     *,
-    jobs: int = 2,
+    jobs: int | str = 2,
     in_process: bool = False,
     progress: bool = False,
-) -> list[Member]:
-    """Run a scene with every combination of the values that `variations` has for each setting.
+) -> Sweep:
+    """Run a scene at every point of `variations`, and return its members in their order.
 
-    Values are a list, an array or a single one, each as `Scene.set` takes it.
-    Each member has its `settings`, its `summary`, and in `failed` why it stopped, or nothing. `folder` gets
-    sweep.csv and the summary of each member; without one nothing is left on disk. `jobs` run at a time, in
-    processes of their own: a script needs `if __name__ == "__main__":` around it. After Ctrl-C the members
-    that had not run to their ends are there with `ended` INTERRUPTED. Raises TouchdownError where a setting
-    cannot be.
+    `variations` is a Design, or values by setting, of which every combination runs, or a list of points,
+    each of them values by setting. A member has its `settings`, its `summary`, and in `failed` why it
+    stopped, or nothing; `data` of the whole is an xarray.Dataset, `plot` draws maps. `folder` gets sweep.nc
+    and sweep.csv, and a sweep that it has begun goes on there; without one nothing is left on disk. `jobs`
+    run at a time, in processes of their own, or on the workers of the Dask scheduler whose address it is: a
+    script needs `if __name__ == "__main__":` around it. After Ctrl-C the members that had not run to their
+    ends are there with `ended` INTERRUPTED. Raises TouchdownError where a setting cannot be, and where
+    `folder` holds another sweep.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "8 ms"})
     >>> members = touchdown.sweep(scene, {"bearing.clearance": ["0.2 mm", "0.25 mm"]}, in_process=True)
     >>> [round(1e3 * member.summary["first_contact_time_s"], 1) for member in members]  # ms
     [6.5, 7.2]
+    >>> members.data["bearing.clearance"].values  # m
+    array([0.0002 , 0.00025])
     """
-    values = {name: [plain(value) for value in several(given)] for name, given in variations.items()}
-    total = sweep_study.size(values)
+    design = designed(variations)
+    running = SweepRunning(in_process=in_process)
+    running = replace(running, cluster=jobs) if isinstance(jobs, str) else replace(running, jobs=jobs)
     kept = tempfile.TemporaryDirectory(prefix="touchdown_") if folder is None else nullcontext(folder)
-    with kept as where, bar_over(total, "runs", not progress) as bar:
-        return sweep_study.sweep(
-            as_scene(scene), values, Path(where), jobs, Execution(in_process), bar.update
-        )
+    with kept as where, bar_over(len(design), "runs", not progress) as bar:
+        return sweep_study.sweep(as_scene(scene), design, Path(where), running, bar.update)
+
+
+def merge(folders: PathLike | Iterable[PathLike], folder: PathLike | None = None) -> Sweep:
+    """The sweep in a folder as it is now, or the shards of one in several folders as one.
+
+    `folder` gets all of it, as if one machine had run it; what is missing runs there when the sweep is
+    started again. Raises TouchdownError where they are of different sweeps.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "2 ms"})
+    >>> design = touchdown.Design.grid({"rotor.mass": ["1 kg", "2 kg"]})
+    >>> for k in (1, 2):
+    ...     shard = touchdown.sweep(scene, design.shard(k, 2), f"shard-{k}", jobs=1, in_process=True)
+    >>> touchdown.merge(["shard-1", "shard-2"])
+    <Sweep of disk-caged-simplified, 2 points of a grid: 2 completed>
+    """
+    return merged([Path(one) for one in several(folders)], None if folder is None else Path(folder))
 
 
 def verdict(

@@ -18,3 +18,4 @@ class Ended(Enum):
     AS_WANTED = "as wanted"  # earlier, since what watched it had seen enough
     INTERRUPTED = "interrupted"  # by Ctrl-C, SIGTERM, SIGHUP or SIGQUIT
     STOPPED = "stopped"  # it could not go on
+    DIED = "died"  # its process was killed, or crashed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
@@ -24,11 +25,18 @@ def _nothing(*_: object) -> None:
 UNSEEN = Progress(_nothing, _nothing)
 
 
+def bars() -> type[tqdm[NoReturn]]:
+    """Bars for where they are shown: a terminal or a notebook."""
+    with warnings.catch_warnings():
+        # a notebook without widgets gets bars of text, and no warning about what it does not need
+        warnings.filterwarnings("ignore", "IProgress not found")
+        from tqdm.auto import tqdm
+    return tqdm
+
+
 def bar_over(total: int, what: str, quiet: bool) -> tqdm[NoReturn]:
     """A bar over `total` pieces of work, all of them `what`; as a context."""
-    from tqdm.auto import tqdm
-
-    return tqdm(total=total, desc=what, disable=quiet, leave=False)
+    return bars()(total=total, desc=what, disable=quiet, leave=False)
 
 
 @contextmanager

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import Unit
+from touchdown.master.common.units import Unit, to_si
 from touchdown.modelkit.variables import Causality, Variability
 
 
@@ -33,7 +34,8 @@ class Kind(StrEnum):
 
 
 REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
-NUMBERS = (Kind.REAL, Kind.INTEGER)  # what is recorded and kept
+WHOLE = (Kind.INTEGER, Kind.ENUMERATION)  # FMI 2.0 has one function for both
+NUMBERS = (Kind.REAL, *WHOLE)  # what is recorded and kept
 SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 
 
@@ -86,6 +88,7 @@ class Variable:
     start: float | None
     description: str
     element: int = 0  # of an array of FMI 3.0, counted from 0 in the order of its values
+    choices: Mapping[str, int] = field(default_factory=dict[str, int])  # an enumeration's, by their words
 
     @property
     def settable(self) -> bool:
@@ -96,6 +99,11 @@ class Variable:
     def constant(self) -> bool:
         """Whether its value is settled once the component is initialised."""
         return self.variability in (Variability.FIXED, Variability.CONSTANT, Variability.TUNABLE)
+
+    def told(self, value: float) -> str:
+        """A value as people read it: the word for it, if there is one."""
+        words = [word for word, number in self.choices.items() if number == value]
+        return words[0] if words else f"{value:.6g}"
 
 
 class Component(ABC):
@@ -206,7 +214,7 @@ class Component(ABC):
         """Values of any variables, integers as such."""
         values = self.reader(names)()
         kinds = [self.variable(name).kind for name in names]
-        return [int(v) if k is Kind.INTEGER else float(v) for v, k in zip(values, kinds, strict=True)]
+        return [int(v) if k in WHOLE else float(v) for v, k in zip(values, kinds, strict=True)]
 
     foreign = False  # whether it is an FMU of others'
     any_step = True  # whether it takes steps of any length
@@ -226,6 +234,25 @@ class Component(ABC):
     @abstractmethod
     def close(self) -> str:
         """End and free the component; nothing may be called after it. Returns what went wrong, or ""."""
+
+
+def value_of(component: Component, variable: Variable, given: object) -> float:
+    """`given`, a number, or text with a unit or one of the variable's choices, in SI.
+
+    "on" may be true, and "off" false. Raises TouchdownError where it cannot be read.
+    """
+    name = f"{component.name}.{variable.name}"
+    if not variable.choices:
+        return to_si(given, variable.unit, name)
+    by_word = {word.casefold(): number for word, number in variable.choices.items()}
+    word = str(given).strip().casefold()
+    word = word if word in by_word else {"true": "on", "false": "off"}.get(word, word)
+    with suppress(TouchdownError):
+        value = float(by_word[word]) if word in by_word else to_si(given, variable.unit, name)
+        if value in by_word.values():
+            return value
+    known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())
+    raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}")
 
 
 def check_value(component: Component, variable: Variable, value: float) -> None:

@@ -27,7 +27,7 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import ByFunctions, Call, Component, InMemory, Kind
+from touchdown.master.components.component import WHOLE, ByFunctions, Call, Component, InMemory, Kind
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
 
@@ -288,13 +288,12 @@ class FmuComponent(LoadedFmu):
 
     def set(self, values: Mapping[str, float]) -> None:
         calls = (
-            (Kind.REAL, "fmi2SetReal", self._set_real, "f8"),
-            (Kind.INTEGER, "fmi2SetInteger", self._set_integer, "i4"),
-            (Kind.ENUMERATION, "fmi2SetInteger", self._set_integer, "i4"),
-            (Kind.BOOLEAN, "fmi2SetBoolean", self._set_boolean, "i4"),
+            ((Kind.REAL,), "fmi2SetReal", self._set_real, "f8"),
+            (WHOLE, "fmi2SetInteger", self._set_integer, "i4"),
+            ((Kind.BOOLEAN,), "fmi2SetBoolean", self._set_boolean, "i4"),
         )
-        for kind, title, call, dtype in calls:
-            names = [n for n in values if self.variable(n).kind is kind]
+        for kinds, title, call, dtype in calls:
+            names = [n for n in values if self.variable(n).kind in kinds]
             if names:
                 self._told(title)
                 references = self._references(names)
@@ -341,11 +340,11 @@ class FmuComponent(LoadedFmu):
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         values = np.zeros(len(names))
         fetches: list[_Fetch] = []
-        for kind, call, dtype in (
-            (Kind.REAL, self._get_real, "f8"),
-            (Kind.INTEGER, self._get_integer, "i4"),
+        for kinds, call, dtype in (
+            ((Kind.REAL,), self._get_real, "f8"),
+            (WHOLE, self._get_integer, "i4"),
         ):
-            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind is kind], dtype=np.intp)
+            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in kinds], dtype=np.intp)
             if len(at):
                 references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
                 addresses = references.ctypes.data, data.ctypes.data

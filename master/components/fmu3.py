@@ -16,7 +16,7 @@ import numpy as np
 from fmpy.fmi3 import FMU3Slave
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Call, Kind
+from touchdown.master.components.component import WHOLE, Call, Kind
 from touchdown.master.components.fmu import OK, WARNING, LoadedFmu
 
 CALLS = (  # in the order of FMI 2.0's, `fmu.CALLS`
@@ -150,7 +150,7 @@ class Fmu3Component(LoadedFmu):
         self._fetch(self._given, self.outputs, Call.GET)
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
-        numbers = [n for n in names if self.variable(n).kind in (Kind.REAL, Kind.INTEGER)]
+        numbers = [n for n in names if self.variable(n).kind in (Kind.REAL, *WHOLE)]
         values, vectors = np.zeros(len(names)), self._vectors(numbers)
         places = np.array([i for i, n in enumerate(names) if n in set(numbers)], np.intp)
         vectors = [_Vector(v.get, v.set, v.references, v.data, v.at, places[v.which]) for v in vectors]

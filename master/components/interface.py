@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import product
@@ -125,11 +126,19 @@ def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
             start=_number(starts[element] if element < len(starts) else starts[-1]),
             description=v.description or "",
             element=element,
+            choices=_choices(v) if kind is Kind.ENUMERATION else {},
         )
 
 
 def _unit(v: Any) -> str | None:
     return v.unit or (v.declaredType.unit if v.declaredType else None)
+
+
+def _choices(v: Any) -> dict[str, int]:
+    """Words of an enumeration, and the numbers they stand for."""
+    items = v.declaredType.items if v.declaredType else ()
+    numbers = {item.name: _number(item.value) for item in items if item.name}
+    return {word: int(n) for word, n in numbers.items() if n is not None and math.isfinite(n)}
 
 
 def _number(text: object) -> float | None:

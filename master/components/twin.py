@@ -10,13 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.fmus.description import causality
+from touchdown.fmus.description import causality, fmi_type
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Call, Component, InMemory, Kind, Variable
+from touchdown.master.components.component import WHOLE, Call, Component, InMemory, Kind, Variable
 from touchdown.modelkit.instance import Instance, explanation
 from touchdown.modelkit.kernel.address import advance_address
 from touchdown.modelkit.model import Model, ModelError, Slot
-from touchdown.modelkit.variables import Scalar
 
 
 def _variable(slot: Slot) -> Variable:
@@ -25,7 +24,7 @@ def _variable(slot: Slot) -> Variable:
     return Variable(
         name=slot.variable.name,
         reference=slot.index,
-        kind=Kind.REAL if spec.kind is Scalar.REAL else Kind.INTEGER,
+        kind=Kind(fmi_type(spec)),
         causality=role,
         variability=variability,
         unit=spec.unit,
@@ -33,6 +32,7 @@ def _variable(slot: Slot) -> Variable:
         maximum=spec.maximum,
         start=slot.variable.default,
         description=spec.meaning,
+        choices={} if spec.choices is None else {w: i for i, w in enumerate(spec.choices.words)},
     )
 
 
@@ -109,8 +109,8 @@ class TwinComponent(Component):
         variables = [self.variable(n) for n in names]
         integers = self._words.view("i8")
         fetches: list[_Fetch] = []
-        for kind, store in ((Kind.REAL, self._words), (Kind.INTEGER, integers)):
-            at = np.array([i for i, v in enumerate(variables) if v.kind is kind], dtype=np.intp)
+        for kinds, store in (((Kind.REAL,), self._words), (WHOLE, integers)):
+            at = np.array([i for i, v in enumerate(variables) if v.kind in kinds], dtype=np.intp)
             references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
             fetches.append(_Fetch(store, references, at))
 

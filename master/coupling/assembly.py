@@ -7,8 +7,7 @@ from contextlib import suppress
 
 from touchdown.fmus.recipes import preset
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import to_si
-from touchdown.master.components.component import SETTABLE, Component, check_value
+from touchdown.master.components.component import SETTABLE, Component, check_value, value_of
 from touchdown.master.coupling.bonds.bond import found
 from touchdown.master.coupling.connections import (
     Attachment,
@@ -23,6 +22,7 @@ from touchdown.master.coupling.connections import (
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.scene.schemes import Scheme
+from touchdown.modelkit.model import ModelError
 
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
@@ -131,7 +131,7 @@ def _settings(
     component: Component, spec: ComponentSpec, inherited: Mapping[str, float], scheme: Scheme
 ) -> dict[str, float]:
     """Values of a component's parameters and inputs: of preset and swap as far as it has them, then set."""
-    known = preset(spec.preset) if spec.preset else dict[str, float]()
+    known = _preset(component.name, spec.preset)
     optional = {key: value for key, value in known.items() if key in component.variables} | dict(inherited)
     values = {key: checked(component, key, value) for key, value in {**optional, **spec.set}.items()}
     for key, value in ((ORDER, scheme.order), (LEAD, int(scheme.lead))):
@@ -140,6 +140,14 @@ def _settings(
         if key in component.variables:
             values[key] = value
     return values
+
+
+def _preset(component: str, name: str | None) -> dict[str, float]:
+    """Values of a bearing of the catalogue, or of a file, which may have changed since."""
+    try:
+        return preset(name) if name else {}
+    except ModelError as error:
+        raise TouchdownError(f"{component}.preset: {error}") from None
 
 
 def _require_lead(attachments: Iterable[Attachment], components: Mapping[str, Component]) -> None:
@@ -163,6 +171,6 @@ def checked(component: Component, name: str, given: object) -> float:
         raise TouchdownError(
             f"{component.name}.{name} has the causality {variable.causality} and cannot be set"
         )
-    value = to_si(given, variable.unit, f"{component.name}.{name}")
+    value = value_of(component, variable, given)
     check_value(component, variable, value)
     return value

@@ -14,7 +14,7 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import Interrupts, interrupts_noted
 from touchdown.master.components.component import Component
-from touchdown.master.components.library import Stepping, load_component
+from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.bonds.told import exchange, unjoined
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening

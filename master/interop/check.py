@@ -1,4 +1,4 @@
-"""Check an FMU: is it valid, what can it stand in for, and does it run."""
+"""Check an FMU: is it valid, what can it stand in for, does it run, and as where it was built."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from fmpy.validation import validate_fmu
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.components.library import Stepping, foreign, load_component
+from touchdown.master.components.library.loading import Stepping, load_component
+from touchdown.master.components.library.sources import foreign
 from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
+from touchdown.master.interop.experiments import Experiment, experiments, largest_deviation
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
 from touchdown.modelkit.variables import Causality
 
@@ -50,6 +52,11 @@ def check_fmu(
         problem = component.close()
     if problem:
         report.problems.append(f"at its end: {problem}")
+    try:
+        for experiment in experiments(component.folder):
+            _try_experiment(experiment, name, stepping, report)
+    except TouchdownError as error:
+        report.problems.append(str(error))
     if role is not None:
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
@@ -73,6 +80,24 @@ def _check_validity(component: ArchivedFmu, role: str | None, report: Report) ->
         report.lines.append(
             "it lists no InitialUnknowns, so tools cannot tell what its first outputs follow from"
         )
+
+
+def _try_experiment(experiment: Experiment, name: str, stepping: Stepping, report: Report) -> None:
+    """Run one that the FMU brings along, in an instance of its own."""
+    what = f"experiment {experiment.name} ({experiment.steps} steps of {experiment.step:g} s)"
+    component = load_component("checked", name, stepping=stepping)
+    try:
+        off = largest_deviation(component, experiment)
+    except TouchdownError as error:
+        report.problems.append(f"{what}: {error}")
+        return
+    finally:
+        component.close()
+    allowed = f"{experiment.tolerance:g} is allowed"
+    if off.share <= experiment.tolerance:
+        report.lines.append(f"{what}: as in its results; {off.distance}; {allowed}")
+    else:
+        report.problems.append(f"{what}: {off.text}; {allowed}")
 
 
 def _dry_run(component: Component, report: Report) -> None:

@@ -15,7 +15,7 @@ from touchdown.fmus.recipes import Recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import Component, Kind
 from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.components.library import built, locate
+from touchdown.master.components.library.sources import built, locate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 

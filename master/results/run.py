@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-
-from tqdm.auto import tqdm
+from typing import Literal
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
+from touchdown.master.common.progress import bars
+from touchdown.master.components.library.ahead import compile_beside, new_models
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
+from touchdown.master.results.folder.ending import write_ending
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
 from touchdown.master.scene.scene import Scene
+
+Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
 
 
 def run_scene(
@@ -27,12 +32,13 @@ def run_scene(
     folder: Path | None,
     in_process: bool = False,
     csv: bool = False,
-    pictures: bool = True,
+    pictures: Pictures = True,
     progress: bool = False,
 ) -> Result:
     """Run `scene` and write its results into `folder`; None: a temporary one, gone with the result.
 
-    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for.
+    These are summary.json, scene.json (the scene as it was run), result.h5 and what else is asked for;
+    pictures="dark" are on a dark ground.
 
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
@@ -42,6 +48,7 @@ def run_scene(
         scratch = Scratch()
         folder = scratch.path
     with interrupts_noted(), claimed(folder) as results:
+        make_ready(scene, in_process, *([_told] if progress else []))
         system = open_system(scene, in_process)
         try:
             with _Bar(scene, progress) as show:
@@ -51,16 +58,31 @@ def run_scene(
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
+            warnings = [*system.left_out, *_warnings(outcome)]
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:
+                    write_ending(folder, told, warnings)
                     drawn = _show(Finished(scene, told, recording), folder, csv, pictures)
                 finally:
                     results.finish(summary)
         finally:
             system.close()
-    warnings = [*system.left_out, *_warnings(outcome)]
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:
+    """Have compiled what is new of a scene, beside each other; say(what) where that takes a while.
+
+    Raises TouchdownError for a mistake in the scene, which is not to wait for that.
+    """
+    if models := new_models(scene, in_process):
+        open_system(scene, in_process=True).close()
+        compile_beside(models, say)
+
+
+def _told(what: str) -> None:
+    print(what, file=sys.stderr, flush=True)
 
 
 def _begin(results: ResultsFolder, scene: Scene) -> None:
@@ -103,7 +125,7 @@ def _warnings(outcome: Outcome) -> list[str]:
     return said
 
 
-def _show(run: Finished, folder: Path, csv: bool, pictures: bool) -> list[Path]:
+def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Path]:
     """On request result.csv and pictures, which are returned."""
     if csv:
         write_csv(run.recording, folder / TABLE)
@@ -111,7 +133,7 @@ def _show(run: Finished, folder: Path, csv: bool, pictures: bool) -> list[Path]:
         return []
     from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
 
-    return draw_all(run, folder)
+    return draw_all(run, folder, dark=pictures == "dark")
 
 
 def make_writable(folder: Path) -> None:
@@ -127,7 +149,7 @@ class _Bar:
     """Progress over simulated time, with the run's speed and the ledger's residual over turnover."""
 
     def __init__(self, scene: Scene, shown: bool) -> None:
-        self._bar = tqdm(
+        self._bar = bars()(
             total=scene.run.duration,
             disable=not shown,
             # tqdm's widget for notebooks stands in for exactly {bar}

@@ -18,7 +18,8 @@ macro_step = 2e-5     # s
 
 [components.rotor]
 fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
-preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them
+preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them; your own by its
+                      # name in bearings.toml beside the scene, or by FILE.toml:NAME
 every = 2             # macro steps of the run that it takes in one (default: 1)
 isolate = true        # step its FMU in a process of its own (default: false)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
@@ -27,16 +28,21 @@ mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
 "A.x" = "shaft_x"     # a variable of the contract, and what this FMU calls it; or names = "FILE.toml"
 
+[set."bearing_*"]      # what several share: all components whose names match; or run, or one of them. What
+friction.dynamic = 0.2 # [components] here, or in a scene that extends this one, says of one counts there
+
 A scene with extends = "SCENE" (a name, or the path of a .toml beside it) starts as that one; what it
 gives takes the place of what stands there, table by table; a component that names its fmu is a new one.
 """
 
 from __future__ import annotations
 
+import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, cast
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -55,6 +61,7 @@ from touchdown.master.scene.tables import (
 )
 from touchdown.master.scene.wires import bonds, wires
 
+SCENE_FILE = "scene.toml"  # of a folder that is a machine
 LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
@@ -65,15 +72,21 @@ def shipped() -> dict[str, Path]:
 
 
 def load_scene(name: str) -> Scene:
-    """A scene of the project's by name, or of the user's by the path of a TOML file."""
+    """A scene of the project's by name, or of the user's by the path of a TOML file.
+
+    A folder stands for the scene.toml in it, which goes by the folder's name.
+    """
     path = locate(name)
-    return parse(tables(path), path.stem, path.parent)
+    own = path.resolve().parent.name if path.name == SCENE_FILE else path.stem
+    return parse(tables(path), own, path.parent)
 
 
 def locate(name: str) -> Path:
     """The file of a scene of the project's by name, or of the user's by path. Raises TouchdownError."""
     if name.endswith(".toml"):
         return Path(name)
+    if name not in shipped() and os.path.isfile(Path(name) / SCENE_FILE):
+        return Path(name) / SCENE_FILE
     try:
         return shipped()[name]
     except KeyError:
@@ -95,6 +108,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "bond",
         "run",
         "components",
+        "set",
     )
     refuse_unknown(data, known, f"scene {name}")
     components = {
@@ -103,7 +117,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     }
     if not components:
         raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
-    return Scene(
+    scene = Scene(
         name=name,
         title=str(data.get("title", name)),
         about=str(data.get("about", "")),
@@ -117,6 +131,43 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
     )
+    given = data.get("set", {})
+    layers = cast("list[_Shared]", given) if isinstance(given, list) else [_shared(data, f"scene {name}")]
+    return _with_shared(scene, layers)
+
+
+class _Shared(NamedTuple):
+    """The settings of a file's [set], and what is said of single components more exactly."""
+
+    settings: Mapping[str, object]
+    exact: frozenset[str]  # by [components] of the same file, or of one that extends it
+
+
+def _shared(data: Mapping[str, Any], where: str) -> _Shared:
+    return _Shared(flat(table(data.get("set", {}), f"{where}: [set]")), _exact(data))
+
+
+def _exact(data: Mapping[str, Any]) -> frozenset[str]:
+    """COMPONENT.NAME of all that [components] sets, run.KEY of all that [run] does."""
+    parts = {name: entries(part) or {} for name, part in (entries(data.get("components")) or {}).items()}
+    of_parts = {
+        f"{name}.{setting}"
+        for name, part in parts.items()
+        for setting in (*part, *flat(entries(part.get("set")) or {}))
+    }
+    return frozenset(of_parts | {f"run.{key}" for key in entries(data.get("run")) or {}})
+
+
+def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
+    """A scene with the settings of its files' [set], which are the scene's, not made beside it."""
+    there = scene
+    for layer in layers:
+        for name, value in layer.settings.items():
+            head, dot, tail = name.partition(".")
+            settings = [f"{component}{dot}{tail}" for component in scene.matching(head)]
+            there = there.set({setting: value for setting in settings if setting not in layer.exact})
+    components = {name: replace(spec, own=()) for name, spec in there.components.items()}
+    return replace(there, components=components, own=scene.own)
 
 
 def _component(value: object, where: str, folder: Path) -> ComponentSpec:
@@ -126,7 +177,7 @@ def _component(value: object, where: str, folder: Path) -> ComponentSpec:
     if not isinstance(given.get("fmu"), str):
         raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
     settings = flat(table(given.get("set", {}), where))
-    preset = checked_preset(given.get("preset"), where)
+    preset = checked_preset(given.get("preset"), where, folder)
     every = whole(given.get("every", 1), f"{where} every")
     names = _names(given.get("names", {}), where, folder)
     isolate = switch(given.get("isolate", False), f"{where} isolate")
@@ -140,8 +191,12 @@ def read_names(path: Path) -> dict[str, str]:
 
 
 def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
-    """The tables of a scene's file over those of the scene it extends; `before`: files that led here."""
+    """The tables of a scene's file over those of the scene it extends; `before`: files that led here.
+
+    Their [set] are a list, that of the first file first.
+    """
     data = _toml(path, "scene")
+    data["set"] = [_shared(data, f"scene {path}")]
     if "extends" not in data:
         return data
     base = str(data.pop("extends"))
@@ -153,7 +208,10 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
         raise TouchdownError(f"scene {path}: extends = {base!r}: {one_of(base, shipped())}")
     if start.resolve() in (*before, path.resolve()):
         raise TouchdownError(f"scene {path}: extends = {base!r} leads back to itself")
-    return _over(tables(start, (*before, path.resolve())), data)
+    under = tables(start, (*before, path.resolve()))
+    exact = _exact(data)
+    layers = [layer._replace(exact=layer.exact | exact) for layer in under["set"]]
+    return _over(under, data) | {"set": [*layers, *data["set"]]}
 
 
 def _toml(path: Path, what: str) -> dict[str, Any]:

@@ -14,6 +14,11 @@ from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown
 CALL_TIMEOUT = 60.0  # s
 AUTO = "auto"  # as the scheme has it
 BONDS = (AUTO, "smooth", "contact", "hold")
+UNITS = {  # of the keys of [run] that are numbers
+    **dict.fromkeys(("duration", "macro_step", "call_timeout", "impact_step"), "s"),
+    "tolerance": "m",
+    **dict.fromkeys(("record_every", "warn_residual", "stop_residual", "whirl_halvings"), "1"),
+}
 
 
 @dataclass(frozen=True)

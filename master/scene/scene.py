@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError, one_of
@@ -76,30 +77,49 @@ class Scene:
     energy_scale: tuple[str, ...] = ()
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
+    own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
 
     def set(self, settings: Mapping[str, object]) -> Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.
 
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
-        catalogue, COMPONENT.every how many macro steps a component takes in one, COMPONENT.isolate whether
-        its FMU is stepped in a process of its own, COMPONENT.native whether one of the project's own is
-        taken as its native FMU. Raises TouchdownError where there is no such component,
-        key or preset; a component's variables are looked up when a run begins.
+        catalogue or of a file (FILE.toml:NAME, from the scene's folder or the current one), COMPONENT.every
+        how many macro steps a component takes in one, COMPONENT.isolate whether its FMU is stepped in a
+        process of its own, COMPONENT.native whether one of the project's own is taken as its native FMU. A
+        COMPONENT with * or ? is all whose names match: "bearing_*.friction.dynamic". Raises TouchdownError
+        where there is no such component, key or preset; a component's variables are looked up when a run
+        begins.
         """
         scene = self
         for name, value in settings.items():
-            scene = scene._with_setting(name, value)
+            head, dot, tail = name.partition(".")
+            for component in self.matching(head):
+                scene = scene._with_setting(f"{component}{dot}{tail}", value)
         return scene
+
+    def matching(self, pattern: str) -> list[str]:
+        """Components whose names match a `pattern` with * or ?; what is no pattern stands for itself.
+
+        Raises TouchdownError where none matches.
+        """
+        if not any(sign in pattern for sign in "*?"):
+            return [pattern]
+        found = [name for name in self.components if fnmatchcase(name, pattern)]
+        if not found:
+            known = ", ".join(self.components)
+            raise TouchdownError(f"no component of scene {self.name} matches {pattern}; there are: {known}")
+        return found
 
     def _with_setting(self, name: str, value: object) -> Scene:
         head, _, tail = name.partition(".")
         if not tail:
             raise TouchdownError(f"cannot set {name}; write COMPONENT.VARIABLE or run.KEY")
         if head == "run":
-            return replace(self, run=with_changes(self.run, {tail: value}))
+            return replace(self, run=with_changes(self.run, {tail: value}), own=_with(self.own, tail))
         spec = self._component(head)
         if tail == "preset":
-            changed = replace(spec, preset=checked_preset(value, head), own=_with(spec.own, tail))
+            preset = checked_preset(value, head, self.folder, Path())
+            changed = replace(spec, preset=preset, own=_with(spec.own, tail))
         elif tail == "every":
             changed = replace(spec, every=whole(value, name))
         elif tail == "isolate":
@@ -175,12 +195,18 @@ def _source(fmu: str) -> str:
     return str(Path(fmu).expanduser().absolute()) if is_file(fmu) else fmu
 
 
-def checked_preset(name: object, where: str) -> str | None:
-    """A named set of parameters, or None. Raises TouchdownError where there is none of that name."""
+def checked_preset(name: object, where: str, *folders: Path) -> str | None:
+    """A bearing of the catalogue, or of a file that one of `folders` has or that is named from it; or None.
+
+    Raises TouchdownError where there is none of that name.
+    """
     if name is None:
         return None
-    from touchdown.fmus.recipes import presets  # imports numba, which a list of scenes can do without
+    # imports numba, which a list of scenes can do without
+    from touchdown.fmus.recipes import CatalogueError, find_preset
 
-    if name not in presets():
-        raise TouchdownError(f"{where}: there is no preset {name}; {one_of(str(name), presets())}")
-    return str(name)
+    try:
+        return find_preset(str(name), *folders)
+    except CatalogueError as error:
+        remedy = f"; {one_of(str(name), error.known)}" if error.known else ""
+        raise TouchdownError(f"{where}: {error}{remedy}") from None

@@ -12,10 +12,12 @@ from touchdown.master.common.units import to_si
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES
 from touchdown.master.verbs import completion
 from touchdown.master.verbs.completion import complete
+from touchdown.master.verbs.screen import warn
 
 if TYPE_CHECKING:
     from touchdown.master.interop.packing import Making
     from touchdown.master.scene.scene import Scene
+    from touchdown.master.studies.sweep.results import Sweep
 
 MOST = 10_000  # of what is counted: runs, repetitions
 MOST_JOBS = 256  # processes, each of a hundred MB and more
@@ -25,7 +27,7 @@ MOST_JOBS = 256  # processes, each of a hundred MB and more
 
 def add_scene(verb: argparse.ArgumentParser) -> None:
     """Add what names a scene and changes it; `chosen_scene` reads it."""
-    add_scene_name(verb, "name of a scene, or path of a .toml or .ssp")
+    add_scene_name(verb, "name of a scene, or path of a .toml, an .ssp or a run's scene.json")
     complete(
         verb.add_argument("--scheme", help=f"coupling: {', '.join(SCHEMES)} (default: {DEFAULT})"),
         completion.schemes,
@@ -93,6 +95,21 @@ def add_phases(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def add_maps(verb: argparse.ArgumentParser) -> None:
+    """Add --pick, --over and --no-pictures, for what `show_sweep` shows."""
+    verb.add_argument(
+        "--pick", action="append", default=[], metavar="KEY", help="show this figure; * stands for anything"
+    )
+    verb.add_argument(
+        "--over",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="draw maps over this setting; repeat it for the second axis (default: the first that vary)",
+    )
+    verb.add_argument("--no-pictures", action="store_true", help="draw no maps")
+
+
 def add_making(verb: argparse.ArgumentParser) -> None:
     """Add --link-python and --native, for FMUs that others run; `making` reads them."""
     verb.add_argument(
@@ -140,6 +157,18 @@ def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
         name, file = assignment(text, "--names")
         scene = scene.with_names(name, read_names(Path(file)))
     return scene
+
+
+def show_sweep(found: Sweep, folder: Path, options: argparse.Namespace) -> None:
+    """Print what a sweep found, and draw its maps into `folder`, as the options of `add_maps` ask."""
+    from touchdown.master.studies.sweep.report import report_lines
+
+    lines, complaints = report_lines(found.members, options.pick)
+    print("\n".join(lines))
+    if not options.no_pictures:
+        found.plot.save(folder, options.over)
+    print(f"results in {folder}")
+    warn(complaints)
 
 
 def making(options: argparse.Namespace) -> Making:

@@ -33,6 +33,13 @@ def schemes(**_: object) -> list[str]:
     return list(SCHEMES)
 
 
+def figures(**_: object) -> list[str]:
+    """Names of the source's figures and tables."""
+    from touchdown.master.studies.dissertation.exhibits.registry import ENTRIES
+
+    return ["all", "list", *(entry.name for entry in ENTRIES)]
+
+
 def fmus(**_: object) -> list[str]:
     """Names of the FMUs that the project's scripts make."""
     from touchdown.fmus.scripts import scripts

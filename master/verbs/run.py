@@ -28,13 +28,14 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--isolate", action="store_true", help="step each .fmu in a process of its own")
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="draw nothing")
+    verb.add_argument("--dark", action="store_true", help="pictures on a dark ground")
     add_quiet(verb)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.ended import Ended
-    from touchdown.master.components.library import foreign
+    from touchdown.master.components.library.sources import foreign
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
     from touchdown.master.results.whirl.evidence import evidence, hint
@@ -53,7 +54,7 @@ def execute(options: argparse.Namespace) -> int:
         options.output or Path("runs") / chosen.name,
         in_process=options.in_process,
         csv=options.csv,
-        pictures=not options.no_pictures,
+        pictures=False if options.no_pictures else "dark" if options.dark else True,
         progress=not options.quiet,
     )
     print("\n".join([table(result.summary), *evidence(result.summary)]))

@@ -28,10 +28,11 @@ from numba.core.registry import cpu_target
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 
-from touchdown.modelkit.kernel.cache_folder import is_own, put
+from touchdown.modelkit.kernel.cache_folder import is_own, put, user_cache
 from touchdown.modelkit.kernel.shipped import MADE_FOR, folder, made_for, plainer
 
 _DIGEST = 32  # bytes
+_KIND = "machine-code"  # of what is kept, and came along
 _VERSION = (numba.__version__, sys.implementation.cache_tag)
 
 
@@ -42,8 +43,7 @@ class KernelCache(_Cache):
 
     def __init__(self, kernel: Callable[..., object], folder: Path, shipped: Path | None = None) -> None:
         """`folder` is for the sources of all that the kernel calls; in `shipped` is what came for them."""
-        name = f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
-        self._folder, self._name = folder / kernel.__module__, name
+        self._folder, self._name = folder / kernel.__module__, _title(kernel)
         self._shipped = None if shipped is None else shipped / kernel.__module__
         self._kernel = kernel
         self._enabled = True
@@ -107,6 +107,21 @@ class KernelCache(_Cache):
         return code if kept_for == key else None
 
 
+def _title(kernel: Callable[..., object]) -> str:
+    return f"{kernel.__qualname__}-{kernel.__code__.co_firstlineno}".replace("<", "").replace(">", "")
+
+
+def is_kept(kernel: Any, module: str) -> bool:
+    """Whether code of a kernel is there to be tried, for some sources and processor.
+
+    `module` is its module's name, which is another one where its sources travel.
+    """
+    brought = folder(_KIND)
+    places = [user_cache() / _KIND, *([] if brought is None else [brought])]
+    pattern = f"*/{module}/{_title(kernel.py_func)}.*"
+    return any(next(place.glob(pattern), None) is not None for place in places)
+
+
 @cache
 def _text_of(file: str) -> str:
     """Digest of a source file; "" for what was never in one."""
@@ -116,7 +131,7 @@ def _text_of(file: str) -> str:
 
 def about_shipped() -> str:
     """What there is to say, to people, of machine code that came along with the installation."""
-    found = folder("machine-code")
+    found = folder(_KIND)
     if found is None or not (found / MADE_FOR).is_file():
         return "compiled on first use; no machine code came along with this installation"
     made = (found / MADE_FOR).read_text("utf-8").strip()

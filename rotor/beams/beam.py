@@ -1,4 +1,4 @@
-"""One Timoshenko beam element in one plane (section 3.1 of the source).
+"""One Timoshenko beam element in one plane (section 3.1 of the source), a cylinder or a cone.
 
 Coordinates of an element: (y1, slope1, y2, slope2), where a slope is the turn of the cross-section,
 not of the centre line (3.14): dy/dz less the shear angle. z runs from node 1 to node 2.
@@ -7,12 +7,14 @@ not of the centre line (3.14): dy/dz less the shear angle. z runs from node 1 to
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from touchdown.rotor.beams.shaft import Element
+from touchdown.rotor.beams.element import Element
 
-POINTS, WEIGHTS = np.polynomial.legendre.leggauss(4)  # exact for the sixth degree of N^T N
+CYLINDER = np.polynomial.legendre.leggauss(4)  # exact for the sixth degree of N^T N
+CONE = np.polynomial.legendre.leggauss(5)  # and of the eighth, with the second degree of the area
 
 
 @dataclass(frozen=True)
@@ -66,17 +68,42 @@ def _polynomial(s: np.ndarray) -> list[np.ndarray]:
     ]
 
 
+@lru_cache(maxsize=4096)
 def matrices(element: Element) -> ElementMatrices:
-    """Consistent matrices of an element with its sleeve, by Gauss quadrature that is exact for them."""
-    N = shapes(element, 0.5 * element.length * (POINTS + 1.0))
-    w = 0.5 * element.length * WEIGHTS
-    shear_angle = N.third * (element.EI / element.kGA)  # D of (3.16), the same all along
-    rotary = element.diametral_inertia_per_length * _integral(w, N.slope)
+    """Consistent matrices of an element with its sleeve and layers, by Gauss quadrature, exact for them.
+
+    Of a cone the shape functions are those of its middle section, as in Genta and Gugliotta (1988), while
+    area and second moment vary along it. Layers share the displacements and slopes of the nodes.
+    """
+    mass, stiffness, polar = np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((4, 4))
+    for part in element.parts:
+        own = _of_one(part)
+        mass += own.mass
+        stiffness += own.stiffness
+        polar += own.polar
+    return ElementMatrices(mass, stiffness, polar)
+
+
+def _of_one(element: Element) -> ElementMatrices:
+    """Of an element without layers."""
+    points, weights = CONE if element.tapered else CYLINDER
+    N = shapes(element, 0.5 * element.length * (points + 1.0))
+    area = second = 0.5 * element.length * weights  # times what they are of the middle's
+    if element.tapered:
+        places = 0.5 * (points + 1.0)
+        area, second = area * element.area_ratio(places), second * element.second_moment_ratio(places)
+    shear_angle = N.third * _bending_over_shear(element)  # D of (3.16), the same all along
+    rotary = element.diametral_inertia_per_length * _integral(second, N.slope)
     return ElementMatrices(
-        mass=element.mass_per_length * _integral(w, N.deflection) + rotary,
-        stiffness=element.EI * _integral(w, N.curvature) + element.kGA * _integral(w, shear_angle),
+        mass=element.mass_per_length * _integral(area, N.deflection) + rotary,
+        stiffness=element.EI * _integral(second, N.curvature) + element.kGA * _integral(area, shear_angle),
         polar=2.0 * rotary,
     )
+
+
+def _bending_over_shear(element: Element) -> float:
+    """EI / kGA in the middle (m2); of laminations, which have neither, nothing hangs on it."""
+    return element.EI / element.kGA if element.EI > 0.0 else 0.0
 
 
 def _integral(weights: np.ndarray, rows: np.ndarray) -> np.ndarray:

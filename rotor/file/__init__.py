@@ -36,9 +36,15 @@
     near_amb = 4
 
 Also known: about, damping_ratio, levitated_at = ["amb"] (the stations that hold the rotor at rest at the
-start); in an element inner_diameter, material, position (its start, to check the sum of lengths) and
-shear_factor (Cowper's where it is not given); [[point_mass]] with node, mass, polar_inertia,
-diametral_inertia; in an unbalance angle. Every physical quantity is text with a unit.
+start); in an element inner_diameter, material, position (its start, to check the sum of lengths),
+shear_factor (Cowper's where it is not given), outer_diameter_end and inner_diameter_end, which make it a
+cone (over all of its count), and layers, cylinders or cones around it that are held to it at the nodes:
+
+    layers = [{ outer_diameter = "50 mm", outer_diameter_end = "60 mm", material = "bronze" }]
+
+[[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an unbalance angle; [[support]] with
+node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a scene has bearings).
+Every physical quantity is text with a unit.
 """
 
 from touchdown.rotor.file.parser import parse

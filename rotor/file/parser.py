@@ -5,10 +5,11 @@ from __future__ import annotations
 import keyword
 import tomllib
 
-from touchdown.rotor.beams.shaft import MOST_STATIONS, PointMass, Shaft, Station, Unbalance, disc
+from touchdown.rotor.beams.shaft import MOST_STATIONS, PointMass, Shaft, Station, Support, Unbalance, disc
 from touchdown.rotor.file.elements import Material, diameters_of, elements_of, material_of, materials_of
 from touchdown.rotor.file.table import RotorFileError, Table
 
+SUPPORT = ("node", "stiffness", "stiffness_y", "damping", "damping_y")
 RESERVED = ("station", "sensor", "node", "stress", "energy", "mass", "modes")  # names of other variables
 
 
@@ -21,7 +22,7 @@ def parse(text: str, file: str) -> Shaft:
     except ValueError as error:  # of TOML's syntax, or of an integer with thousands of digits
         raise RotorFileError(f"{file}: is not valid TOML: {error}") from None
     top.only("title", "about", "damping_ratio", "material", "element", "disc", "point_mass", "unbalance",
-             "stations", "sensors", "levitated_at")  # fmt: skip
+             "support", "stations", "sensors", "levitated_at")  # fmt: skip
     materials = materials_of(top)
     elements = elements_of(top, materials)
     nodes = len(elements) + 1
@@ -41,6 +42,7 @@ def parse(text: str, file: str) -> Shaft:
         stations=_stations(top, "stations", nodes),
         sensors=_stations(top, "sensors", nodes),
         levitated_at=_levitated(top),
+        supports=tuple(_support(t, nodes) for t in top.tables("support", *SUPPORT)),
         damping_ratio=top.number("damping_ratio", 0.0, 1.0, default=0.003),
     )
 
@@ -62,6 +64,17 @@ def _points(top: Table, materials: dict[str, Material], nodes: int) -> tuple[Poi
             )
         )
     return tuple(points)
+
+
+def _support(t: Table, nodes: int) -> Support:
+    """Springs and dampers of a node."""
+    return Support(
+        node=t.node("node", nodes),
+        stiffness=t.quantity("stiffness", "N/m", zero=True),
+        stiffness_y=t.quantity("stiffness_y", "N/m", zero=True) if "stiffness_y" in t.values else None,
+        damping=t.quantity("damping", "N.s/m", default=0.0, zero=True),
+        damping_y=t.quantity("damping_y", "N.s/m", zero=True) if "damping_y" in t.values else None,
+    )
 
 
 def _stations(top: Table, kind: str, nodes: int) -> tuple[Station, ...]:

@@ -12,11 +12,11 @@ from touchdown.modelkit.units import UnitError, to_si, units_of
 
 EXAMPLES = {
     "m": "12.5 mm", "Pa": "207 GPa", "kg/m3": "7830 kg/m3", "kg": "0.5 kg", "kg.m2": "0.002 kg.m2",
-    "kg.m": "3 g.mm", "rad": "90 deg",
+    "kg.m": "3 g.mm", "rad": "90 deg", "N/m": "20 MN/m", "N.s/m": "500 N.s/m",
 }  # fmt: skip
 LIMITS = {  # beyond them it is a slip, or too far apart to calculate with
-    "m": (1e-4, 1e2), "Pa": (1e6, 1e13), "kg/m3": (1.0, 1e5), "kg": (1e-9, 1e6), "kg.m2": (1e-15, 1e7),
-    "kg.m": (1e-12, 1e3), "rad": (0.0, 1e3),
+    "m": (1e-4, 1e2), "Pa": (1e3, 1e13), "kg/m3": (1.0, 1e5), "kg": (1e-9, 1e6), "kg.m2": (1e-15, 1e7),
+    "kg.m": (1e-12, 1e3), "rad": (0.0, 1e3), "N/m": (1e-3, 1e15), "N.s/m": (1e-6, 1e12),
 }  # fmt: skip
 
 

@@ -13,11 +13,12 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 
 from touchdown.modelkit.units import SCALES, to_si
-from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Support, Unbalance
 from touchdown.rotor.file.parser import parse
 from touchdown.rotor.file.table import RotorFileError
 
-PREFERRED = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg")  # units beside those of SI
+PREFERRED = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
 DIGITS = 15  # decimal digits that a float holds
 
 
@@ -43,7 +44,9 @@ def _lines(shaft: Shaft) -> Iterator[str]:
     yield f"damping_ratio = {float(shaft.damping_ratio)!r}"
     if shaft.levitated_at:
         yield f"levitated_at = [{', '.join(map(_text, shaft.levitated_at))}]"
-    cores = _numbered("core", ((e.modulus, e.density, e.poisson) for e in shaft.elements))
+    cores = _numbered(
+        "core", ((p.modulus, p.density, p.poisson) for e in shaft.elements for p in (e, *e.layers))
+    )
     sleeves = _numbered(
         "sleeve", ((e.sleeve_modulus, e.sleeve_density) for e in shaft.elements if e.sleeve_diameter)
     )
@@ -53,6 +56,8 @@ def _lines(shaft: Shaft) -> Iterator[str]:
         yield from _point(point)
     for unbalance in shaft.unbalances:
         yield from _unbalance(unbalance)
+    for support in shaft.supports:
+        yield from _support(support)
     yield from _stations("stations", shaft.stations)
     yield from _stations("sensors", shaft.sensors)
 
@@ -83,15 +88,28 @@ def _elements(elements: tuple[Element, ...], cores: Names, sleeves: Names) -> It
         if count > 1:
             yield f"count = {count}"
         yield f"length = {_quantity(e.length, 'm')}"
-        yield f"outer_diameter = {_quantity(e.outer_diameter, 'm')}"
-        if e.inner_diameter:
-            yield f"inner_diameter = {_quantity(e.inner_diameter, 'm')}"
-        yield f'material = "{cores[e.modulus, e.density, e.poisson]}"'
-        if e.shear_factor is not None:
-            yield f"shear_factor = {float(e.shear_factor)!r}"
+        yield from _part(e, cores, bore=0.0)
         if e.sleeve_diameter:
             outer, name = _quantity(e.sleeve_diameter, "m"), sleeves[e.sleeve_modulus, e.sleeve_density]
             yield f'sleeve = {{ outer_diameter = {outer}, material = "{name}" }}'
+        if e.layers:
+            yield "layers = ["
+            yield from (f"    {{ {', '.join(_part(layer, cores, bore=None))} }}," for layer in e.layers)
+            yield "]"
+
+
+def _part(part: Element, materials: Names, bore: float | None) -> Iterator[str]:
+    """What an element's core and layers have in common; `bore` is an inner diameter that goes unsaid."""
+    yield f"outer_diameter = {_quantity(part.outer_diameter, 'm')}"
+    if part.outer_diameter_end is not None:
+        yield f"outer_diameter_end = {_quantity(part.outer_diameter_end, 'm')}"
+    if part.inner_diameter != bore:
+        yield f"inner_diameter = {_quantity(part.inner_diameter, 'm')}"
+    if part.inner_diameter_end is not None:
+        yield f"inner_diameter_end = {_quantity(part.inner_diameter_end, 'm')}"
+    yield f'material = "{materials[part.modulus, part.density, part.poisson]}"'
+    if part.shear_factor is not None:
+        yield f"shear_factor = {float(part.shear_factor)!r}"
 
 
 def _point(point: PointMass) -> Iterator[str]:
@@ -105,6 +123,19 @@ def _unbalance(unbalance: Unbalance) -> Iterator[str]:
     yield f"\n[[unbalance]]\nnode = {unbalance.node}"
     yield f"moment = {_quantity(unbalance.moment, 'kg.m')}"
     yield f"angle = {_quantity(unbalance.angle, 'rad')}"
+
+
+def _support(support: Support) -> Iterator[str]:
+    yield f"\n[[support]]\nnode = {support.node}"
+    for name, unit in (
+        ("stiffness", "N/m"),
+        ("stiffness_y", "N/m"),
+        ("damping", "N.s/m"),
+        ("damping_y", "N.s/m"),
+    ):
+        value = getattr(support, name)
+        if value is not None:
+            yield f"{name} = {_quantity(value, unit)}"
 
 
 def _stations(kind: str, stations: tuple[Station, ...]) -> Iterator[str]:

@@ -14,12 +14,13 @@ import numpy as np
 
 from touchdown.modelkit.ports import MODES
 from touchdown.modelkit.variables import array, group, integer, real
-from touchdown.rotor.beams.shaft import MOST_NODES, MOST_STATIONS, Shaft
-from touchdown.rotor.modal.modes import RIGID, Basis, basis
+from touchdown.rotor.beams.shaft import MOST_STATIONS, Shaft
+from touchdown.rotor.modal.modes import MOST_SOLVED, RIGID, Basis, basis
 from touchdown.rotor.modal.stresses import recovery
+from touchdown.rotor.modal.watched import MOST_WATCHED, watched
 
-MOST_MODES = 2 * MOST_NODES  # per plane, residual vectors included
-MOST_ENDS = 2 * (MOST_NODES - 1)  # of elements
+MOST_MODES = MOST_SOLVED + MOST_STATIONS  # per plane, residual vectors included
+MOST_ENDS = 2 * MOST_WATCHED  # of elements
 NEGLIGIBLE = 1e-9  # of a station's inv_m: a mode that has a node there
 
 
@@ -43,10 +44,11 @@ class ModalUnbalance:
 
 @dataclass(frozen=True)
 class StressRows:
-    """Stresses at the ends of the elements, R of them in use."""
+    """Stresses at the ends of the elements at watched nodes, R of them in use."""
 
-    ends: int = integer(0, "of the elements, two each")
+    ends: int = integer(0, "of the elements, at watched nodes")
     node: np.ndarray = array(MOST_ENDS)  # (R,), counted from 1
+    place: np.ndarray = array(MOST_ENDS)  # (R,), among the watched nodes, from 0
     bending: np.ndarray = array(MOST_MODES, MOST_ENDS)  # (n, R), Pa per modal coordinate
     shear: np.ndarray = array(MOST_MODES, MOST_ENDS)  # (n, R)
     bending_load: np.ndarray = array(MOST_STATIONS, MOST_ENDS)  # (S, R), Pa/N, of the modes left out
@@ -55,17 +57,19 @@ class StressRows:
 
 @dataclass(frozen=True)
 class Derived:
-    """Constants of the kernels: n modes, S stations, N nodes; rows and columns in use come first."""
+    """Constants of the kernels: n modes, S stations, W watched nodes; what is in use comes first."""
 
     modes: int = integer(0, "per plane, the rigid ones and residual vectors included")
     stations: int = integer(0, "places that take a load")
     sensors: int = integer(0, "places that only tell their motion")
     nodes: int = integer(0, "of the finite elements")
+    watched: int = integer(0, "nodes whose stresses are followed")
+    most_modes: int = integer(0, "that can be kept")
     mass: float = real(0.0, "kg", "of the rotor")
     inertia: float = real(0.0, "kg.m2", "polar")
     own_damping_ratio: float = real(0.0, "1", "of the elastic modes, as the rotor's file says")
     damping_ratio: float = real(0.0, "1", "of the elastic modes; settled")
-    position: np.ndarray = array(MOST_NODES)  # of the nodes (N,), m
+    position: np.ndarray = array(MOST_WATCHED)  # of the watched nodes (W,), m
     stiffness: np.ndarray = array(MOST_MODES)  # omega^2 (n,), 1/s2
     damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega (n,), 1/s; settled
     reach: np.ndarray = array(MOST_MODES)  # largest deflection (n,), 1/kg^0.5
@@ -101,11 +105,13 @@ def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
         stations=len(shaft.stations),
         sensors=len(shaft.sensors),
         nodes=shaft.nodes,
+        watched=len(watched(shaft)),
+        most_modes=most_modes(shaft),
         mass=shaft.mass,
         inertia=shaft.polar_inertia,
         own_damping_ratio=shaft.damping_ratio,
         damping_ratio=0.0,
-        position=_room(shaft.positions(), MOST_NODES),
+        position=_room(shaft.positions()[np.array(watched(shaft)) - 1], MOST_WATCHED),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),
         stress=_stress_rows(shaft, kept),
@@ -162,14 +168,22 @@ def _unbalance(shaft: Shaft, kept: Basis) -> ModalUnbalance:
 
 def _stress_rows(shaft: Shaft, kept: Basis) -> StressRows:
     stresses = recovery(shaft, kept, [s.node for s in shaft.stations])
+    place = {node: i for i, node in enumerate(watched(shaft))}
+    rows = [i for i, node in enumerate(stresses.node) if node in place]
     return StressRows(
-        ends=len(stresses.node),
-        node=_room(stresses.node, MOST_ENDS),
-        bending=_room(stresses.bending.T, MOST_MODES, MOST_ENDS),
-        shear=_room(stresses.shear.T, MOST_MODES, MOST_ENDS),
-        bending_load=_room(stresses.bending_load.T, MOST_STATIONS, MOST_ENDS),
-        shear_load=_room(stresses.shear_load.T, MOST_STATIONS, MOST_ENDS),
+        ends=len(rows),
+        node=_room(stresses.node[rows], MOST_ENDS),
+        place=_room(np.array([place[node] for node in stresses.node[rows]]), MOST_ENDS),
+        bending=_room(stresses.bending[rows].T, MOST_MODES, MOST_ENDS),
+        shear=_room(stresses.shear[rows].T, MOST_MODES, MOST_ENDS),
+        bending_load=_room(stresses.bending_load[rows].T, MOST_STATIONS, MOST_ENDS),
+        shear_load=_room(stresses.shear_load[rows].T, MOST_STATIONS, MOST_ENDS),
     )
+
+
+def most_modes(shaft: Shaft) -> int:
+    """How many modes per plane can be kept: all, or `MOST_SOLVED`."""
+    return min(2 * shaft.nodes, MOST_SOLVED)
 
 
 def held_masses(shaft: Shaft) -> np.ndarray:

@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import linalg
+from scipy import linalg, sparse
+from scipy.sparse import linalg as splinalg
 
 from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams import beam
 from touchdown.rotor.beams.assembly import (
     TOO_UNLIKE,
     Matrices,
@@ -23,9 +25,11 @@ from touchdown.rotor.beams.assembly import (
     translation,
     unit_forces,
 )
+from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft
 
 RIGID = 2  # rigid modes per plane
+MOST_SOLVED = 128  # modes per plane of a long list of nodes
 NOTHING = 1e-7  # a residual vector this small against its node's deflection is rounding error
 DROWNED = 1e-11  # squared frequency over the highest; below, rounding errors show in the third digit
 PARALLEL = 1e-10  # squared sine below which residual vectors count as one
@@ -50,17 +54,19 @@ class Basis:
 
 
 def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
-    """The lowest `modes` modes of one plane, the two rigid ones included (0: all), and residual vectors.
+    """The lowest `modes` modes of one plane, the two rigid ones included, and residual vectors.
+
+    0: all, of which rotors with more than `MOST_SOLVED` have only so many here.
 
     `residual_at` are nodes (1-based) for whose forces the static flexibility shall be exact; what the
     modes leave nothing of, or what another node has brought already, is not added. Raises ModelError where
     there are not so many modes, or the elements are too unlike each other.
     """
-    most = 2 * shaft.nodes
+    most = min(2 * shaft.nodes, MOST_SOLVED)
     if modes != 0 and not RIGID <= modes <= most:
         raise ModelError(
-            f"modes = {modes}: the rotor {shaft.title} has {most} modes per plane; "
-            f"keep {RIGID} (rigid) to {most}, or 0 for all"
+            f"modes = {modes}: the rotor {shaft.title} has {most} modes per plane to keep; "
+            f"take {RIGID} (rigid) to {most}, or 0 for all of them"
         )
     matrices = assemble(shaft)
     shapes, omega = _free_modes(shaft, matrices, modes or most)
@@ -72,6 +78,11 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
     gyroscopic = shapes.T @ matrices.polar @ shapes
     gyroscopic[0, :] = gyroscopic[:, 0] = 0.0  # translation turns no section
     return Basis(shapes, omega, 0.5 * (gyroscopic + gyroscopic.T), kept)
+
+
+def fullest(shaft: Shaft, held_at: Sequence[int]) -> Basis:
+    """All modes; of a rotor with more than are kept, also residual vectors at the nodes `held_at`."""
+    return basis(shaft, 0, held_at if 2 * shaft.nodes > MOST_SOLVED else ())
 
 
 def rigid_modes(shaft: Shaft) -> np.ndarray:
@@ -113,13 +124,36 @@ def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarra
     rigid = rigid_modes(shaft)
     if count == RIGID:
         return rigid, np.zeros(RIGID)
-    square, bending = linalg.eigh(matrices.stiffness, matrices.mass)
-    if square[RIGID] < DROWNED * square[-1]:
+    square, bending, highest = _lowest(shaft, matrices, count)
+    if square[RIGID] < DROWNED * highest:
         raise ModelError(TOO_UNLIKE)
     bending = bending[:, RIGID:count]
     bending = bending - rigid @ (rigid.T @ (matrices.mass @ bending))
     elastic, omega = _ritz(matrices, bending)
     return np.hstack((rigid, elastic)), np.concatenate((np.zeros(RIGID), omega))
+
+
+def _lowest(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """Squared frequencies, ascending, and vectors (2N, ...) of `count` modes or more; the highest square.
+
+    Of many nodes the highest is that of the stiffest element by itself, which bounds it from above.
+    """
+    if 2 * shaft.nodes <= MOST_SOLVED:
+        square, vectors = linalg.eigh(matrices.stiffness, matrices.mass)
+        return square, vectors, float(square[-1])
+    K, M = (sparse.csc_array(matrix) for matrix in (matrices.stiffness, matrices.mass))
+    middle = shaft.elements[len(shaft.elements) // 2]
+    shift = (np.pi / shaft.positions()[-1]) ** 4 * middle.EI / middle.mass_per_length
+    start = np.cos(np.arange(2.0 * shaft.nodes))  # any vector that is always the same
+    square, vectors = splinalg.eigsh(K, count, M, sigma=-shift, v0=start)
+    order = np.argsort(square)
+    return square[order], vectors[:, order], max(_highest(element) for element in set(shaft.elements))
+
+
+def _highest(element: Element) -> float:
+    """Highest squared frequency of a free element."""
+    own = beam.matrices(element)
+    return float(linalg.eigh(own.stiffness, own.mass, eigvals_only=True)[-1])
 
 
 def _residual_vectors(

@@ -6,8 +6,9 @@ compression on the side of +y. The source prints (3.20) with the sign of -N'', t
 side of +y; here (3.19) holds.
 
 Shear (3.22): factor V / A of the core, with V = EI N''' q as in (3.10), V = M'. The factor is 4/3 for a
-solid section only; 4/3 (ro^2 + ro ri + ri^2) / (ro^2 + ri^2) for a hollow one. Where a sleeve carries a
-part of the moment, the core has the share of V that it has of EI.
+solid section only; 4/3 (ro^2 + ro ri + ri^2) / (ro^2 + ri^2) for a hollow one. Where a sleeve or a layer
+carries a part of the moment, the core has the share of V that it has of EI. A cone's moment is that of its
+middle section, whose shape functions it has; its stresses are those of the sections at its ends.
 
 Stresses of the two planes are the same matrices times the real (x) and imaginary (y) coordinates.
 """
@@ -20,7 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.shaft import Element, Shaft
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.modes import Basis, residual_flexibility
 
 
@@ -66,20 +68,22 @@ def stress_rows(shaft: Shaft) -> tuple[np.ndarray, np.ndarray]:
     rows = 2 * len(shaft.elements)
     bending, shear = np.zeros((rows, 2 * shaft.nodes)), np.zeros((rows, 2 * shaft.nodes))
     for i, element in enumerate(shaft.elements):
-        N = beam.shapes(element, np.array([0.0, element.length]))
-        here, dofs = slice(2 * i, 2 * i + 2), slice(2 * i, 2 * i + 4)
-        bending[here, dofs] = bending_per_moment(element) * element.EI * N.curvature
-        shear[here, dofs] = shear_per_force(element) * element.EI * N.third
+        core, dofs = element.parts[0], slice(2 * i, 2 * i + 4)
+        N = beam.shapes(core, np.array([0.0, element.length]))
+        for end in (0, 1):
+            section = core.section(end)
+            bending[2 * i + end, dofs] = bending_per_moment(section) * core.EI * N.curvature[end]
+            shear[2 * i + end, dofs] = shear_per_force(section) * core.EI * N.third[end]
     return bending, shear
 
 
 def bending_per_moment(element: Element) -> float:
-    """Stress at the core's outer radius per bending moment of the whole section (1/m3)."""
+    """Stress at the outer radius of a cylinder's core per bending moment of the whole section (1/m3)."""
     return 0.5 * element.outer_diameter * element.modulus / element.EI
 
 
 def shear_per_force(element: Element) -> float:
-    """Largest shear stress in the core per shear force of the whole section (1/m2)."""
+    """Largest shear stress in a cylinder's core per shear force of the whole section (1/m2)."""
     ro, ri = 0.5 * element.outer_diameter, 0.5 * element.inner_diameter
     factor = 4.0 / 3.0 * (ro**2 + ro * ri + ri**2) / (ro**2 + ri**2)
     return factor / element.area * element.core_EI / element.EI

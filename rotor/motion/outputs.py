@@ -75,9 +75,9 @@ def _publish_station(q, m, j, acceleration, alpha):
 
 @kernel
 def publish_constants(m):
-    """Outputs that stay: mass (kg), polar inertia (kg m2), positions of the nodes (m), and at stations."""
+    """Outputs that stay: mass (kg), polar inertia (kg m2), positions of nodes (m), and at stations."""
     m.o.mass, m.o.polar_inertia = m.d.mass, m.d.inertia
-    for i in range(m.d.nodes):
+    for i in range(m.d.watched):
         m.o.node[i].position = m.d.position[i]
     for j in range(m.d.stations):
         _publish_station_constants(m, j)

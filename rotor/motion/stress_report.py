@@ -4,7 +4,8 @@ They are looked at after every stride of the rotor, since a macro step may be lo
 
 sigma = r E Y'' (3.20, 3.21) and tau = 4/3 V/A (3.22, 3.23; solid sections) at both ends of every element,
 from the modal coordinates, and from the loads by what the modes left out would add (mode acceleration).
-A node's stress is the larger of its elements'. R: ends of the elements, two each.
+A node's stress is the larger of its elements'. R: ends of the elements at the nodes that are watched
+(`rotor.modal.watched`), two each but for the shaft's ends.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import integer, real
+from touchdown.modelkit.variables import SWITCH, choice, integer, real
 from touchdown.rotor.motion.state import modal
 
 
@@ -24,10 +25,8 @@ from touchdown.rotor.motion.state import modal
 class StressOptions:
     """What to compute of the stresses."""
 
-    active: int = integer(1, "0: no stresses are computed", minimum=0, maximum=1)
-    mode_acceleration: int = integer(
-        1, "1: loads add what the modes left out would; 0: kept modes only", minimum=0, maximum=1
-    )
+    active: int = choice(1, SWITCH, "whether stresses are computed")
+    mode_acceleration: int = choice(1, SWITCH, "loads add to the kept modes what those left out would")
     node: int = integer(
         0,
         "node whose vertical bending stress decides when the stresses along the rotor are kept; "
@@ -61,7 +60,7 @@ class NodeStress:
     shear_y: float = real(0.0, "Pa", "shear stress by vertical forces, when kept", local=True)
     peak_bending: float = real(0.0, "Pa", "largest bending stress since the start", local=True)
     peak_shear: float = real(0.0, "Pa", "largest shear stress since the start", local=True)
-    position: float = real(0.0, "m", "along the axis, from node 1", constant=True)
+    position: float = real(0.0, "m", "along the axis, from node 1", constant=True, shown="mm")
 
 
 class Along(NamedTuple):
@@ -159,7 +158,7 @@ def _largest(bending, shear, m):
     most_bending, most_shear, watched = Peak(0.0, 0), Peak(0.0, 0), 0.0
     for i in range(rows.ends):
         node = int(rows.node[i])
-        own = m.o.node[node - 1]
+        own = m.o.node[int(rows.place[i])]
         own.peak_bending = max(own.peak_bending, bending.both[i])
         own.peak_shear = max(own.peak_shear, shear.both[i])
         if bending.both[i] > most_bending.stress:
@@ -175,11 +174,11 @@ def _largest(bending, shear, m):
 def _keep(bending, shear, m):
     """Keep bending and shear (`Along` each) in m.o.node (Pa)."""
     rows = m.d.stress
-    for i in range(m.d.nodes):
+    for i in range(m.d.watched):
         o = m.o.node[i]
         o.bending_x, o.bending_y, o.shear_x, o.shear_y = 0.0, 0.0, 0.0, 0.0
     for i in range(rows.ends):
-        o = m.o.node[int(rows.node[i]) - 1]
+        o = m.o.node[int(rows.place[i])]
         o.bending_x, o.bending_y = _larger(o.bending_x, bending.x[i]), _larger(o.bending_y, bending.y[i])
         o.shear_x, o.shear_y = _larger(o.shear_x, shear.x[i]), _larger(o.shear_y, shear.y[i])
 

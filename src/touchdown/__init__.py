@@ -12,23 +12,29 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
+    from touchdown.master.api.machines import catalogue, new
+    from touchdown.master.api.report import animate, report
     from touchdown.master.api.rotor import Rotor
-    from touchdown.master.api.run import run
+    from touchdown.master.api.run import open_result, run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
-    from touchdown.master.api.studies import compare, sweep, verdict
+    from touchdown.master.api.studies import compare, merge, sweep, verdict
     from touchdown.master.common.ended import Ended
     from touchdown.master.common.errors import TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.rotor.beams.shaft import Element, PointMass, Station, Unbalance
+    from touchdown.master.studies.sweep.design import Design
+    from touchdown.rotor.beams.element import Element
+    from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
 
     __version__: str
 
 __all__ = [
+    "Design",
     "Element",
     "Ended",
     "PointMass",
@@ -38,14 +44,22 @@ __all__ = [
     "Scheme",
     "Station",
     "Stepper",
+    "Support",
     "TouchdownError",
     "Unbalance",
     "__version__",
+    "animate",
     "build",
+    "catalogue",
     "check",
     "compare",
+    "figure",
     "load",
+    "merge",
+    "new",
+    "open_result",
     "register_scheme",
+    "report",
     "run",
     "scenes",
     "sweep",
@@ -53,14 +67,21 @@ __all__ = [
 ]
 
 _HOMES = {
+    "figure": "master.api.figures",
     "build": "master.api.fmus",
     "check": "master.api.fmus",
+    "catalogue": "master.api.machines",
+    "new": "master.api.machines",
+    "animate": "master.api.report",
+    "report": "master.api.report",
     "Rotor": "master.api.rotor",
+    "open_result": "master.api.run",
     "run": "master.api.run",
     "load": "master.api.scenes",
     "scenes": "master.api.scenes",
     "register_scheme": "master.api.schemes",
     "compare": "master.api.studies",
+    "merge": "master.api.studies",
     "sweep": "master.api.studies",
     "verdict": "master.api.studies",
     "Ended": "master.common.ended",
@@ -69,9 +90,11 @@ _HOMES = {
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Element": "rotor.beams.shaft",
+    "Design": "master.studies.sweep.design",
+    "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",
+    "Support": "rotor.beams.shaft",
     "Unbalance": "rotor.beams.shaft",
 }
 

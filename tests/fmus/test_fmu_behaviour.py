@@ -201,7 +201,7 @@ def test_two_versions_in_one_process(alone: Alone, unpacked: Mapping[str, Path],
     shutil.copy(ROOT / "src" / "touchdown" / "__init__.py", package)
     for name in ("modelkit", "rotor", "bearings", "fmus"):
         shutil.copytree(ROOT / name, package / name, ignore=shutil.ignore_patterns("__pycache__"))
-    housing = package / "bearings" / "housing.py"
+    housing = package / "bearings" / "surroundings" / "housing.py"
     text = housing.read_text(encoding="utf-8")
     changed = text.replace("stiffness: float = real(", "stiffness: float = real(0.5 * ", 1)
     assert changed != text
@@ -422,7 +422,7 @@ def test_calls_out_of_order_are_refused(fmu: str, answers: Answers):
 
 
 @every_fmu
-def test_after_initialisation_only_inputs_can_be_set(fmu: str, answers: Answers):
+def test_after_initialisation_only_inputs_and_what_is_tunable_can_be_set(fmu: str, answers: Answers):
     """The value stays, the log names the variable, and the instance does not go on."""
     found = answers(fmu)["set_too_late"]
     assert found["tried"] > 5

@@ -18,7 +18,7 @@ from fmpy.validation import validate_fmu
 from slave_driver import Slave
 
 from touchdown.fmus.build import build
-from touchdown.fmus.description import base_unit, causality
+from touchdown.fmus.description import base_unit, causality, describe
 from touchdown.fmus.recipes import names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot, slots
@@ -105,6 +105,49 @@ def test_speeds_are_shown_in_revolutions_per_minute(fmu: str, xml: Element):
         assert float(shown[0].attrib["factor"]) * 2 * math.pi / 60 == pytest.approx(1.0, rel=1e-15)
 
 
+def test_values_are_shown_in_units_that_people_think_in():
+    """By their size: a radius in mm, a play in um."""
+    shown = {}
+    for name in ("simplified_caged", "amb", "rotor_I"):
+        root = describe(recipe(name).model, name, {})
+        shown |= {a["name"]: kind.get("displayUnit", kind.get("unit")) for a, kind in scalars(root)}
+    expected = {
+        "journal_radius": "mm", "balls.play": "um", "journal.x": "um", "balls.first_angle": "deg",
+        "journal.omega": "rpm", "speed": "rpm", "bandwidth": "rad/s", "stiffness": "kN/m",
+        "shutdown_time": "ms", "micro_step": "us", "balls.modulus": "GPa", "stress.bending": "MPa",
+        "ring.mass": "g", "ring.inertia": "kg.mm2", "node[1].position": "mm", "contact.force": "N",
+    }  # fmt: skip
+    assert {name: shown[name] for name in expected} == expected
+
+
+@every_fmu
+def test_choices_are_enumerations(fmu: str, xml: Element):
+    """Words for all whole numbers between the bounds, which are what FMI sets."""
+    types = {t.attrib["name"]: t[0] for t in xml.iterfind("TypeDefinitions/SimpleType")}
+    chosen = {a["name"]: kind for a, kind in scalars(xml) if kind.tag == "Enumeration"}
+    assert {kind.attrib["declaredType"] for kind in chosen.values()} == set(types)
+    for name, kind in chosen.items():
+        items = {int(i.attrib["value"]): i.attrib["name"] for i in types[kind.attrib["declaredType"]]}
+        assert list(items) == list(range(int(kind.attrib["max"]) + 1)), name
+        assert kind.attrib["min"] == "0"
+        assert int(kind.attrib["start"]) in items
+        assert len(set(items.values())) == len(items)
+
+
+def test_no_choice_is_left_a_number():
+    """What is described as one thing or another is an enumeration."""
+    told = re.compile(r"\b[01]:? \w")
+    integers = [
+        (fmu, slot.variable.name)
+        for fmu in names()
+        for slot in slots(recipe(fmu).model)
+        if slot.variable.spec.kind == "integer" and slot.causality == "parameter"
+        if slot.variable.spec.choices is None and told.search(slot.variable.spec.meaning)
+    ]
+    # how many there are, with a word for none
+    assert {name for _, name in integers} <= {"modes", "stress.node"}
+
+
 @every_fmu
 def test_every_variable_is_described(fmu: str, xml: Element):
     assert [a["name"] for a, _ in scalars(xml) if not a.get("description", "").strip()] == []
@@ -138,7 +181,7 @@ def test_start_values_are_those_the_fmu_starts_with(fmu: str, unpacked: Mapping[
 @every_fmu
 def test_roles(fmu: str, xml: Element):
     roles = {
-        "parameter": {("fixed", "exact")},
+        "parameter": {("fixed", "exact"), ("tunable", "exact")},
         "calculatedParameter": {("fixed", "calculated")},
         "input": {("continuous", None), ("discrete", None)},
         "output": {("continuous", "calculated"), ("discrete", "calculated")},
@@ -312,24 +355,26 @@ def test_units_are_given_in_base_units(fmu: str, xml: Element):
 # -- reproducibility ---------------------------------------------------------------------------------
 
 
-def build_elsewhere(fmu: str, folder: Path) -> Path:
-    """Build `fmu` in another process, from another working directory and with another hash seed."""
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """FMUs built in another process, from another working directory and with another hash seed."""
     script = """
-import pathlib, sys
+import pathlib
 from touchdown.fmus.build import build
-from touchdown.fmus.recipes import recipe
-build(recipe(sys.argv[1]), pathlib.Path('.'))
+from touchdown.fmus.recipes import names, recipe
+for name in names():
+    build(recipe(name), pathlib.Path('.'))
 """
-    environment = {**os.environ, "PYTHONHASHSEED": "4711"}
-    subprocess.run([sys.executable, "-c", script, fmu], cwd=folder, env=environment, check=True)
-    return folder / f"{fmu}.fmu"
+    folder, environment = tmp_path_factory.mktemp("elsewhere"), {**os.environ, "PYTHONHASHSEED": "4711"}
+    subprocess.run([sys.executable, "-c", script], cwd=folder, env=environment, check=True)
+    return folder
 
 
 @every_fmu
-def test_building_again_gives_equal_bytes(fmu: str, built: Mapping[str, Path], tmp_path: Path):
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
+def test_building_again_gives_equal_bytes(
+    fmu: str, built: Mapping[str, Path], elsewhere: Path, tmp_path: Path
+):
     here = build(recipe(fmu), tmp_path / "here").read_bytes()
     assert here == built[fmu].read_bytes()
-    assert here == build_elsewhere(fmu, elsewhere).read_bytes()
+    assert here == (elsewhere / f"{fmu}.fmu").read_bytes()
     assert [path.name for path in (tmp_path / "here").iterdir()] == [f"{fmu}.fmu"]

@@ -168,7 +168,7 @@ REASONS = {  # what the log says of some
     "read an unknown reference": "value reference 123456789",
     "complete with a bad parameter": "clearance = -1 m must be above 0 m",
     "read what a bad parameter makes": "clearance = -1 m must be above 0 m",
-    "set a fixed parameter": "clearance cannot be set as real now; parameters are fixed",
+    "set a fixed parameter": "clearance cannot be set as real now; parameters that are not",
     "step back": "the last step ended at 2e-05 s",
     "step one that failed": "stopped before: cannot step",
     "take bytes that were changed": "not one of this FMU, or was changed",

@@ -14,7 +14,8 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.rotor.beams.shaft import Element, Shaft, cowper
+from touchdown.rotor.beams.element import Element, cowper
+from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis

@@ -222,7 +222,7 @@ def out_of_bounds(slave: Slave) -> list[tuple[str, float]]:
     found: list[tuple[str, float]] = []
     for name in slave.named("parameter"):
         variable = slave.variables[name]
-        whole = variable.type == "Integer"
+        whole = variable.type != "Real"
         if variable.min is not None:
             found.append((name, int(variable.min) - 1 if whole else float(variable.min) - 1.0))
         if variable.max is not None:
@@ -252,13 +252,15 @@ def bad_parameters(folder: str, _: str) -> dict[str, Any]:
 
 
 def set_too_late(folder: str, _: str) -> dict[str, Any]:
-    """Variables other than inputs that can be set after initialisation."""
+    """Variables other than inputs and tunable parameters that can be set after initialisation."""
     names = names_of(folder, "parameter", "output", "local", "calculatedParameter")
     wrong = []
     for name in names:
         slave = started(folder, 1)
         before = slave.get([name])
         variable = slave.variables[name]
+        if variable.variability == "tunable":
+            continue
         write = slave.fmu.setReal if variable.type == "Real" else slave.fmu.setInteger
         answered = slave.refuses(write, [variable.valueReference], [1])
         kept = slave.get([name]) == before

@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass
 
 from touchdown.bearings.contact.stiffness import EXACT
-from touchdown.modelkit.variables import integer, real
+from touchdown.modelkit.variables import SWITCH, Choices, choice, integer, real
 
 MOST_BALLS = 32  # room in the state vector
+INTEGRALS = Choices("EllipticIntegrals", ("exact", "printed"), ("", "as the source prints them (2.46)"))
 
 
 @dataclass(frozen=True)
@@ -29,12 +30,7 @@ class BallSet:
     outer_conformity: float = real(
         0.0, "1", "the same of the outer race; 0: as of the inner one", minimum=0.0, maximum=2.0
     )
-    hertz: int = integer(
-        EXACT,
-        "elliptic integrals of the race contacts: 0 exact, 1 as the source prints them (2.46)",
-        minimum=0,
-        maximum=1,
-    )
+    hertz: int = choice(EXACT, INTEGRALS, "elliptic integrals of the race contacts")
     modulus: float = real(207e9, "Pa", "modulus of elasticity of balls and rings", above=0.0)
     poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
     density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
@@ -67,12 +63,11 @@ class FreeBallSet(BallSet):
         minimum=0.0,
         maximum=1.0,
     )
-    crowded: int = integer(
+    crowded: int = choice(
         0,
-        "1: more balls are admitted than fit, evenly pressed into each other at the start, as the source's "
+        SWITCH,
+        "more balls are admitted than fit, evenly pressed into each other at the start, as the source's "
         "Table 1 has them",
-        minimum=0,
-        maximum=1,
     )
 
 

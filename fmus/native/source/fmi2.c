@@ -203,6 +203,19 @@ static Status derive(Fmu *f)
     return OK;
 }
 
+/* The same for a started model, whose state has more in use than `settle` knows of: it stays what it is. */
+static Status derive_again(Fmu *f)
+{
+    const size_t size = MODEL.derived * sizeof(double);
+    double *kept = malloc(size);
+    if (!kept) return explain(f, SAY_NO_MEMORY);
+    memcpy(kept, f->words, size);
+    Status status = derive(f);
+    memcpy(f->words, kept, size);
+    free(kept);
+    return status;
+}
+
 /* State and outputs from parameters and inputs; what is wrong is noted, no more. */
 static Status refresh(Fmu *f)
 {
@@ -371,7 +384,7 @@ API Status fmi2DoStep(Fmu *f, double time, double step, int no_set_state_before)
     if (life->phase != STEPPING) return FAIL(f, life->phase == ENDED ? SAY_ENDED : SAY_NOT_STARTED);
     if (fabs(time - life->end) > LATE * step) return FAIL(f, SAY_APART, time, step, life->end);
     if (!(step > 0.0) || !isfinite(step) || !isfinite(time)) return FAIL(f, SAY_NO_STEP, plain(time), plain(step));
-    if (f->outdated && derive(f)) return fail(f);
+    if (f->outdated && derive_again(f)) return fail(f);
     int64_t status = advance(f->words, f->scratch, time, step);
     if (status) return stop(f, explain_step(f, status, time, step));
     life->end = time + step;
@@ -390,7 +403,8 @@ static int allowed(const Reference *vr, size_t count, int needed)
 {
     for (size_t i = 0; i < count; i++) {
         int access = vr[i] < MODEL.hidden ? MODEL.access[vr[i]] : 0;
-        if (!(access & needed & (REAL | INTEGER)) || !(access & needed & (PARAMETER | INPUT | OUTPUT))) return 0;
+        if (!(access & needed & (REAL | INTEGER))) return 0;
+        if (!(access & needed & (PARAMETER | INPUT | OUTPUT | TUNABLE))) return 0;
     }
     return 1;
 }
@@ -434,7 +448,16 @@ static Status refuse(Fmu *f, const char *format, const Reference *vr, size_t cou
 /* What may be set now. */
 static int settable(const Fmu *f)
 {
-    return f->life.phase < STEPPING ? PARAMETER | INPUT : INPUT;
+    return f->life.phase < STEPPING ? PARAMETER | INPUT : TUNABLE | INPUT;
+}
+
+/* Note that values were set. */
+static Status changed(Fmu *f, const Reference *vr, size_t count)
+{
+    f->stale = 1;
+    if (f->life.phase >= STEPPING)
+        for (size_t i = 0; i < count; i++) f->outdated |= !!(MODEL.access[vr[i]] & PARAMETER);
+    return OK;
 }
 
 /* See that the variables of these kinds can be read and have values: outputs have none before initialisation
@@ -453,8 +476,7 @@ API Status fmi2SetReal(Fmu *f, const Reference vr[], size_t count, const double 
     int needed = REAL | settable(f);
     if (!allowed(vr, count, needed)) return refuse(f, SAY_SET_LATE, vr, count, needed, "real");
     for (size_t i = 0; i < count; i++) f->words[vr[i]] = values[i];
-    f->stale = 1;
-    return OK;
+    return changed(f, vr, count);
 }
 
 API Status fmi2GetReal(Fmu *f, const Reference vr[], size_t count, double values[])
@@ -472,8 +494,7 @@ API Status fmi2SetInteger(Fmu *f, const Reference vr[], size_t count, const int 
         int64_t value = values[i];
         memcpy(f->words + vr[i], &value, sizeof value);
     }
-    f->stale = 1;
-    return OK;
+    return changed(f, vr, count);
 }
 
 API Status fmi2GetInteger(Fmu *f, const Reference vr[], size_t count, int values[])

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 enum { REAL = 1, INTEGER = 2, PARAMETER = 4, INPUT = 8, OUTPUT = 16 }; /* a kind and a causality */
+enum { TUNABLE = 32 };                                                   /* of a parameter */
 
 typedef struct {
     const char *name, *unit; /* the unit with a space before it, or empty */

@@ -7,10 +7,11 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections import Counter, deque
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from multiprocessing import connection
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
@@ -18,8 +19,12 @@ from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_ignored
 from touchdown.master.common.processes.orphans import die_with_parent
+from touchdown.master.common.processes.watched import way_of
 
 GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
+TRIES = 2  # of a task whose process is killed: it may be to blame, or the machine
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Of linear algebra: one each, since processes share the cores, and sums then have one order."""
 
 Task = TypeVar("Task")
 Value = TypeVar("Value")
@@ -50,28 +55,23 @@ def run_all(
 ) -> list[TaskOutcome[Value]]:
     """How each task ended, `jobs` at a time in processes that import `work`.
 
-    After each that ended, heard(place of the task, how) and done(). A task that raises has failed, and one
-    whose process dies; the others go on. After Ctrl-C those that have not ended are INTERRUPTED. The
-    processes end with this one, however it ends. A script that calls it needs
-    `if __name__ == "__main__":`.
+    After each that ended, heard(place of the task, how) and done(). A task that raises has STOPPED. One
+    whose process is killed is tried once more and then has DIED; the others do not notice. After Ctrl-C
+    those that have not ended are INTERRUPTED. The processes end with this one, however it ends. A script
+    that calls it needs `if __name__ == "__main__":`.
     """
     _refuse_importing_script()
     ended: dict[int, TaskOutcome[Value]] = {}
-
-    def note(place: int, outcome: TaskOutcome[Value]) -> None:
-        ended[place] = outcome
-        heard(place, outcome)
-        done()
-
-    left = dict(enumerate(tasks))
+    crew = _Crew(work, tasks, max(1, min(jobs, len(tasks))))
     try:
-        while left:
-            for place in _run_pool(work, left, jobs, note):  # which one it was shows alone
-                if _run_pool(work, {place: left[place]}, 1, note):
-                    note(place, TaskOutcome(None, Ended.STOPPED, "its process died"))
-            left = {place: task for place, task in left.items() if place not in ended}
+        for place, outcome in crew.outcomes():
+            heard(place, outcome)
+            ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
+            done()
     except KeyboardInterrupt:
         pass
+    finally:
+        crew.dismiss()
     return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
 
 
@@ -88,55 +88,151 @@ def _refuse_importing_script() -> None:
         )
 
 
-def _run_pool(
-    work: Callable[[Any], Value],
-    tasks: Mapping[int, Any],
-    jobs: int,
-    note: Callable[[int, TaskOutcome[Value]], object],
-) -> list[int]:
-    """Run tasks and note how they ended.
+# -- in the processes --------------------------------------------------------------------------------
 
-    A process that dies takes its pool along: returned are those that were under way then, else nothing.
-    """
-    others = set(multiprocessing.active_children())
-    context, jobs = multiprocessing.get_context("spawn"), max(1, min(jobs, len(tasks)))
-    pool = ProcessPoolExecutor(jobs, context, die_with_parent, (os.getpid(),))
-    waiting = list(tasks)
-    running: dict[Future[Value], int] = {}
-    begun: set[int] = set()  # and not ended
+
+def tried(work: Callable[[Any], Value], task: Any) -> TaskOutcome[Value]:
+    """What `work` gives for a task, or why it gives nothing."""
     try:
-        while waiting or running:
-            while waiting and len(running) < jobs:  # a queue in the pool would go on after Ctrl-C
-                place = waiting.pop(0)
-                begun.add(place)
-                with interrupts_ignored():
-                    running[pool.submit(work, tasks[place])] = place
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
-                outcome = _outcome(future)
-                place = running.pop(future)
-                begun.remove(place)
-                note(place, outcome)
-    except BrokenProcessPool:
-        pass
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        _end([child for child in multiprocessing.active_children() if child not in others])
-        raise
-    pool.shutdown()
-    return sorted(begun)
-
-
-def _outcome(future: Future[Value]) -> TaskOutcome[Value]:
-    """What a task's process handed back; raises BrokenProcessPool where it died."""
-    try:
-        return TaskOutcome(future.result())
-    except BrokenProcessPool:
-        raise
+        return TaskOutcome(work(task))
     except KeyboardInterrupt:  # the task's own: its run was interrupted
         return INTERRUPTED
-    except Exception as error:
-        what = str(error) if isinstance(error, TouchdownError) else f"{type(error).__name__}: {error}"
-        return TaskOutcome(None, Ended.STOPPED, what)
+    except (Exception, SystemExit) as error:
+        return _stopped(error)
+
+
+def _stopped(error: BaseException) -> TaskOutcome[Any]:
+    what = str(error) if isinstance(error, TouchdownError) else f"{type(error).__name__}: {error}"
+    return TaskOutcome(None, Ended.STOPPED, what)
+
+
+def _serve(work: Callable[[Any], Any], pipe: connection.Connection, parent: int) -> None:
+    """Do tasks as they come through the pipe, until it is closed."""
+    die_with_parent(parent)
+    with suppress(EOFError, OSError):  # the other end is closed: nobody wants more
+        pipe.send(None)  # this process has begun
+        while True:
+            try:
+                outcome = tried(work, pipe.recv())
+            except EOFError:
+                raise
+            except Exception as error:  # a task that cannot be read here
+                outcome = _stopped(error)
+            pipe.send(outcome)
+
+
+# -- in the process that starts them -----------------------------------------------------------------
+
+
+class _Worker:
+    """A process, and the task that it does."""
+
+    def __init__(self, work: Callable[[Any], Any]) -> None:
+        context = multiprocessing.get_context("spawn")
+        self.pipe, there = context.Pipe()
+        self.place = -1  # of its task
+        self.begun = False
+        self.process = context.Process(target=_serve, args=(work, there, os.getpid()))
+        with interrupts_ignored(), _one_thread():
+            self.process.start()
+        there.close()
+
+    def give(self, place: int, task: object) -> None:
+        """Have it do the task at `place`."""
+        self.place = place
+        with suppress(OSError):  # it died: that is heard when it is waited for
+            self.pipe.send(task)
+
+    def heard(self) -> TaskOutcome[Any] | None:
+        """What its task gave; None where it had only begun. Raises EOFError where it died."""
+        try:
+            if self.pipe.poll():
+                outcome = self.pipe.recv()
+                self.begun = True
+                return outcome
+        except (EOFError, OSError):
+            pass
+        else:
+            if self.process.is_alive():
+                return None
+        self.process.join()
+        self.pipe.close()
+        raise EOFError
+
+
+class _Crew(Generic[Value]):
+    """Processes that do tasks."""
+
+    def __init__(self, work: Callable[[Any], Value], tasks: Sequence[Any], jobs: int) -> None:
+        self._work, self._tasks, self._jobs = work, tasks, jobs
+        self._waiting = deque(range(len(tasks)))
+        self._tries: Counter[int] = Counter()
+        self._idle: list[_Worker] = []
+        self._busy: list[_Worker] = []
+
+    def outcomes(self) -> Iterator[tuple[int, TaskOutcome[Value]]]:
+        """The place of every task, and how it ended, as they end."""
+        while self._waiting or self._busy:
+            while self._waiting and len(self._busy) < self._jobs:
+                worker = self._idle.pop() if self._idle else _Worker(self._work)
+                self._busy.append(worker)
+                place = self._waiting.popleft()
+                worker.give(place, self._tasks[place])
+            stirred = connection.wait([s for w in self._busy for s in (w.pipe, w.process.sentinel)])
+            for worker in list(self._busy):
+                if worker.pipe in stirred or worker.process.sentinel in stirred:
+                    yield from self._hear(worker)
+
+    def _hear(self, worker: _Worker) -> Iterator[tuple[int, TaskOutcome[Value]]]:
+        place = worker.place
+        try:
+            outcome = worker.heard()
+        except EOFError:
+            self._busy.remove(worker)
+            yield from self._bury(worker)
+            return
+        if outcome is not None:
+            self._busy.remove(worker)
+            self._idle.append(worker)
+            yield place, outcome
+
+    def _bury(self, worker: _Worker) -> Iterator[tuple[int, TaskOutcome[Value]]]:
+        """Have the task of one that died done by another, once; none, where processes cannot begin."""
+        place, code = worker.place, worker.process.exitcode or 0
+        self._tries[place] += 1
+        if not worker.begun and code >= 0:  # by itself, and so would all others
+            why = f"its process {way_of(code)} before it began"
+            lost = [place, *self._waiting]
+            self._waiting.clear()
+            yield from ((one, TaskOutcome(None, Ended.DIED, why)) for one in lost)
+        elif self._tries[place] < TRIES:
+            self._waiting.appendleft(place)
+        else:
+            yield place, TaskOutcome(None, Ended.DIED, f"its process {way_of(code)}, twice")
+
+    def dismiss(self) -> None:
+        """End all processes, those that are at work in order."""
+        for worker in (*self._idle, *self._busy):
+            worker.pipe.close()
+        if self._busy:
+            _end([worker.process for worker in (*self._busy, *self._idle)])
+        for worker in self._idle:
+            worker.process.join()
+
+
+@contextmanager
+def _one_thread() -> Generator[None]:
+    """Processes started meanwhile have one thread for linear algebra."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 def _end(processes: Sequence[BaseProcess]) -> None:

@@ -48,8 +48,15 @@ def _set(binding: Element, folder: Path, where: str) -> list[Value]:
     kind = binding.get("type", SET_TYPE)
     if kind != SET_TYPE:
         raise TouchdownError(f"{where}: the type {kind} is not supported, only {SET_TYPE} is")
-    if content is None:
-        return []
+    return [] if content is None else _parameters(content, where)
+
+
+def parameters(path: Path, where: str) -> list[Value]:
+    """What a parameter set in a file of its own gives."""
+    return _parameters(xml.read_xml(path, where, "ssv:ParameterSet"), where)
+
+
+def _parameters(content: Element, where: str) -> list[Value]:
     units = xml.unit_definitions(content, "ssv:Units", where)
     return [_value(p, units, where) for p in xml.children(content, "ssv:Parameters/ssv:Parameter")]
 

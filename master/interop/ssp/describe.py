@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 from touchdown.fmus.version import VERSION
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import Unit
-from touchdown.master.components.component import Component, Kind
+from touchdown.master.components.component import WHOLE, Component, Kind
 from touchdown.master.coupling.connections import Connection
 from touchdown.master.coupling.system import System
 from touchdown.master.interop.packing import changes, start_values
@@ -167,8 +167,13 @@ def _connector(connectors: Element, component: Component, name: str, units: Mapp
 
 
 def _type(component: Component, name: str, units: Mapping[str, Unit]) -> tuple[Kind, dict[str, str]]:
-    """A variable's type, and its unit where it is one of `units`."""
+    """A variable's type, and its unit where it is one of `units`.
+
+    Enumerations are given as integers, as FMI 2.0 sets them: few tools read SSP's own.
+    """
     variable = component.variable(name)
+    if variable.kind in WHOLE:
+        return Kind.INTEGER, {}
     unit = variable.unit or ""
     known = variable.kind is Kind.REAL and unit in units and component.units.get(unit) == units[unit]
     return variable.kind, {"unit": unit} if known else {}

@@ -34,18 +34,30 @@ def child(element: Element, path: str) -> Element | None:
 
 def read_xml(path: Path, where: str, root: str) -> Element:
     """The root element of a file, which must be `root` (PREFIX:NAME). Raises TouchdownError."""
+    element = _read(path, where)
+    if element.tag != tag(root):
+        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP")
+    return element
+
+
+def read_plain(path: Path, where: str, root: str) -> Element:
+    """The same of a file whose names are in no namespace."""
+    element = _read(path, where)
+    if element.tag != root:
+        raise TouchdownError(f"{where}: its root is {element.tag}, not {root}")
+    return element
+
+
+def _read(path: Path, where: str) -> Element:
     try:
         refuse_definitions(path)
-        element = fromstring(path.read_bytes())
+        return fromstring(path.read_bytes())
     except OSError as error:
         raise TouchdownError(f"{where}: cannot read it ({error.strerror})") from None
     except DocumentTypeError as error:
         raise TouchdownError(f"{where}: {error}; refused") from None
     except (ParseError, ExpatError, ValueError, LookupError) as error:
         raise TouchdownError(f"{where}: it is not valid XML ({error})") from None
-    if element.tag != tag(root):
-        raise TouchdownError(f"{where}: its root is {element.tag}, not {root} of SSP")
-    return element
 
 
 def required(element: Element, name: str, where: str) -> str:

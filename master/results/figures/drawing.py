@@ -20,13 +20,16 @@ from touchdown.master.results.figures.motion import distance, paths, slowing, sp
 from touchdown.master.results.figures.orbits import orbits
 from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
 from touchdown.master.results.figures.stress import has_stress, stress
-from touchdown.master.results.figures.style import sheet
+from touchdown.master.results.figures.style import darkened, sheet, styled
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
 from touchdown.master.results.recording import NotRecordedError
 from touchdown.master.results.stresses import stressed
 from touchdown.master.results.summary import energy_total, is_heard, touchdown_seats
 
 Picture = tuple[str, Callable[[Figure], object]]  # name of the file, and what draws it on an empty figure
+
+
+DPI = 110
 
 
 @dataclass(frozen=True)
@@ -54,16 +57,21 @@ NAMES = (*(picture.name for picture in OF_BEARING), "orbits", "stress", "energy"
 """Of all files, before the component that some have at the end."""
 
 
-def draw_all(run: Finished, folder: Path) -> list[Path]:
-    """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files."""
+def draw_all(run: Finished, folder: Path, dark: bool = False) -> list[Path]:
+    """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files.
+
+    dark: on a dark ground.
+    """
     made: list[Path] = []
     for name, draw in _pictures(run):
-        with suppress(NotRecordedError):
+        with suppress(NotRecordedError), styled():
             figure = sheet()
             draw(figure)
+            if dark:
+                darkened(figure)
             path = folder / f"{name}.png"
             with replacing(path) as part:
-                figure.savefig(part, dpi=110, format="png")
+                figure.savefig(part, dpi=DPI, format="png")
             made.append(path)
     return made
 

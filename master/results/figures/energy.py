@@ -9,13 +9,24 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.ending import Finished
-from touchdown.master.results.figures.style import BLACK, BLUE, COLOURS, TIME, WIDTH, sized, thinned
+from touchdown.master.results.figures.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    SKY,
+    TIME,
+    WIDTH,
+    YELLOW,
+    sized,
+    thinned,
+)
 from touchdown.master.results.summary import energy_total
 
-PALETTE = (*COLOURS, BLACK, "#56b4e9", "#e69f00")  # one per component
+PALETTE = (*COLOURS, BLACK, SKY, YELLOW)  # one per component
 MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pairs repeat late
 STYLES = {"kinetic": "-", "potential": "--", "dissipated": ":"}
 SMALL = 1e-3  # of the largest change; less is named, not drawn
+MOST_NAMES = 22  # in a column of the legend
 APART = 0.12  # of the panel's diagonal, between two marks of a curve
 
 
@@ -26,7 +37,7 @@ def energy(figure: FigureBase, run: Finished) -> list[Axes]:
     energy. What changes by less than SMALL of the largest is named above the panel.
     """
     system, recording = run.system, run.recording
-    flows, check = sized(figure, 13, 5).subplots(1, 2)
+    flows, check = sized(figure, 15, 5.5).subplots(1, 2)
     changes = {
         (name, kind): recording[f"{name}.energy.{kind}"] - recording[f"{name}.energy.{kind}"][0]
         for name in system.components
@@ -64,8 +75,16 @@ def _draw(axes: Axes, time: np.ndarray, changes: Mapping[tuple[str, str], np.nda
                 lw=WIDTH,
                 label=f"{name} {kind}",
             )
-    if axes.lines:
-        axes.legend(fontsize="small")
+    _name(axes)
     small = [f"{name} {kind}" for name, kind in changes if 0.0 < size[name, kind] <= least]
     if small:
         axes.set_title(f"below {least:.1g} J: {', '.join(small)}", fontsize="x-small", wrap=True)
+
+
+def _name(axes: Axes) -> None:
+    """The legend to the right of the panel, in the order in which the curves end there."""
+    lines = sorted(axes.lines, key=lambda line: -float(np.asarray(line.get_ydata())[-1]))
+    if lines:
+        columns = 1 + (len(lines) - 1) // MOST_NAMES
+        beside = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
+        axes.legend(handles=lines, ncols=columns, **beside)

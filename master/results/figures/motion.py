@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
@@ -19,9 +20,7 @@ from touchdown.master.results.figures.style import (
     ORANGE,
     PURPLE,
     TIME,
-    Curve,
     beginning,
-    present,
     sized,
     thinned,
     within,
@@ -31,13 +30,44 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.summary import RPM, relative_orbit
 
 UM = 1e6
-SPEEDS = (  # in the order they are drawn: what varies most first
-    Curve("hardest.speed", "hardest-hit ball, spin", GREY),
-    Curve("speed.cage", "cage", BLUE),
-    Curve("speed.orbit", "balls, mean orbit", GREEN, 1.8),  # often hidden by the next
-    Curve("speed.ball", "balls, mean spin", PURPLE),
-    Curve("speed.ring", "inner race / 2", ORANGE),
-    Curve("speed.rotor", "rotor / 2, at the race", BLACK),
+ROTOR, ROLLING = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Something that turns: its variable (rad/s, or m/s on a diameter), and how it is drawn."""
+
+    variable: str
+    label: str
+    colour: str
+    on: str = ""  # the diameter
+    width: float = 1.0
+    line: str = "-"
+
+
+GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so that what coincides is seen
+    (
+        "rotor, ring",
+        (
+            Turn("ring.omega", "inner ring", ORANGE, width=2.0),
+            Turn(ROLLING, "inner ring without slip", BLUE, line="--"),
+            Turn(ROTOR, "rotor", BLACK, line="--"),
+        ),
+    ),
+    (
+        "round the axis",
+        (
+            Turn("speed.orbit", "balls, mean", GREEN, "balls.pitch_diameter", width=2.0),
+            Turn("speed.cage", "cage", BLUE, "balls.pitch_diameter", line="--"),
+        ),
+    ),
+    (
+        "spin of the balls",
+        (
+            Turn("hardest.speed", "ball hit hardest", GREY, "balls.diameter"),
+            Turn("speed.ball", "balls, mean", PURPLE, "balls.diameter", width=1.4),
+        ),
+    ),
 )
 SPUN_UP = 1.5  # times the ring's first synchronism: here the zoom on the spin-up ends
 
@@ -77,35 +107,71 @@ def paths(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
 
 
 def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
-    """Circumferential speeds while the ring is spun up, from then on, and at last (Figs 25, 26)."""
-    recording = run.recording
-    time = recording.time
+    """Speeds [rpm] of rotor and ring, of cage and balls round the axis, and of the balls' spin.
+
+    While the ring is spun up, from then on, and at last. Balls spin against the ring; here they have its
+    sign.
+    """
+    time = run.recording.time
     spun_up = SPUN_UP * _sync(run, a)
     spans = zooms(time, spun_up)
-    curves = present(recording, a.bearing, SPEEDS)
-    values = {c.label: recording[f"{a.bearing}.{c.variable}"] for c in curves}
-    settled = time >= spun_up
-    sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 5.6)
-    row = list(figure.subplots(1, len(spans), squeeze=False)[0])
-    for axes, span in zip(row, spans, strict=True):
-        part = within(time, span)
-        for c in curves:
-            shown = thinned(time[part], values[c.label][part])
-            axes.plot(*shown, color=c.colour, lw=c.width, label=c.label)
-        whole = span == (beginning(time), float(time[-1]))
-        zoomed = whole and int(np.sum(settled)) > 1
-        if zoomed:
-            _zoom(axes, [v[settled] for v in values.values()])
-        axes.set_title(_title(span, spans, whole, zoomed))
-        axes.set_xlim(*span)
-        axes.set_xlabel(TIME)
-        axes.set_ylabel("circumferential speed [m/s]")
-        axes.ticklabel_format(useOffset=False)
-    handles, labels = row[0].get_legend_handles_labels()
-    columns = min(len(curves), 3 * len(spans))
-    figure.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=columns)
+    zoomed = int(np.sum(time >= spun_up)) > 1
+    groups = [(title, shown) for title, turns in GROUPS if (shown := _turning(run, a, turns))]
+    sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 1.2 + 2.4 * len(groups))
+    grid = figure.subplots(len(groups), len(spans), squeeze=False, sharex="col")
+    for row, (title, shown) in zip(grid, groups, strict=True):
+        for axes, span in zip(row, spans, strict=True):
+            _draw_speeds(axes, time, shown, span)
+            if zoomed and _is_whole(span, time):
+                _zoom(axes, [values[time >= spun_up] for _, values in shown])
+        row[0].set_ylabel(f"{title} [rpm]")
+        row[0].legend(*_reversed_legend(row[0]), loc="lower right")
+    for head, foot, span in zip(grid[0], grid[-1], spans, strict=True):
+        head.set_title(_title(span, spans, _is_whole(span, time), zoomed))
+        foot.set_xlabel(TIME)
     figure.suptitle(run.scene.title)
-    return row
+    return list(grid.flat)
+
+
+def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tuple[Turn, np.ndarray]]:
+    """Those of `turns` that were recorded, with their values (rpm)."""
+    shown: list[tuple[Turn, np.ndarray]] = []
+    for turn in turns:
+        of_rotor = turn.variable in (ROTOR, ROLLING)
+        name = a.motion("omega") if of_rotor else f"{a.bearing}.{turn.variable}"
+        if name in run.recording:
+            shown.append((turn, RPM * run.recording[name] / _radius(run, a, turn)))
+    return shown
+
+
+def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
+    """By what a variable is divided to be the spin: the radius (m) of a speed in m/s, or a ratio."""
+    value = run.system.value
+    if turn.variable == ROLLING:
+        journal = value(f"{a.bearing}.journal_radius")
+        return (journal + value(f"{a.bearing}.clearance")) / journal
+    return 0.5 * value(f"{a.bearing}.{turn.on}") if turn.on else 1.0
+
+
+def _draw_speeds(
+    axes: Axes, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]], span: tuple[float, float]
+) -> None:
+    part = within(time, span)
+    for turn, values in shown:
+        curve = thinned(time[part], values[part])
+        axes.plot(*curve, turn.line, color=turn.colour, lw=turn.width, label=turn.label)
+    axes.set_xlim(*span)
+    axes.ticklabel_format(useOffset=False)
+
+
+def _is_whole(span: tuple[float, float], time: np.ndarray) -> bool:
+    return span == (beginning(time), float(time[-1]))
+
+
+def _reversed_legend(axes: Axes) -> tuple[list[Artist], list[str]]:
+    """What is drawn in front comes first."""
+    handles, labels = axes.get_legend_handles_labels()
+    return handles[::-1], labels[::-1]
 
 
 def distance(figure: FigureBase, run: Finished, a: Attachment) -> Axes:

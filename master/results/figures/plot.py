@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from touchdown.master.common.errors import TouchdownError, one_of
@@ -25,31 +26,39 @@ class Plot:
     TouchdownError where the run has not what they show.
     """
 
-    def __init__(self, run: Callable[[], Finished]) -> None:
-        self._run = run
+    def __init__(self, run: Callable[[], Finished], dark: bool = False) -> None:
+        self._run, self._dark = run, dark
 
     def __repr__(self) -> str:
         names = [name for name in vars(type(self)) if not name.startswith("_")]
         return f"<pictures of a run: {', '.join(names)}>"
 
+    @property
+    def dark(self) -> Plot:
+        """The same pictures on a dark ground: `result.plot.dark.orbit()`."""
+        return Plot(self._run, dark=True)
+
     def orbit(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
         """The rotor in the clearance circle of a bearing [µm]."""
         from touchdown.master.results.figures.motion import draw_orbit
 
-        return draw_orbit(_axes(ax), self._run(), self._seat(bearing))
+        with self._on(ax) as axes:
+            return draw_orbit(axes, self._run(), self._seat(bearing))
 
     def paths(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """The rotor in the clearance circle, its landing from near, and where rings and cage go [µm]."""
         from touchdown.master.results.figures.motion import paths
 
-        return paths(_figure(figure), self._run(), self._seat(bearing))
+        with self._drawing(figure) as whole:
+            return paths(whole, self._run(), self._seat(bearing))
 
     def orbits(self, figure: FigureBase | None = None) -> list[Axes]:
         """The rotor in all its bearings side by side [µm]."""
         from touchdown.master.results.figures.orbits import orbits
 
         self._seat(None)
-        return orbits(_figure(figure), self._run(), touchdown_seats(self._run().system))
+        with self._drawing(figure) as whole:
+            return orbits(whole, self._run(), touchdown_seats(self._run().system))
 
     def forces(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Contact forces in a bearing over time [N]: of the rotor, and of the ball hit hardest."""
@@ -57,7 +66,8 @@ class Plot:
 
         seat = self._seat(bearing)
         self._require(f"{seat.bearing}.contact.force")
-        return forces(_figure(figure), self._run(), seat)
+        with self._drawing(figure) as whole:
+            return forces(whole, self._run(), seat)
 
     def speeds(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Circumferential speeds of rotor, ring, balls and cage over time [m/s]."""
@@ -65,7 +75,8 @@ class Plot:
 
         seat = self._seat(bearing)
         self._require(f"{seat.bearing}.speed.ring")
-        return speeds(_figure(figure), self._run(), seat)
+        with self._drawing(figure) as whole:
+            return speeds(whole, self._run(), seat)
 
     def contacts(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
         """The balls of a detailed bearing at the end of the run, and which of them are pressed."""
@@ -76,7 +87,8 @@ class Plot:
             raise TouchdownError(
                 f"{seat.bearing} does not tell of single balls; swap in a detailed bearing"
             )
-        return draw_contacts(_axes(ax), run, seat)
+        with self._on(ax) as axes:
+            return draw_contacts(axes, run, seat)
 
     def energy(self, figure: FigureBase | None = None) -> list[Axes]:
         """Where the energy is, and its balance [J]."""
@@ -85,7 +97,8 @@ class Plot:
         run = self._run()
         if energy_total(run.system, run.recording) is None:
             raise TouchdownError("not all components state and record their energies; see run.record")
-        return energy(_figure(figure), run)
+        with self._drawing(figure) as whole:
+            return energy(whole, run)
 
     def spectrum(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Amplitude of the inner ring's velocity over frequency, after the landing [m/s, Hz]."""
@@ -96,7 +109,8 @@ class Plot:
         self._require(f"{seat.bearing}.ring.x")
         if not has_spectrum(run.recording, seat):
             raise TouchdownError(f"a spectrum needs a run.duration of {BEGIN + LENGTH:.3g} s or more")
-        return spectrum(_figure(figure), run, seat)
+        with self._drawing(figure) as whole:
+            return spectrum(whole, run, seat)
 
     def waterfall(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Spectra of the rotor's motion one behind the other, while it slows down."""
@@ -113,7 +127,8 @@ class Plot:
                 f"a waterfall needs a run.duration of {SHORTEST:g} s or more, recorded at {COARSEST:g} Hz "
                 "or more; see run.record_every and run.record"
             )
-        return motion_waterfall(_figure(figure), run, seat)
+        with self._drawing(figure) as whole:
+            return motion_waterfall(whole, run, seat)
 
     def stress(self, figure: FigureBase | None = None, rotor: str | None = None) -> list[Axes]:
         """Stresses of a flexible rotor [MPa] along its axis and over time; of the scene's first."""
@@ -128,7 +143,8 @@ class Plot:
             )
         if rotor is not None and rotor not in known:
             raise TouchdownError(f"{rotor} has no stress to show; {one_of(rotor, known)}")
-        return stress(_figure(figure), run, rotor or known[0])
+        with self._drawing(figure) as whole:
+            return stress(whole, run, rotor or known[0])
 
     def _seat(self, bearing: str | None) -> Attachment:
         """Of the bearing of that name, or of the first."""
@@ -145,14 +161,19 @@ class Plot:
         if name not in self._run().recording:
             self._run().recording[name]
 
+    @contextmanager
+    def _drawing(self, figure: FigureBase | None) -> Iterator[FigureBase]:
+        """`figure`, or a new one, to draw on in the project's style."""
+        from touchdown.master.results.figures.style import darkened, drawable, styled
 
-def _axes(ax: Axes | None) -> Axes:
-    from touchdown.master.results.figures.style import drawable
+        with styled():
+            whole = drawable(figure)
+            yield whole
+        if self._dark:
+            darkened(whole)
 
-    return drawable(None).subplots() if ax is None else ax
-
-
-def _figure(figure: FigureBase | None) -> FigureBase:
-    from touchdown.master.results.figures.style import drawable
-
-    return drawable(figure)
+    @contextmanager
+    def _on(self, ax: Axes | None) -> Iterator[Axes]:
+        """`ax`, or those of a new figure."""
+        with self._drawing(None if ax is None else ax.figure) as whole:
+            yield whole.subplots() if ax is None else ax

@@ -57,7 +57,7 @@ def spectrum(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     rate, count = 1.0 / interval(time), samples(time, LENGTH)
     figure.suptitle(
         f"{run.scene.title}: horizontal velocity of the inner ring\n"
-        f"sampled at {rate / 1e3:g} kHz, windows of {LENGTH:g} s ({count} values), Hann, "
+        f"sampled at {rate / 1e3:g} kHz, windows of {LENGTH:.4g} s ({count} values), Hann, "
         f"padded with zeros to {max(POINTS, count)}"
     )
     return list(panels)
@@ -70,7 +70,8 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
     made: list[Spectrum] = []
     for start in windows(time):
         part = (time >= start) & (time <= start + LENGTH)
-        label = f"{RPM * np.mean(omega[part]):.1f} rpm ({start:.2f} s to {start + LENGTH:.2f} s)"
+        speed = RPM * float(np.mean(omega[part]))
+        label = f"{start:.2f} s to {start + LENGTH:.2f} s after the shutdown, {speed:.0f} rpm"
         made.append((label, *velocity_spectrum(time, x, start, LENGTH, POINTS)))
     return made
 

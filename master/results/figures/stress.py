@@ -41,7 +41,7 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     kept = kept_instant(component)
     grid = sized(figure, 13, 8.4).subplots(2, len(KINDS), sharex="row")
     for kind, axial, timed in zip(KINDS, *grid, strict=True):
-        _draw_along(axial, component, kind, kept is not None)
+        draw_along(axial, component, kind, kept is not None)
         _draw_history(timed, run, name, kind, zero)
         if kept is not None:
             timed.axvline(kept - zero, color=GREY, ls="--", lw=1.0, label="instant shown above")
@@ -51,7 +51,8 @@ def stress(figure: FigureBase, run: Finished, name: str) -> list[Axes]:
     return list(grid.flat)
 
 
-def _draw_along(axes: Axes, component: Teller, kind: str, kept: bool) -> None:
+def draw_along(axes: Axes, component: Teller, kind: str, kept: bool) -> None:
+    """Stress of a kind [MPa] along the axis [mm]: both planes at the kept instant, the run's largest."""
     position = 1e3 * np.array(along(component, "position")[1])
     envelope = MPA * np.array(along(component, f"peak_{kind}")[1])
     if len(envelope) == len(position):

@@ -6,15 +6,17 @@ it for half a period of the third bending mode: what does so sooner is a ripple 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.observer import Moment, Observer
-from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.system import System
+from touchdown.master.results.ending import Ending, ending
 from touchdown.master.results.stresses import stress_figures, stressed
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.scene import Scene
@@ -60,14 +62,7 @@ def figures_at_first_peak(scene: Scene, wait: float = WAIT) -> dict[str, object]
     wait: s, for which nothing exceeds it. Raises TouchdownError where the run stops before, or ends
     without one.
     """
-    with opened(scene, in_process=True) as system:
-        outcome = simulate(scene, system, observers=[FirstPeak.of(system, wait)])
-        outcome.raise_if_stopped()
-        if outcome.ended is not Ended.AS_WANTED:
-            raise TouchdownError(
-                f"scene {scene.name}: the bending stress has no distinct peak within "
-                f"{scene.run.duration:g} s; a longer run.duration may show one"
-            )
+    with _at_first_peak(scene, wait) as (system, outcome):
         touched = {
             a.bearing: system.value(f"{a.bearing}.contact.first_time") for a in touchdown_seats(system)
         }
@@ -77,3 +72,22 @@ def figures_at_first_peak(scene: Scene, wait: float = WAIT) -> dict[str, object]
             if time >= 0.0
         }
         return {**contacts, **stress_figures(system, outcome)}
+
+
+def ending_at_first_peak(scene: Scene, wait: float = WAIT) -> Ending:
+    """Run `scene` in process up to that peak: its system as it is then. Raises TouchdownError as above."""
+    with _at_first_peak(scene, wait) as (system, _):
+        return ending(system)
+
+
+@contextmanager
+def _at_first_peak(scene: Scene, wait: float) -> Iterator[tuple[System, Outcome]]:
+    with opened(scene, in_process=True) as system:
+        outcome = simulate(scene, system, observers=[FirstPeak.of(system, wait)])
+        outcome.raise_if_stopped()
+        if outcome.ended is not Ended.AS_WANTED:
+            raise TouchdownError(
+                f"scene {scene.name}: the bending stress has no distinct peak within "
+                f"{scene.run.duration:g} s; a longer run.duration may show one"
+            )
+        yield system, outcome

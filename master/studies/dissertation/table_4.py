@@ -30,7 +30,8 @@ from touchdown.master.studies.dissertation.readings import (
     Reading,
     Settings,
 )
-from touchdown.master.studies.sweep.sweep import Execution, sweep
+from touchdown.master.studies.sweep.design import Design
+from touchdown.master.studies.sweep.sweep import Running, sweep
 
 Figures = Mapping[str, object]  # of a drop, as in its summary
 
@@ -54,10 +55,9 @@ class Ensemble:
         """Figures of the drops of `scene` to its end, stresses at their largest; table in folder/name."""
         drops = sweep(
             scene.set(NO_LIMIT),
-            phases(self.members),
+            Design.grid(phases(self.members)),
             self.folder / name,
-            self.jobs,
-            Execution(in_process=True),
+            Running(self.jobs, in_process=True, anew=True),
             self.done,
         )
         if any(drop.ended is Ended.INTERRUPTED for drop in drops):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.components.contract import SENSED
-from touchdown.master.components.library import foreign
+from touchdown.master.components.library.sources import foreign
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.simulation import opened, simulate

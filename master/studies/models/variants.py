@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from touchdown.master.components.component import Variable
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.results.summary import touchdown_seats
@@ -115,7 +114,7 @@ def _friction(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Va
     present = {system.value(f"{name}.friction.kind") for name in has}
     for value in range(int(kind.minimum or 0), int(kind.maximum or 0) + 1):
         if present != {value}:
-            yield Variant(f"friction: {_law(kind, value)}", _with_law(scene, system, has, value))
+            yield Variant(f"friction: {kind.told(value)}", _with_law(scene, system, has, value))
 
 
 def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> Scene:
@@ -126,15 +125,6 @@ def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> 
             changes[f"{name}.friction.static"] = system.value(f"{name}.friction.dynamic")
         scene = scene.set(changes)
     return scene
-
-
-def _law(kind: Variable, value: int) -> str:
-    """Its name, as the variable's description lists it: "...: 0 NAME, 1 NAME"."""
-    for item in kind.description.rpartition(":")[2].split(","):
-        number, _, name = item.strip().partition(" ")
-        if number == str(value):
-            return name
-    return f"kind {value}"
 
 
 def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:

@@ -1,19 +1,20 @@
-"""Pictures of a rotor before it is dropped: Campbell diagram, mode shapes, how it lies (Fig 19)."""
+"""Pictures of a rotor before it is dropped: Campbell diagram, critical speeds, modes, rest (Fig 19)."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import PointMass, Shaft
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
 
@@ -22,7 +23,7 @@ MM = 1e3
 MOST = 6  # modes drawn
 COLOURS = (BLACK, GREY, BLUE, ORANGE, GREEN, PURPLE)  # of the modes
 AXIS = "position along the rotor's axis [mm]"
-CORE, SLEEVE, EDGE = "#c8d3dc", "#ece3d0", "#7f8a93"
+CORE, SLEEVE, DISC, EDGE = "#c8d3dc", "#ece3d0", "#b3c6b1", "#7f8a93"
 WIDTH = 9.0  # inch, of a picture with side views
 BESIDE = 1.5  # inch of it that labels take
 BEYOND = 1.6  # of the largest radius: a side view's half height
@@ -31,8 +32,10 @@ SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 
 def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
-    """campbell.png, modes.png and, where the rotor has two seats, rest.png in `folder`."""
+    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`."""
     pictures = {"campbell": campbell, "modes": modes}
+    if portrait.critical:
+        pictures["critical"] = critical
     if portrait.rest is not None:
         pictures["rest"] = rest
     made: list[Path] = []
@@ -70,6 +73,41 @@ def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     return [axes]
 
 
+def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+    """Undamped critical speeds [rpm] over the stiffness of the supports [N/m], for each way it is held.
+
+    Dashed: the shaft's own supports there, with dots for its critical speeds on them; grey: the first of
+    the portrait's speeds.
+    """
+    panels = sized(figure, 9.0, 1.0 + 4.2 * len(portrait.critical)).subplots(
+        len(portrait.critical), 1, squeeze=False
+    )
+    for axes, found in zip(panels[:, 0], portrait.critical, strict=True):
+        axes.loglog(found.stiffness, RPM * found.speeds, color=BLUE, lw=1.4)
+        names = ", ".join(s.name for s in found.places)
+        for support in found.marked:
+            where = "/".join(s.name for s in found.places if s.node == support.node)
+            for value in {support.stiffness, support.stiffness_y or support.stiffness}:
+                label = f"{where}: {value:.3g} N/m"
+                axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
+        if len(found.own):
+            middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
+            label = "critical speeds on these supports"
+            axes.plot(
+                np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
+            )
+        if portrait.speeds[0] > 0.0:
+            asked = RPM * portrait.speeds[0]
+            axes.axhline(asked, color=GREY, lw=1.0, label=f"{asked:.5g} rpm")
+        axes.set_xlabel(f"stiffness of each support at {names} [N/m]")
+        axes.set_ylabel("critical speed, forward [rpm]")
+        axes.grid(True, which="major", color=GREY, lw=0.3)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="lower right", fontsize="small")
+    figure.suptitle(f"{portrait.shaft.title}: undamped critical speeds")
+    return list(panels[:, 0])
+
+
 def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
     shaft, count = portrait.shaft, min(len(portrait.kinds), MOST)
@@ -83,7 +121,7 @@ def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
         return np.multiply(values, height)
 
     for k, axes in enumerate(panels):
-        _side_view(axes, shaft, named=k == 0)
+        side_view(axes, shaft, named=k == 0)
         shape = portrait.shapes[:, k]
         axes.plot(MM * shaft.positions(), height * shape, ".-", color=ORANGE, lw=1.5, ms=4)
         right = axes.secondary_yaxis("right", functions=(to_shape, from_shape))
@@ -109,7 +147,7 @@ def rest(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     sized(figure, WIDTH, 7.0 + view_height)
     ratios = (view_height, 2.8, 2.8)
     view, deflection, bending = figure.subplots(3, 1, sharex=True, height_ratios=ratios)
-    _side_view(view, shaft, named=True)
+    side_view(view, shaft, named=True)
     _supports(view, shaft)
     _to_scale(view, shaft)
     deflection.plot(position, 1e6 * lying.deflection, ".-", color=BLUE, lw=1.4, ms=4)
@@ -143,7 +181,8 @@ class _Window:
 
 def _window(shaft: Shaft) -> _Window:
     length = MM * float(shaft.positions()[-1])
-    radius = 0.5 * MM * max(max(e.outer_diameter, e.sleeve_diameter) for e in shaft.elements)
+    radius = 0.5 * MM * max(e.widest for e in shaft.elements)
+    radius = max(radius, *(0.5 * MM * _disc(point, shaft)[0] for point in shaft.points), 0.0)
     half = max(0.52 * length, BEYOND * radius / HIGHEST)
     reach = max(BEYOND * radius, FLATTEST * half)
     return _Window(0.5 * length - half, 0.5 * length + half, reach)
@@ -155,17 +194,18 @@ def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
     return list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
 
 
-def _side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
-    """Outlines of the elements in mm, to scale; masses at nodes as diamonds, places by name."""
+def side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
+    """Outlines of the elements and discs in mm, to scale; places by name."""
     position = MM * shaft.positions()
     for at, e in zip(position, shaft.elements, strict=False):
+        for layer in reversed(e.layers):
+            _cone(axes, at, layer, 0, SLEEVE)
         if e.sleeve_diameter:
-            _box(axes, at, e.length, e.sleeve_diameter, SLEEVE)
-        _box(axes, at, e.length, e.outer_diameter, CORE)
-        if e.inner_diameter:
-            _box(axes, at, e.length, e.inner_diameter, "white")
-    for point in shaft.points:
-        axes.plot(position[point.node - 1], 0.0, "D", color=EDGE, ms=5)
+            _cone(axes, at, replace(e, outer_diameter=e.sleeve_diameter), 0, SLEEVE)
+        _cone(axes, at, e, 0, CORE)
+        if any(e.diameters(end)[1] for end in (0.0, 1.0)):
+            _cone(axes, at, e, 1, "white")
+    _draw_points(axes, shaft)
     axes.axhline(0.0, color=EDGE, lw=0.5, ls="-.")
     axes.set_ylabel("radius [mm]")
     if named:
@@ -192,9 +232,17 @@ def _names(axes: Axes, shaft: Shaft) -> None:
         axes.annotate(", ".join(names), (x, 1.02), xycoords=place, ha="center", fontsize="small")
 
 
-def _box(axes: Axes, at: float, length: float, diameter: float, colour: str) -> None:
-    corner = (at, -0.5 * MM * diameter)
-    axes.add_patch(Rectangle(corner, MM * length, MM * diameter, facecolor=colour, edgecolor=EDGE, lw=0.6))
+def _cone(axes: Axes, at: float, e: Element, which: int, colour: str) -> None:
+    """Outside (`which` = 0) or bore (1) of a cylinder or cone that begins at `at` (mm)."""
+    _outline(axes, at, e.length, (e.diameters(0.0)[which], e.diameters(1.0)[which]), colour)
+
+
+def _outline(axes: Axes, at: float, length: float, diameters: tuple[float, float], colour: str) -> None:
+    """Of a body of revolution from `at` (mm) on, with diameters at its ends; its lengths in m."""
+    first, second = (0.5 * MM * diameter for diameter in diameters)
+    end = at + MM * length
+    corners = [(at, -first), (at, first), (end, second), (end, -second)]
+    axes.add_patch(Polygon(corners, facecolor=colour, edgecolor=EDGE, lw=0.6))
 
 
 def _supports(axes: Axes, shaft: Shaft) -> None:
@@ -202,5 +250,46 @@ def _supports(axes: Axes, shaft: Shaft) -> None:
     position = MM * shaft.positions()
     for node in sorted(set(seats(shaft))):
         touching = shaft.elements[max(node - 2, 0) : node]
-        radius = 0.5 * MM * max(max(e.outer_diameter, e.sleeve_diameter) for e in touching)
+        radius = 0.5 * MM * max(e.widest for e in touching)
         axes.plot(position[node - 1], -radius, marker=6, color=GREEN, ms=11)
+
+
+def drawing(figure: FigureBase, shaft: Shaft) -> list[Axes]:
+    """The rotor's side view alone, to scale."""
+    sized(figure, WIDTH, 1.2 + _window(shaft).height)
+    axes = figure.subplots()
+    side_view(axes, shaft, named=True)
+    window = _window(shaft)
+    axes.set_xlim(window.left, window.right)
+    axes.set_ylim(-window.reach, window.reach)
+    axes.set_aspect("equal")
+    axes.set_xlabel(AXIS)
+    axes.set_title(shaft.title, pad=18)
+    return [axes]
+
+
+def _draw_points(axes: Axes, shaft: Shaft) -> None:
+    """Discs to scale, as wide and large as their inertias make them; masses without, as diamonds."""
+    position = MM * shaft.positions()
+    for point in shaft.points:
+        at, diameter, width = position[point.node - 1], *_disc(point, shaft)
+        if diameter > 0.0:
+            _outline(axes, at - 0.5 * MM * width, width, (diameter, diameter), DISC)
+        else:
+            axes.plot(at, 0.0, "D", color=EDGE, ms=5)
+
+
+def _disc(point: PointMass, shaft: Shaft) -> tuple[float, float]:
+    """Outer diameter and width (m) of the disc on the shaft that has a point's inertias; 0, 0 without one.
+
+    Jp/m = (D2 + d2)/8, Jd/m = (3 (D2 + d2)/4 + w2)/12; d is the shaft's diameter beside the node.
+    """
+    if point.mass <= 0.0 or point.polar_inertia <= 0.0:
+        return 0.0, 0.0
+    beside = shaft.elements[max(point.node - 2, 0) : point.node]
+    squares = 8.0 * point.polar_inertia / point.mass
+    outer = squares - min(e.outer_diameter for e in beside) ** 2
+    width = 12.0 * point.diametral_inertia / point.mass - 0.75 * squares
+    if outer <= 0.0:
+        return 0.0, 0.0
+    return math.sqrt(outer), math.sqrt(max(width, 0.0))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,9 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find, shipped
+from touchdown.rotor.modal.critical import CriticalMap
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait, portrait
 from touchdown.rotor.statics import Rest
@@ -22,6 +24,8 @@ SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 BEYOND = 2.0  # times the speed asked for: its end
+HELD = 8  # modes told of on supports
+PLANAR = 0.1  # of a circle's turning; below, a whirl is told as planar
 TO_REST = (
     "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
 )
@@ -35,17 +39,38 @@ class Report:
     pictures: list[Path] = field(default_factory=list)
 
 
-def report(name: str, folder: Path, speed: float = SPEED, modes: int = MODES) -> Report:
+def report(
+    name: str,
+    folder: Path,
+    speed: float = SPEED,
+    modes: int = MODES,
+    supports: Mapping[str, float] | None = None,
+) -> Report:
     """Describe the rotor `name` (shipped, or the path of a .toml); pictures go into `folder`.
 
-    speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0: all).
-    Raises TouchdownError where there is no such rotor, or its file has a mistake.
+    speed: rad/s, for the split of the frequencies; modes: per plane, the two rigid ones included (0: all);
+    supports: stiffness in N/m of stations by name, beside the supports of the rotor's file. Raises
+    TouchdownError where there is no such rotor or station, or its file has a mistake.
     """
-    portrait = described(find_rotor(name), speed, modes)
+    portrait = described(supported(find_rotor(name), supports or {}), speed, modes)
     make_writable(folder)
     from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
 
     return Report(report_text(portrait), draw_pictures(portrait, folder))
+
+
+def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
+    """`shaft` with springs (N/m) at stations by name, in place of what is there.
+
+    Raises TouchdownError for a station it does not have.
+    """
+    try:
+        springs = [Support(shaft.node(name), stiffness) for name, stiffness in supports.items()]
+    except ModelError as error:
+        raise TouchdownError(str(error)) from None
+    taken = {spring.node for spring in springs}
+    kept = tuple(s for s in shaft.supports if s.node not in taken)
+    return replace(shaft, supports=(*kept, *springs))
 
 
 def described(shaft: Shaft, speed: float, modes: int) -> Portrait:
@@ -81,6 +106,8 @@ def report_text(portrait: Portrait) -> str:
         "",
         *_frequencies(portrait),
         "",
+        *_held(portrait),
+        *(line for found in portrait.critical for line in _critical(found)),
         *_rest(shaft, portrait.rest),
     ]
     return "\n".join(lines)
@@ -131,6 +158,34 @@ def _frequencies(portrait: Portrait) -> list[str]:
     return lines
 
 
+def _held(portrait: Portrait) -> list[str]:
+    """Modes on the shaft's own supports."""
+    if portrait.held is None:
+        return []
+    lines = [f"  on its {len(portrait.shaft.supports)} supports at {RPM * portrait.speeds[0]:.6g} rpm",
+             f"  {'mode':<12}  {'[Hz]':>12}  {'damping ratio':>14}  {'whirl':>14}"]  # fmt: skip
+    held = portrait.held
+    for k in range(min(HELD, len(held.roots))):
+        sense = (
+            "planar" if abs(held.sense[k]) < PLANAR else "forward" if held.sense[k] > 0.0 else "backward"
+        )
+        damping = round(held.damping_ratios[k], 4) + 0.0  # never -0
+        lines.append(f"  {k + 1:<12}  {held.frequencies[k]:12.2f}  {damping:14.4f}  {sense:>14}")
+    return [*lines, ""]
+
+
+def _critical(found: CriticalMap) -> list[str]:
+    """Critical speeds over the stiffness at each of the places, a row per decade."""
+    lines = [f"  critical speeds [rpm], held at {', '.join(s.name for s in found.places)} by"]
+    rows = [(f"{k:.0e} N/m each", speeds) for k, speeds in zip(found.stiffness, found.speeds, strict=True)]
+    rows = rows[:: (len(rows) - 1) // round(math.log10(found.stiffness[-1] / found.stiffness[0]))]
+    if len(found.own):
+        rows.append(("its own supports", found.own))
+    for what, speeds in rows:
+        lines.append(f"  {what:<16}" + "".join(f"{RPM * s:10.0f}" for s in speeds if not math.isnan(s)))
+    return [*lines, ""]
+
+
 def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
     """How the rotor lies on its seats."""
     if rest is None:
@@ -151,7 +206,18 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
                 ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
             ]
         ),
+        *(f"  {line}" for line in pulling(dict(zip(names, rest.reactions.tolist(), strict=True)))),
     ]  # fmt: skip
+
+
+def pulling(reactions: Mapping[str, float]) -> list[str]:
+    """A line for each support at rest (N by name, upwards) that would have to pull the rotor down."""
+    return [
+        f"{name} would have to pull the rotor down with {-force:.4g} N: where bearings only push, the "
+        "rotor lifts off there until it lies against the top of the bore"
+        for name, force in reactions.items()
+        if force < 0.0
+    ]
 
 
 def _is_seat(shaft: Shaft, name: str) -> bool:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import one_of
-from touchdown.master.common.files import replacing, writing_to
+from touchdown.master.common.files import replacing
+from touchdown.master.studies.sweep.journal import Member
 from touchdown.master.studies.sweep.variation import number_and_unit
+
+MOST_ROWS = 40  # shown; all are in the file
+MOST_REASONS = 5  # why members failed
 
 PICKS = (  # shown beside the verdicts where none are asked for
     "whirl_*_revolutions",
@@ -21,18 +24,6 @@ PICKS = (  # shown beside the verdicts where none are asked for
     "pendulum_frequency_Hz*",
     "rotor_speed_end_rpm*",
 )
-
-
-@dataclass(frozen=True)
-class Member:
-    """One run of a sweep."""
-
-    number: int  # from 1
-    settings: Mapping[str, object]
-    summary: Mapping[str, object]
-    failed: str = ""  # why, or ""
-    ended: Ended = Ended.COMPLETED
-    kept: bool = False  # whether it was there, finished, before the sweep, and was not run again
 
 
 def keys(members: Sequence[Member]) -> list[str]:
@@ -72,11 +63,41 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
     return list(dict.fromkeys(chosen)), complaints
 
 
+def report_lines(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
+    """What the command shows of a sweep, and complaints about `picks`."""
+    figures, complaints = picked(members, picks)
+    lines = [table(members, figures), *verdict_lines(members)]
+    if why := failures(members):
+        lines += ["failed:", *why]
+    return lines, complaints
+
+
+def failures(members: Sequence[Member]) -> list[str]:
+    """Why members failed, the most frequent reasons first, each with the first member that has it."""
+    counts = Counter(m.failed for m in members if m.failed)
+    first = {m.failed: m.number for m in reversed(members)}
+    lines = [f"  {n} x {why} (member {first[why]})" for why, n in counts.most_common(MOST_REASONS)]
+    return (
+        lines
+        if len(counts) <= MOST_REASONS
+        else [*lines, f"  and {len(counts) - MOST_REASONS} reasons more"]
+    )
+
+
+def largest(summary: Mapping[str, object], key: str) -> float | None:
+    """The largest of the figures whose names begin with `key`; None where there is none."""
+    found = [value for name, value in summary.items() if name.startswith(key)]
+    numbers = [value for value in found if isinstance(value, float) and math.isfinite(value)]
+    return max(numbers, default=None)
+
+
 def table(members: Sequence[Member], figures: Sequence[str]) -> str:
-    """A line for each member: number, what was set, `figures`, and why it failed."""
+    """A line for each of the first members: number, what was set, `figures`, and why it failed."""
+    if not members:
+        return "no members"
     names = list(members[0].settings)
     rows = [["", *names, *figures, ""]]
-    for m in members:
+    for m in members[:MOST_ROWS]:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
         row += [_shown(m.summary.get(key)) for key in figures]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
@@ -85,21 +106,19 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
         "  ".join([f"{cell:>{width}}" for cell, width in zip(row[:-1], widths, strict=False)] + row[-1:])
         for row in rows
     ]
+    if len(members) > MOST_ROWS:
+        aligned.append(f"... and {len(members) - MOST_ROWS} more")
     return "\n".join(line.rstrip() for line in aligned)
 
 
 def write_table(members: Sequence[Member], path: Path) -> None:
     """All figures of all members; a varied number stands in the unit its column names, or SI.
 
-    An older table is replaced when the new one is whole.
+    An older table is replaced when the new one is whole. Raises OSError.
     """
-    names, figures = list(members[0].settings), keys(members)
-    columns = {name: _column(name, [m.settings[name] for m in members]) for name in names}
-    with (
-        writing_to(path.parent),
-        replacing(path) as part,
-        part.open("w", newline="", encoding="utf-8") as file,
-    ):
+    names, figures = list(members[0].settings) if members else [], keys(members)
+    columns = {name: column(name, [m.settings[name] for m in members]) for name in names}
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["member", *(title for title, _ in columns.values()), *figures, "failed"])
         for i, m in enumerate(members):
@@ -107,7 +126,7 @@ def write_table(members: Sequence[Member], path: Path) -> None:
             writer.writerow([m.number, *(values[i] for _, values in columns.values()), *cells, m.failed])
 
 
-def _column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:
+def column(name: str, values: Sequence[object]) -> tuple[str, list[object]]:
     """Title and cells: bare numbers where all have the same unit, else what was given."""
     parts = [number_and_unit(value) for value in values]
     units = {part[1] for part in parts if part is not None}

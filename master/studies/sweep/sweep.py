@@ -2,36 +2,58 @@
 
 from __future__ import annotations
 
-import itertools
-import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import shutil
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import overload
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
 from touchdown.master.common.processes.pool import TaskOutcome, run_all
-from touchdown.master.coupling.assembly import checked
-from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.coupling.steppers.carried import carrying
-from touchdown.master.coupling.system import System
 from touchdown.master.results.folder import claimed
 from touchdown.master.results.result import RECORDING
-from touchdown.master.results.run import run_scene
+from touchdown.master.results.run import make_ready, run_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep import kept
-from touchdown.master.studies.sweep.report import Member, write_table
+from touchdown.master.studies.sweep import definition, journal
+from touchdown.master.studies.sweep.definition import (
+    Definition,
+    define,
+    read_definition,
+    refuse_other,
+)
+from touchdown.master.studies.sweep.design import Design
+from touchdown.master.studies.sweep.journal import Journal, Member, cut_torn_line, read_journal
+from touchdown.master.studies.sweep.results import DATASET, TABLE, Sweep, write_results
 
-MOST = 10_000  # members; a week of drops
+MADE_OF_IT = (  # what an earlier sweep may have left, beside its journal
+    *(DATASET, TABLE, "whirl-map.png", "force-map.png", "stress-map.png"),
+    *("report.html", "report.pdf"),
+)
+UNDER_WAY = ".under-way"  # where members run whose recordings are not kept
 
 
 @dataclass(frozen=True)
 class Execution:
-    """How members run, and what is kept of them."""
+    """How a member runs, and what is kept of it."""
 
     in_process: bool = False  # without FMUs
     keep: bool = False  # the recording, result.h5
+    passing: bool = False  # nothing: its folder goes
+
+
+@dataclass(frozen=True)
+class Running:
+    """How the members of a sweep run."""
+
+    jobs: int = 2  # at a time, on this machine
+    cluster: str = ""  # address of a Dask scheduler whose workers run them instead
+    in_process: bool = False  # without FMUs
+    keep: bool = False  # all that each run leaves, in a folder of its own
+    anew: bool = False  # a sweep that the folder holds is thrown away
 
 
 @dataclass(frozen=True)
@@ -39,144 +61,158 @@ class Task:
     """One run of a sweep, as it is handed to its process."""
 
     number: int  # from 1
-    settings: Mapping[str, object]
+    settings: dict[str, object]
     scene: Scene
-    folder: Path
+    folder: Path | None  # None: a temporary one
     execution: Execution
-    identity: str = ""  # by which it is recognised once it is finished; "": never
 
 
 def sweep(
     scene: Scene,
-    variations: Mapping[str, Sequence[object]],
+    design: Design,
     folder: Path,
-    jobs: int = 2,
-    execution: Execution = Execution(),
+    running: Running = Running(),
     done: Callable[[], object] = lambda: None,
-) -> list[Member]:
-    """Run `scene` with every combination of the values that `variations` has for each setting.
+) -> Sweep:
+    """Run `scene` at every point of `design`; done() after each member.
 
-    Writes summary.json of each member into 001, 002 and so on of `folder`, their recordings too where
-    `execution` keeps them, and after each member sweep.csv with all figures of all that ended. Members that
-    `folder` has already, finished by the same version with equal scenes, are `kept`, not run again. Runs
-    `jobs` at a time; done() after each. Raises TouchdownError where a setting cannot be, or the members are
-    more than MOST; a member that fails says so and the others go on. After Ctrl-C those that have not run
-    are INTERRUPTED. One sweep at a time has the folder. A script that calls it needs
-    `if __name__ == "__main__":`, as all do that start processes.
+    Each member that ends is a line of members.jsonl in `folder`; at the end all stand in sweep.nc and
+    sweep.csv. Members that `folder` has already are `kept`, not run again, unless they failed.
+    A member that fails says so and the others go on. After Ctrl-C those that have not run are INTERRUPTED.
+    One sweep at a time has the folder. Raises TouchdownError where a setting cannot be, and where `folder`
+    holds another sweep. A script that calls it needs `if __name__ == "__main__":`, as all do that start
+    processes.
     """
-    check(scene, variations)
-    if jobs < 1:
-        raise TouchdownError(f"a sweep needs at least one job, not {jobs}")
+    if running.jobs < 1:
+        raise TouchdownError(f"a sweep needs at least one job, not {running.jobs}")
+    scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
+    asked = define(scene, design, running.in_process)
     with claimed(folder):
-        return _run(_tasks(scene, variations, folder, execution), folder / "sweep.csv", jobs, done)
-
-
-def _run(tasks: Sequence[Task], table: Path, jobs: int, done: Callable[[], object]) -> list[Member]:
-    """A member for each task, those that are there already not run; the table is written after each."""
-    with writing_to(table.parent):
-        kept.settle(table.parent, {task.identity: task.folder for task in tasks})
-    members = _already(tasks, done)
-
-    def heard(member: Member) -> None:
-        members[member.number] = member
-        write_table([members[number] for number in sorted(members)], table)
-
-    for member in run_tasks([task for task in tasks if task.number not in members], jobs, done, heard):
-        members[member.number] = member
-    ordered = [members[task.number] for task in tasks]
-    write_table(ordered, table)
-    return ordered
-
-
-def _tasks(
-    scene: Scene, variations: Mapping[str, Sequence[object]], folder: Path, execution: Execution
-) -> list[Task]:
-    """A task for every combination, in order."""
-    combinations = itertools.product(*variations.values())
-    settings = [dict(zip(variations, values, strict=True)) for values in combinations]
-    width = max(3, len(str(len(settings))))
-    made_of = kept.origins(scene)
-    tasks: list[Task] = []
-    for number, given in enumerate(settings, start=1):
-        varied = scene.set(given)
-        own = kept.identity(varied, made_of, execution.in_process)
-        tasks.append(Task(number, given, varied, folder / f"{number:0{width}}", execution, own))
-    return tasks
-
-
-def _already(tasks: Sequence[Task], done: Callable[[], object]) -> dict[int, Member]:
-    """Members that are there, finished, by number; done() for each."""
-    members: dict[int, Member] = {}
-    for task in tasks:
-        summary = kept.finished(task.folder, task.identity, task.execution.keep)
-        if summary is not None:
-            members[task.number] = Member(task.number, task.settings, summary, kept=True)
+        lines = _opened(folder, asked, running)
+        tasks = _Tasks(asked, scene, folder, running, [])
+        left = [n for n in asked.numbers if not _is_there(lines.members.get(n), tasks.kept_in(n))]
+        for _ in range(len(asked.numbers) - len(left)):
             done()
+        now = _run(replace(tasks, numbers=left), lines, running, done)
+        members = [now[n] if n in now else lines.members[n] for n in asked.numbers]
+        found = Sweep(asked, tuple(members), folder)
+        with writing_to(folder):
+            shutil.rmtree(folder / UNDER_WAY, ignore_errors=True)
+            write_results(found, folder)
+    return found
+
+
+def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
+    """The journal of the sweep in `folder`, which is begun or goes on. Raises TouchdownError."""
+    path = folder / journal.FILE
+    begun = (folder / definition.FILE).exists()
+    if begun and not running.anew:
+        refuse_other(folder, read_definition(folder), asked)
+    with writing_to(folder):
+        shutil.rmtree(folder / UNDER_WAY, ignore_errors=True)
+        if not begun or running.anew:
+            for left in (journal.FILE, *MADE_OF_IT):
+                (folder / left).unlink(missing_ok=True)
+            asked.write(folder)
+        cut_torn_line(path)
+    return read_journal(path, asked.by_number)
+
+
+def _is_there(member: Member | None, kept_in: Path | None) -> bool:
+    """Whether a member need not be run; its recording must be `kept_in` a folder, if in any."""
+    if member is None or member.failed:  # of what may have changed: a full disk
+        return False
+    return kept_in is None or (kept_in / RECORDING).is_file()
+
+
+@dataclass(frozen=True)
+class _Tasks(Sequence[Task]):
+    """Members that are to run, each made when it is looked at: a scene's copies take room."""
+
+    asked: Definition
+    scene: Scene
+    folder: Path
+    running: Running
+    numbers: Sequence[int]
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    @overload
+    def __getitem__(self, place: int) -> Task: ...
+    @overload
+    def __getitem__(self, place: slice) -> Sequence[Task]: ...
+    def __getitem__(self, place: int | slice) -> Task | Sequence[Task]:
+        if isinstance(place, slice):
+            return replace(self, numbers=self.numbers[place])
+        number, running = self.numbers[place], self.running
+        execution = Execution(running.in_process, running.keep, passing=not running.keep)
+        where = self.kept_in(number)
+        if where is None and not running.cluster:  # whose workers may be anywhere, and find a place there
+            where = self.folder / UNDER_WAY / str(number)
+        scene = self.asked.at(self.scene, number)
+        return Task(number, self.asked.settings(number), scene, where, execution)
+
+    def kept_in(self, number: int) -> Path | None:
+        """The folder of a member that is kept whole; None where none is."""
+        name = f"{number:0{max(3, len(str(len(self.asked.points))))}}"
+        return self.folder / name if self.running.keep else None
+
+
+def _run(
+    tasks: Sequence[Task], lines: Journal, running: Running, done: Callable[[], object]
+) -> dict[int, Member]:
+    """Members by number, as the journal has them."""
+    members: dict[int, Member] = {}
+
+    def heard(place: int, outcome: TaskOutcome[Member]) -> None:
+        member = lines.add(_member(tasks[place], outcome))
+        members[member.number] = member
+
+    work = carrying(_run_task)
+    if running.cluster:
+        from touchdown.master.common.processes.cluster import run_on_cluster
+
+        ended = run_on_cluster(work, tasks, running.cluster, done, heard)
+    else:
+        _make_ready(tasks)
+        ended = run_all(work, tasks, running.jobs, done, heard)
+    for place, outcome in enumerate(ended):
+        if outcome.ended is Ended.INTERRUPTED:
+            heard(place, outcome)
     return members
 
 
-def run_tasks(
-    tasks: Sequence[Task],
-    jobs: int,
-    done: Callable[[], object],
-    heard: Callable[[Member], object] = lambda member: None,
-) -> list[Member]:
-    """A member for each task, `jobs` at a time in processes of their own; those not run say why.
-
-    heard(member) and done() after each that ended.
-    """
-
-    def tell(place: int, outcome: TaskOutcome[Member]) -> None:
-        heard(_member(tasks[place], outcome))
-
-    outcomes = run_all(carrying(_run_task), tasks, jobs, done, tell)
+def run_tasks(tasks: Sequence[Task], jobs: int, done: Callable[[], object]) -> list[Member]:
+    """A member for each task, `jobs` at a time in processes of their own; those not run say why."""
+    _make_ready(tasks)
+    outcomes = run_all(carrying(_run_task), tasks, jobs, done)
     return [_member(task, outcome) for task, outcome in zip(tasks, outcomes, strict=True)]
+
+
+def _make_ready(tasks: Sequence[Task]) -> None:
+    """Have compiled what the tasks' processes would each compile."""
+    if tasks:
+        make_ready(tasks[0].scene, tasks[0].execution.in_process)
 
 
 def _member(task: Task, outcome: TaskOutcome[Member]) -> Member:
     return outcome.value or Member(task.number, task.settings, {}, outcome.reason, outcome.ended)
 
 
-def check(scene: Scene, variations: Mapping[str, Sequence[object]]) -> None:
-    """Raise TouchdownError where nothing varies, members are too many, or a setting cannot take a value."""
-    if not variations:
-        raise TouchdownError("nothing varies; name at least one setting")
-    for name, values in variations.items():
-        if not values:
-            raise TouchdownError(f"{name} has no values to vary over")
-    if size(variations) > MOST:
-        raise TouchdownError(
-            f"a sweep of {size(variations)} members is too large, at most {MOST} are possible; vary fewer "
-            "settings, or over fewer values"
-        )
-    first = scene.set({name: values[0] for name, values in variations.items()})
-    with opened(first, in_process=True) as system:
-        for name, values in variations.items():
-            for value in values:
-                _check_value(first, name, value, system)
-
-
-def _check_value(first: Scene, name: str, value: object, system: System) -> None:
-    """Raise TouchdownError where a setting cannot take a value; `system` is that of the `first` member."""
-    varied = first.set({name: value})
-    component, _, variable = name.partition(".")
-    if name == "run.scheme" or variable in ("preset", "every"):  # these change what is connected, or more
-        open_system(varied, in_process=True).close()
-    elif component in system.components:
-        checked(system.components[component], variable, value)
-
-
 def _run_task(task: Task) -> Member:
     """Run a member; whether it completed or not, it has a summary."""
-    result = run_scene(task.scene, task.folder, in_process=task.execution.in_process, pictures=False)
-    if not task.execution.keep:
-        (task.folder / RECORDING).unlink(missing_ok=True)
-    if task.identity and result.ended is Ended.COMPLETED:
-        with writing_to(task.folder):
-            kept.finish(task.folder, task.identity)
-    return Member(task.number, task.settings, result.summary, result.stopped_because, result.ended)
-
-
-def size(variations: Mapping[str, Sequence[object]]) -> int:
-    """Number of members."""
-    return math.prod(len(values) for values in variations.values())
+    begun = time.perf_counter()
+    folder = task.folder
+    try:
+        result = run_scene(task.scene, folder, in_process=task.execution.in_process, pictures=False)
+        result.recording.close()
+    finally:
+        if folder is not None and task.execution.passing:
+            shutil.rmtree(folder, ignore_errors=True)
+    if folder is not None and not task.execution.keep:
+        (folder / RECORDING).unlink(missing_ok=True)
+    seconds = time.perf_counter() - begun
+    return Member(
+        task.number, task.settings, result.summary, result.stopped_because, result.ended, seconds=seconds
+    )

@@ -4,6 +4,12 @@ rotor.speed=6000 rpm,9000 rpm            a list; a unit at its end is everyone's
 bearing.clearance=0.2,0.25,0.3 mm
 bearing.balls.first_angle=0:315:8 deg    from 0 to 315, both included, 8 values
 run.scheme=hold,interface                words, where a setting is a word
+a.mass,b.mass=1,2 kg                     several settings have the same value
+bearing_*.friction.dynamic=0.1,0.2       so do all that match
+
+A range to draw from has two ends, and the unit of both:
+
+rotor.speed=6000:12000 rpm
 """
 
 from __future__ import annotations
@@ -26,30 +32,28 @@ class Variation:
     values: tuple[str, ...]
 
 
-def parse(text: str) -> Variation:
+def parse(text: str, option: str = "--vary") -> Variation:
     """NAME=VALUE,VALUE... or NAME=START:STOP:COUNT, with a unit at the end. Raises TouchdownError."""
+    what = f"{option} {text}"
     name, equals, right = (part.strip() for part in text.partition("="))
     if not equals or not name:
-        raise TouchdownError(f"--vary {text}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT")
+        raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT")
     if not right:
-        raise TouchdownError(f"--vary {text}: the list of values is empty")
-    return Variation(name, _range(text, right) if ":" in right else listed(right, f"--vary {text}"))
+        raise TouchdownError(f"{what}: the list of values is empty")
+    is_range = ":" in right and ".toml:" not in right  # a preset may be FILE.toml:NAME
+    return Variation(name, _evenly(right, what) if is_range else listed(right, what))
 
 
-def parse_all(texts: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Values by name. Raises TouchdownError where there are none, or a name comes twice."""
+def parse_all(texts: Iterable[str], option: str = "--vary") -> dict[str, tuple[str, ...]]:
+    """Values by name, given with `option`. Raises TouchdownError where a name comes twice."""
     variations: dict[str, tuple[str, ...]] = {}
     for text in texts:
-        variation = parse(text)
+        variation = parse(text, option)
         if variation.name in variations:
             raise TouchdownError(
-                f"--vary {variation.name} is given twice; write all its values in one list"
+                f"{option} {variation.name} is given twice; write all its values in one list"
             )
         variations[variation.name] = variation.values
-    if not variations:
-        raise TouchdownError(
-            "nothing varies; add --vary NAME=VALUE,VALUE,... or --vary NAME=START:STOP:COUNT"
-        )
     return variations
 
 
@@ -75,17 +79,47 @@ def listed(text: str, what: str) -> tuple[str, ...]:
     return tuple(f"{item} {last[1]}" if alone else item for item, alone in zip(items, bare, strict=True))
 
 
-def _range(text: str, right: str) -> tuple[str, ...]:
+@dataclass(frozen=True)
+class Range:
+    """Values from `low` to `high`, in `unit` ("": SI)."""
+
+    low: float
+    high: float
+    unit: str
+
+    def at(self, part: float) -> str:
+        """The value at a part (0 to 1) of the way, as text with its unit."""
+        return with_unit(self.low + part * (self.high - self.low), self.unit)
+
+
+def parse_range(text: str, what: str) -> Range:
+    """LOW:HIGH, with a unit at the end. `what`: for a complaint. Raises TouchdownError."""
+    head, _, unit = text.strip().partition(" ")
+    try:
+        low, high = (float(part) for part in head.split(":"))
+    except ValueError:
+        raise TouchdownError(f"{what}: write LOW:HIGH, then the unit, such as 6000:12000 rpm") from None
+    if not np.isfinite([low, high]).all() or not low < high:
+        raise TouchdownError(f"{what}: LOW must be below HIGH, and both finite")
+    return Range(low, high, unit.strip())
+
+
+def with_unit(number: float, unit: str) -> str:
+    """As text, in twelve digits."""
+    return f"{number:.12g} {unit}".strip()
+
+
+def _evenly(right: str, what: str) -> tuple[str, ...]:
     head, _, unit = right.partition(" ")
     parts = head.split(":")
     if len(parts) != 3 or ":" in unit:
-        raise TouchdownError(f"--vary {text}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg")
+        raise TouchdownError(f"{what}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg")
     try:
         start, stop, count = (float(part) for part in parts)
     except ValueError:
-        raise TouchdownError(f"--vary {text}: START, STOP and COUNT must be numbers") from None
+        raise TouchdownError(f"{what}: START, STOP and COUNT must be numbers") from None
     if not np.isfinite([start, stop, count]).all():
-        raise TouchdownError(f"--vary {text}: START, STOP and COUNT must be finite numbers")
+        raise TouchdownError(f"{what}: START, STOP and COUNT must be finite numbers")
     if count != int(count) or not 1 <= count <= MOST:
-        raise TouchdownError(f"--vary {text}: COUNT must be a whole number from 1 to {MOST}")
-    return tuple(f"{value:.12g} {unit.strip()}".strip() for value in np.linspace(start, stop, int(count)))
+        raise TouchdownError(f"{what}: COUNT must be a whole number from 1 to {MOST}")
+    return tuple(with_unit(value, unit.strip()) for value in np.linspace(start, stop, int(count)))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.studies.sweep.report import Member
+from touchdown.master.results.whirl.told import whirling
+from touchdown.master.studies.sweep.journal import Member
+from touchdown.master.studies.sweep.report import largest
 from touchdown.master.studies.verdict.phases import Verdicts
-
-WHIRLS = "_revolutions"  # behind the key of a seat's verdict: turns of its decisive whirl
 
 
 @dataclass(frozen=True)
@@ -51,24 +50,6 @@ class Circle:
         return max((force for force in forces if force is not None), default=None)
 
 
-def whirling(summary: Mapping[str, object]) -> str:
-    """The verdict on the seat that whirls most, or still does at the end; "" where none does."""
-    seats = [key for key in summary if key.startswith("whirl_") and f"{key}{WHIRLS}" in summary]
-    return max((_rank(summary, seat) for seat in seats), default=(False, 0.0, ""))[2]
-
-
-def _rank(summary: Mapping[str, object], seat: str) -> tuple[bool, float, str]:
-    words, turns = str(summary[seat]), summary[f"{seat}{WHIRLS}"]
-    if not isinstance(turns, float) or turns <= 0.0:
-        return False, 0.0, ""
-    return words.startswith("sustained"), turns, words
-
-
 def peak_force(summary: Mapping[str, object]) -> float | None:
     """The largest contact force of a run (N), of all its bearings; None where none reports it."""
-    forces = [
-        value
-        for key, value in summary.items()
-        if key.startswith("peak_contact_force_N") and isinstance(value, float) and math.isfinite(value)
-    ]
-    return max(forces, default=None)
+    return largest(summary, "peak_contact_force_N")

@@ -7,13 +7,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.projections.polar import PolarAxes
 
-from touchdown.master.results.figures.style import BLACK, BLUE, GREY, ORANGE, sheet
+from touchdown.master.results.figures.style import BLACK, GREY, sheet
+from touchdown.master.results.whirl.told import kind
+from touchdown.master.studies.sweep.maps.whirl import COLOURS
 from touchdown.master.studies.verdict.circle import Circle
 from touchdown.master.studies.verdict.phases import gaps
 from touchdown.master.studies.verdict.study import Study
 
-PALE = "#dddddd"
-COLOURS = {"settles": PALE, "transient whirl": BLUE, "sustained whirl": ORANGE}
 INNERMOST = 1.0  # radius, in rings
 
 
@@ -29,7 +29,7 @@ def circles(study: Study) -> Figure:
     axes.set_ylim(0.0, outermost)
     axes.set_yticks([])
     axes.grid(visible=False)
-    patches = [Patch(color=colour, label=name) for name, colour in COLOURS.items()]
+    patches = [Patch(color=colour, label=name.value) for name, colour in COLOURS.items()]
     line = axes.plot([], [], color=GREY, ls="--", lw=1, label="the scene's own phase")
     figure.legend(handles=[*patches, *line], loc="outside lower center", ncols=4)
     inwards = " | ".join(circle.title for circle in study.circles)
@@ -41,12 +41,6 @@ def circles(study: Study) -> Figure:
 def _ring(axes: PolarAxes, circle: Circle, inner: float) -> None:
     for phase, before, after in gaps(circle.verdicts):
         begin, width = np.radians(phase - 0.5 * before), np.radians(0.5 * (before + after))
-        colour = COLOURS[_kind(circle.verdicts[phase])]
+        colour = COLOURS[kind(circle.verdicts[phase])]
         axes.bar(begin, 0.9, width=width, bottom=inner, align="edge", color=colour, lw=0)
         axes.plot(np.radians(phase), inner + 0.45, ".", color=BLACK, ms=3)
-
-
-def _kind(words: str) -> str:
-    if not words:
-        return "settles"
-    return "sustained whirl" if words.startswith("sustained") else "transient whirl"

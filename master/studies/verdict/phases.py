@@ -13,10 +13,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from scipy.stats import beta
+from touchdown.master.results.whirl.share import Share, clopper_pearson
 
 CIRCLE = 360.0  # deg
-CONFIDENCE = 0.95
 DIGITS = 9  # of a phase in degrees: bisection meets the same phase from either side
 
 Verdicts = Mapping[float, str]  # by phase (deg): how it whirls, in words; "" where it does not
@@ -126,14 +125,6 @@ def edges(verdicts: Verdicts) -> list[Edge]:
     return [edge for window in windows(verdicts) for edge in (window.begin, window.end) if edge]
 
 
-class Share(NamedTuple):
-    """Part of the circle that whirls, and the interval that has it with CONFIDENCE."""
-
-    value: float
-    low: float
-    high: float
-
-
 def share(verdicts: Verdicts) -> Share:
     """Part of all phases that whirl: each that was looked at stands for half the way to its neighbours.
 
@@ -147,11 +138,8 @@ def share(verdicts: Verdicts) -> Share:
     weights = {phase: 0.5 * (before + after) / CIRCLE for phase, before, after in gaps(verdicts)}
     value = sum(weight for phase, weight in weights.items() if verdicts[phase])
     count = 1.0 / sum(weight**2 for weight in weights.values())
-    whirl, settle, tail = count * value, count * (1.0 - value), 0.5 * (1.0 - CONFIDENCE)
     everything, nothing = all(verdicts.values()), not any(verdicts.values())
-    low = 0.0 if nothing else float(beta.ppf(tail, whirl, settle + 1.0))
-    high = 1.0 if everything else float(beta.ppf(1.0 - tail, whirl + 1.0, settle))
-    return Share(value, low, high)
+    return clopper_pearson(count if everything else 0.0 if nothing else count * value, count)
 
 
 def furthest(found: Iterable[Edge], known: Sequence[Edge]) -> float | None:

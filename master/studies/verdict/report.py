@@ -9,12 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from touchdown.master.common.files import write_records, writing_to
+from touchdown.master.results.whirl.share import CONFIDENCE, Share
 from touchdown.master.studies.sweep.report import counted
 from touchdown.master.studies.verdict.circle import Circle, peak_force
 from touchdown.master.studies.verdict.phases import (
-    CONFIDENCE,
     Edge,
-    Share,
     Verdicts,
     Window,
     distance,

@@ -15,6 +15,7 @@ EXAMPLES = (
     "touchdown build -o build",
     "touchdown build simplified_caged housing --link-python -o build/linked",
     "touchdown build my-rotor.toml",
+    "touchdown build simplified_caged rotor_I --modes 5 -o build/five-modes",
     "touchdown build --native -o build/native",
     "touchdown build housing --native --target linux-x86_64 windows-x86_64 -o build/native",
     "touchdown build --native examples/rubber_ring.py -o build/native",
@@ -47,8 +48,9 @@ def declare(verb: argparse.ArgumentParser) -> None:
     complete(targets, completion.targets)
     verb.add_argument(
         "--modes",
-        metavar="N,N,...",
-        help="numbers of modes that native rotors hold constants for (default: 2,5,10)",
+        metavar="N",
+        help="modes per plane that rotors start with, the two rigid ones included, and that seats have "
+        "connectors for (2: none); native rotors hold constants for several, N,N,... (default: 2,5,10)",
     )
 
 
@@ -56,8 +58,8 @@ def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.api.fmus import built_one_by_one
 
-    if not options.native and (options.target or options.modes):
-        raise TouchdownError("--target and --modes are for native FMUs; add --native")
+    if not options.native and options.target:
+        raise TouchdownError("--target is for native FMUs; add --native")
     made = built_one_by_one(
         options.names or None,
         options.output,

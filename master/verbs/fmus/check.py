@@ -38,7 +38,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.components.library import foreign
+    from touchdown.master.components.library.sources import foreign
     from touchdown.master.interop.check import check_fmu
     from touchdown.master.scene.file import read_names
 
@@ -54,4 +54,4 @@ def execute(options: argparse.Namespace) -> int:
     return FAILED if failed else 0
 
 
-VERB = Verb("check", "check FMUs: validity, contract, a dry run", EXAMPLES, declare, execute)
+VERB = Verb("check", "check FMUs: validity, contract, a dry run, proofs", EXAMPLES, declare, execute)

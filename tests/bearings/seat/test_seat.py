@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
-from touchdown.bearings import amb, bushing
+from touchdown.bearings import bushing
+from touchdown.bearings.surroundings import amb
 from touchdown.modelkit.instance import Instance
 
 

@@ -22,6 +22,7 @@ from touchdown.fmus.native.targets import TARGETS, NativeError, here, places
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
+from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots
 
 Native = Callable[[str], Path]
@@ -130,6 +131,14 @@ def test_every_text_of_a_model_can_be_said_in_c(fmu: str):
 
 
 # -- what cannot be built ------------------------------------------------------------------------------
+
+
+@every_model
+def test_it_meets_the_results_of_the_model_in_process(fmu: str, native_file: Native):
+    """Which it brings along: its experiment, beside all that is checked of any FMU."""
+    report = check_fmu(str(native_file(fmu)))
+    assert report.problems == []
+    assert any(line.startswith("experiment press") for line in report.lines)
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:

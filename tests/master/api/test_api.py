@@ -64,7 +64,9 @@ def test_without_a_folder_nothing_stays(tmp_path: Path, monkeypatch: pytest.Monk
 def test_a_folder_is_text_or_a_path(kind: Callable[[Path], str | Path], tmp_path: Path) -> None:
     result = touchdown.run(SCENE, kind(tmp_path / "run"), in_process=True)
     assert result.folder == tmp_path / "run"
-    assert {path.name for path in result.folder.iterdir()} == {"result.h5", "scene.json", "summary.json"}
+    assert {path.name for path in result.folder.iterdir()} == {
+        *("ending.json", "result.h5", "scene.json", "summary.json")
+    }
 
 
 @pytest.mark.parametrize("kind", [str, Path])
@@ -231,7 +233,7 @@ def test_a_sweep_in_a_script_without_the_guard_says_so(tmp_path: Path) -> None:
     made = subprocess.run(
         [sys.executable, tmp_path / "bare.py"], capture_output=True, text=True, check=False
     )
-    assert made.stdout == "['its process died']\n"
+    assert made.stdout == "['its process ended with status 1 before it began']\n"
     assert 'put what it does under if __name__ == "__main__":' in made.stderr
     assert "Traceback" not in made.stderr
 

@@ -53,5 +53,13 @@ def test_the_others_of_a_process_that_dies_go_on() -> None:
     heard: list[int] = []
     ended = run_all(die_at_two, [0, 2, 4, 6, 8], 2, lambda: None, lambda place, _: heard.append(place))
     assert [one.value for one in ended] == [0, None, 2, 3, 4]
-    assert (ended[1].ended, ended[1].reason) == (Ended.STOPPED, "its process died")
+    assert (ended[1].ended, ended[1].reason) == (Ended.DIED, "its process ended with status 1, twice")
     assert sorted(heard) == [0, 1, 2, 3, 4]
+
+
+def test_what_ctrl_c_keeps_from_being_heard_is_interrupted() -> None:
+    def heard(place: int, outcome: object) -> None:
+        raise KeyboardInterrupt
+
+    ended = run_all(die_at_two, [0, 4], 1, lambda: None, heard)
+    assert [one.ended for one in ended] == [Ended.INTERRUPTED, Ended.INTERRUPTED]

@@ -243,7 +243,7 @@ FALSE = {  # what only the library can tell
         "contact.force cannot be set",
     ),
     "a real that is an integer": (
-        r'(name="friction.kind"[^>]* variability=)"fixed"([^>]*>\s*)<Integer[^>]*/>',
+        r'(name="friction.kind"[^>]* variability=)"fixed"([^>]*>\s*)<Enumeration[^>]*/>',
         r'\1"fixed"\2<Real start="2.0"/>',
         "friction.kind cannot be set as real",
     ),

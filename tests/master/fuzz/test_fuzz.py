@@ -15,7 +15,7 @@ from pool import run_cases
 
 from touchdown.master.interop.ssp.names import HEART
 
-CASES = 1000
+CASES = 700
 PACKAGE = {
     HEART: bases.STRUCTURE.encode(),
     "b.ssv": bases.VALUES.encode(),

@@ -242,7 +242,8 @@ def test_a_run_that_is_killed(run: Command, tmp_path: Path) -> None:
     assert not (out / "summary.json").exists()
     assert json.loads((out / "scene.json").read_text(encoding="utf-8"))["name"] == SCENE
     assert run(SCENE, *SHORT) == Ended(0, "")
-    assert sorted(path.name for path in out.iterdir()) == ["result.h5", "scene.json", "summary.json"]
+    left = ["ending.json", "result.h5", "scene.json", "summary.json"]
+    assert sorted(path.name for path in out.iterdir()) == left
 
 
 def rows_in(path: Path) -> int:

@@ -116,7 +116,7 @@ def test_a_value_that_cannot_be(arguments: tuple[str, ...], named: str, run: Com
             "outer_profile.wear = 0.0005 m bends the race",
         ),
         ("detailed_cageless", "race_friction.g2=5", "race_friction.g2 = 5"),
-        ("simplified_caged", "slip=2", "slip = 2"),
+        ("simplified_caged", "slip=2", "slip = '2' is none of its choices: off (0), on (1)"),
         ("bushing", "contact.damping_ratio=0.1", "needs contact.mass"),
         ("bushing", "clearance=0.3", "clearance = 0.3 m is out of all proportion to journal_radius"),
     ],

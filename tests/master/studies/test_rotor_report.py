@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 
+import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
-from touchdown.master.studies.rotor.figure import campbell, modes, rest
+from touchdown.master.studies.rotor.figure import DISC, campbell, critical, drawing, modes, rest
 from touchdown.master.studies.rotor.report import TO_REST, report, report_text
+from touchdown.rotor.beams.shaft import PointMass
 from touchdown.rotor.file import find, shipped
 from touchdown.rotor.portrait import Portrait, portrait
 
@@ -51,6 +55,17 @@ def test_lines_start_at_the_frequencies_at_rest_and_split(found: Portrait) -> No
     assert (np.diff(found.forward[1:, 1:], axis=0) > 0.0).all()
     assert (np.diff(found.backward[1:, 2:], axis=0) < 0.0).all()
     np.testing.assert_allclose(found.forward[0], found.forward[3])
+
+
+def test_a_support_that_would_have_to_pull_is_said(tmp_path: Path) -> None:
+    """Seats at 100 and 150 mm of a shaft of 400 mm, of which 200 mm are the middle: 2 G up, G down."""
+    path = shaft_file(tmp_path, "[stations]\nA = 3\nB = 4\n")
+    shaft = find(str(path))
+    text = report_text(portrait(shaft, 5, [SPEED]))
+    assert f"  A would have to pull the rotor down with {9.81 * shaft.mass:.4g} N: " in text
+    assert "B would have to pull" not in text
+    path = shaft_file(tmp_path, "[stations]\nA = 1\nB = 9\n")
+    assert "pull" not in report_text(portrait(find(str(path)), 5, [SPEED]))
 
 
 def test_a_free_rotor_tilts_forwards_by_the_ratio_of_its_inertias(found: Portrait) -> None:
@@ -113,7 +128,7 @@ def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
     sleeves = sum(e.sleeve_diameter > 0.0 for e in shaft.elements)
     for axes in figure.axes:
         assert axes.get_ylabel() == "radius [mm]"
-        assert len(axes.patches) == len(shaft.elements) + sleeves
+        assert len(axes.patches) == len(shaft.elements) + sleeves + len(shaft.points)
         box = axes.get_window_extent()
         (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
         assert (right - left) / box.width == pytest.approx((high - low) / box.height, rel=1e-3)
@@ -175,7 +190,7 @@ def test_all_modes_may_be_asked_for(tmp_path: Path) -> None:
     found = report(str(path), tmp_path, speed=0.0, modes=0)
     assert "bending 16" in found.text
     assert "B = same" in found.text
-    assert [p.name for p in found.pictures] == ["campbell.png", "modes.png", "rest.png"]
+    assert [p.name for p in found.pictures] == ["campbell.png", "modes.png", "critical.png", "rest.png"]
 
 
 @pytest.mark.parametrize(
@@ -212,3 +227,68 @@ def test_a_broken_file_is_answered_in_a_line(tmp_path: Path) -> None:
     with pytest.raises(TouchdownError, match=r"plain\.toml: stations\.A = 99 is not a node") as caught:
         report(str(path), tmp_path)
     assert "\n" not in str(caught.value)
+
+
+def test_critical_speeds_are_told_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    springs = ["--support", "amb_A=20 MN/m", "--support", "amb_B=25 MN/m"]
+    assert main(["rotor", "rotor_II", *springs, "--speed", "10000 rpm", "-o", str(tmp_path)]) == 0
+    assert (tmp_path / "critical.png").is_file()
+    told = capsys.readouterr().out
+    assert "on its 2 supports at 10000 rpm" in told
+    assert "held at amb_A, amb_B by" in told
+    assert "held at A, B by" in told
+    own = re.search(r"its own supports +(\d+) +(\d+)", told)
+    assert own
+    expected = touchdown.Rotor.load("rotor_II").critical_speeds({"amb_A": 20e6, "amb_B": 25e6})
+    assert [float(speed) for speed in own.groups()] == pytest.approx(30.0 / math.pi * expected[:2], abs=0.5)
+
+
+def test_the_map_of_critical_speeds_is_labelled(found: Portrait) -> None:
+    panels = critical(sheet(), found)
+    assert [axes.get_xlabel() for axes in panels] == [
+        "stiffness of each support at amb_A, amb_B [N/m]",
+        "stiffness of each support at A, B [N/m]",
+    ]
+    for axes, own in zip(panels, found.critical, strict=True):
+        assert axes.get_ylabel() == "critical speed, forward [rpm]"
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+        np.testing.assert_allclose(axes.lines[0].get_ydata(), 30.0 / math.pi * own.speeds[:, 0])
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("amb_C=1 MN/m", "has no station amb_C; it has: A, B, amb_A, amb_B"),
+        ("amb_A=0", "--support amb_A 0 must be above 0"),
+        ("amb_A=1 kg", "has the unit kg"),
+        ("amb_A", "--support amb_A: write NAME=VALUE"),
+    ],
+)
+def test_a_support_that_cannot_be(given: str, says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["rotor", "rotor_II", "--support", given, "-o", "never"]) == FAILED
+    assert says in capsys.readouterr().err
+
+
+def test_critical_speeds_need_two_supports() -> None:
+    with pytest.raises(TouchdownError, match="critical speeds need supports at two nodes of Rotor II"):
+        touchdown.Rotor.load("rotor_II").critical_speeds({"amb_A": 2e7})
+
+
+@pytest.mark.parametrize(
+    ("rotor", "diameter", "width"), [("rotor_I", 56.7, 20.8), ("rotor_II", 177.7, 13.7)]
+)
+def test_a_disc_is_drawn_as_large_as_its_file_has_it(rotor: str, diameter: float, width: float) -> None:
+    """From its inertias: the shaft keeps no diameters of discs."""
+    shaft = find(rotor)
+    point = max(shaft.points, key=lambda one: one.polar_inertia)
+    (axes,) = drawing(sheet(), shaft)
+    bodies = [patch for patch in axes.patches if patch.get_facecolor() == to_rgba(DISC)]
+    disc = max((body.get_path().get_extents() for body in bodies), key=lambda box: box.height)
+    assert (disc.height, disc.width) == pytest.approx((diameter, width), abs=0.05)
+    assert disc.x0 + 0.5 * disc.width == pytest.approx(1e3 * shaft.positions()[point.node - 1])
+
+
+def test_a_mass_without_inertias_is_a_mark() -> None:
+    shaft = replace(find("rotor_I"), points=(PointMass(5, 1.0),))
+    (axes,) = drawing(sheet(), shaft)
+    assert any(line.get_marker() == "D" for line in axes.lines)

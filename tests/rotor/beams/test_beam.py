@@ -12,7 +12,8 @@ from scipy import linalg
 
 from touchdown.rotor.beams import beam
 from touchdown.rotor.beams.assembly import assemble, tilt, translation
-from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, disc
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import PointMass, Shaft, disc
 from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis
 

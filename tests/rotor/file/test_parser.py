@@ -189,9 +189,34 @@ MISTAKES = {
     "poisson": (
         "poisson = 0.3",
         "poisson = 0.6",
-        ("material.steel.poisson = 0.6", "at least 0 and below 0.5"),
+        ("material.steel.poisson = 0.6", "at least -0.9 and below 0.5"),
     ),
     "poisson with a unit": ("poisson = 0.3", 'poisson = "0.3 m"', ("poisson = '0.3 m'", "without unit")),
+    "cone thinner than its bore": (
+        'inner_diameter = "5 mm"',
+        'inner_diameter = "5 mm"\nouter_diameter_end = "4 mm"',
+        ("element[1].inner_diameter = '5 mm' must be below outer_diameter_end = '4 mm'",),
+    ),
+    "cone with a sleeve": (
+        'outer_diameter = "30 mm"',
+        'outer_diameter = "30 mm"\nouter_diameter_end = "40 mm"',
+        ("element[2].sleeve", "cannot sit on a cone"),
+    ),
+    "layer in a layer": (
+        'inner_diameter = "5 mm"',
+        'layers = [{ outer_diameter = "15 mm" }]',
+        ("element[1].layers[1].outer_diameter = '15 mm' must be above what it sits on",),
+    ),
+    "layer of laminations": (
+        'inner_diameter = "5 mm"',
+        'layers = [{ outer_diameter = "35 mm", material = "laminations" }]',
+        ("element[1].layers[1].material", "has no poisson, which the layer needs"),
+    ),
+    "support without stiffness": (
+        "[stations]",
+        "[[support]]\nnode = 2\n\n[stations]",
+        ("support[1].stiffness is missing", "N/m"),
+    ),
     "damping": ("damping_ratio = 0.01", "damping_ratio = -1", ("damping_ratio = -1", "at least 0")),
     "bore too wide": (
         'inner_diameter = "5 mm"',

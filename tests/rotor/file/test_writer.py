@@ -9,10 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from touchdown.rotor.beams.shaft import Element, PointMass, Shaft, Station, Unbalance, disc
+from touchdown.rotor.beams.element import Element, split
+from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Support, Unbalance, disc
 from touchdown.rotor.file import RotorFileError, load, parse, save, shipped, written
 
 STEEL = Element(length=0.02, outer_diameter=0.03, modulus=207e9, density=7830.0, poisson=0.3)
+BRONZE = dataclasses.replace(STEEL, modulus=110e9, density=8800.0, poisson=-0.2)
+LAYERED = dataclasses.replace(  # a cone with a tube on it, and a solid bar beside
+    STEEL,
+    outer_diameter_end=0.04,
+    inner_diameter_end=0.01,
+    layers=(
+        dataclasses.replace(BRONZE, inner_diameter=0.03, inner_diameter_end=0.04, outer_diameter=0.05),
+        dataclasses.replace(BRONZE, outer_diameter=0.07, shear_factor=0.8),
+    ),
+)
 HAND_MADE = Shaft(
     title='A "stub"\tshaft \x7f',
     about='Two lines, a \\ and """,\nmade by hand: 10 µm',
@@ -23,6 +34,7 @@ HAND_MADE = Shaft(
         dataclasses.replace(STEEL, sleeve_diameter=0.055, sleeve_density=7650.0, sleeve_modulus=42.2e9),
         dataclasses.replace(STEEL, sleeve_diameter=0.056, sleeve_density=7650.0),
         dataclasses.replace(STEEL, modulus=110e9, density=4430.0, poisson=0.34, length=np.float64(0.1)),
+        *split(LAYERED, 3),
     ),
     points=(disc(3, 0.08, 0.03, 0.01, 7830.0), PointMass(1, 0.1), PointMass(7, 0.0, 1e-4, 0.7e-4)),
     unbalances=(Unbalance(3, 3e-6, -math.pi / 2.0), Unbalance(3, 1e-6 / 7.0, 1.0)),
@@ -30,6 +42,7 @@ HAND_MADE = Shaft(
     sensors=(Station("beside", 4),),
     levitated_at=("amb",),
     damping_ratio=0.0042,
+    supports=(Support(2, 1e7), Support(6, 1.0 / 3.0, 2e6, 0.0, 500.0)),
 )
 BARE = Shaft("Bare", (STEEL,))
 SHAFTS = {**{name: load(path) for name, path in shipped().items()}, "hand-made": HAND_MADE, "bare": BARE}

@@ -5,7 +5,7 @@
    It gives its motion (x, v) and the force f on the other body. Of the other it takes the motion (x2, v2), or a
    force (f_in): which side of a coupling it is follows from what is connected. clamped: it does not move;
    one_sided: the second spring pushes only; follows: x2 is not taken but integrated from v2, from x2_0 on.
-   lost: what its dampers took, where it is not one_sided.
+   lost: what its dampers took, where it is not one_sided; elapsed: the time it was stepped through (s).
    Inside it takes steps of Runge and Kutta's fourth order, of 10 us at most. */
 
 #include <math.h>
@@ -16,7 +16,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #define INNER 1e-5 /* s */
 
-enum { M, K, D, KC, DC, REST, GRAVITY, X0, V0, CLAMPED, ONE_SIDED, FOLLOWS, X2_0, X2, V2, F_IN, X, V, F, LOST, FOLLOWED, COUNT };
+enum { M, K, D, KC, DC, REST, GRAVITY, X0, V0, CLAMPED, ONE_SIDED, FOLLOWS, X2_0, X2, V2, F_IN, X, V, F, LOST, ELAPSED, FOLLOWED, COUNT };
 enum { OK, WARNING, DISCARD, ERROR };
 
 typedef struct {
@@ -135,6 +135,7 @@ EXPORT int fmi2DoStep(void *c, double time, double step, int keep)
     long parts = (long)ceil(step / INNER - 1e-9);
     for (long k = 0; k < parts; k++)
         advance(r, step / (double)parts);
+    r[ELAPSED] += step;
     return OK;
 }
 

@@ -1,8 +1,8 @@
 """A drop in cofmupy, which reads no SSP: the package's content as its configuration.
 
-cofmupy calls every variable of an FMI 2.0 FMU as Real, which integers refuse: `Typed` calls each by its
-type. With ORDER in the environment (COMPONENT,...;COMPONENT,...) groups are stepped one after the other,
-else all side by side.
+cofmupy calls every variable of an FMI 2.0 FMU as Real, which integers and choices refuse: `Typed` calls
+each by its type. With ORDER in the environment (COMPONENT,...;COMPONENT,...) groups are stepped one after
+the other, else all side by side.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ class Typed(wrappers.Fmu2Handler):
 
     def _set_variable(self, name: str, value: list) -> None:
         variable = self.var_name2attr[name]
-        getattr(self.fmu, f"set{variable.type}")([variable.valueReference], value)
+        kind = "Integer" if variable.type == "Enumeration" else variable.type  # one function for both
+        getattr(self.fmu, f"set{kind}")([variable.valueReference], value)
 
     def get_output_names(self) -> list[str]:
         return [name for name in super().get_output_names() if self.get_variable_type(name) == "Real"]
@@ -63,4 +64,5 @@ def configuration(drop: Drop, folder: str) -> dict[str, object]:
     }
 
 
-main(drive)
+if __name__ == "__main__":
+    main(drive)

@@ -56,4 +56,5 @@ def connected(drop: Drop, name: str, variable: str) -> bool:
     return drop.components[name].find(f"{SSD}Connectors/{SSD}Connector[@name='{variable}']") is not None
 
 
-main(drive)
+if __name__ == "__main__":
+    main(drive)

@@ -13,7 +13,7 @@ import os
 import sys
 import time as clock
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree.ElementTree import Element, fromstring
@@ -76,15 +76,20 @@ class Answer:
     spent: tuple[float, float]  # s, wall and processor, of all steps but the first WARM_UP
 
 
-def main(drive: Callable[[Drop], Answer]) -> None:
-    """Run the package of the command line with `drive`, and leave the answer."""
-    package, target, *names = sys.argv[1:]
+def opened(package: str, names: Sequence[str]) -> Drop:
+    """The package at a path, and what is wanted of it as COMPONENT.VARIABLE."""
     with zipfile.ZipFile(package) as archive:
         root = fromstring(archive.read(HEART))
     step = float(next(root.iter(f"{OSP}FixedStepAlgorithm")).attrib["baseStepSize"])
     stop = float(next(root.iter(f"{SSD}DefaultExperiment")).attrib["stopTime"])
     wanted = [tuple(name.split(".", 1)) for name in names]
-    drop = Drop(Path(package), root, step, round(stop / step), wanted)
+    return Drop(Path(package), root, step, round(stop / step), wanted)
+
+
+def main(drive: Callable[[Drop], Answer]) -> None:
+    """Run the package of the command line with `drive`, and leave the answer."""
+    package, target, *names = sys.argv[1:]
+    drop = opened(package, names)
     answer = drive(drop)
     found = {
         "values": dict(zip(names, answer.values, strict=True)),

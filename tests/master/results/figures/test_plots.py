@@ -12,6 +12,8 @@ import pytest
 from touchdown.master.coupling.system import Attachment
 from touchdown.master.results.ending import Ending, Finished, LastValues
 from touchdown.master.results.figures.energy import STYLES, energy
+from touchdown.master.results.figures.forces import forces
+from touchdown.master.results.figures.motion import speeds
 from touchdown.master.results.figures.style import LAST, sheet, zooms
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
 from touchdown.master.results.recording import Recording
@@ -26,6 +28,7 @@ from touchdown.master.results.spectra import (
     waterfall,
     windows,
 )
+from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.file import load_scene
 
 RATE = 10e3  # Hz
@@ -169,7 +172,7 @@ def test_zooms_of_short_runs_do_not_repeat() -> None:
         ("disk-cageless-simplified", set()),
     ],
 )
-@pytest.mark.parametrize("duration", [0.05, 0.002])
+@pytest.mark.parametrize("duration", [0.09, 0.05, 0.002])
 def test_a_short_run_has_its_pictures(name: str, more: set[str], duration: float, tmp_path: Path) -> None:
     scene = load_scene(name).set({"run.duration": duration})
     pictures = run_scene(scene, tmp_path, in_process=True).pictures
@@ -230,3 +233,69 @@ def test_every_curve_of_energy_can_be_told_from_the_others(tmp_path: Path) -> No
     assert "part_11 kinetic" in flows.get_title()
     assert "part_10" not in flows.get_title()
     recording.close()
+
+
+@pytest.fixture(scope="module")
+def landed(tmp_path_factory: pytest.TempPathFactory) -> Finished:
+    """A drop on the caged bearing with balls as bodies, over its first impact."""
+    scene = load_scene("disk-caged-detailed").set({"run.duration": 0.03})
+    result = run_scene(scene, tmp_path_factory.mktemp("landed"), in_process=True, pictures=False)
+    return Finished(result.scene, result.ending, result.recording)
+
+
+def test_the_first_impact_is_an_inset_of_the_forces(landed: Finished) -> None:
+    (seat,) = touchdown_seats(landed.system)
+    panels = forces(sheet(), landed, seat)
+    (inset,) = panels[0].child_axes
+    (curve,) = inset.lines
+    time, force = np.asarray(curve.get_data())
+    assert inset.get_xlim() == pytest.approx((-0.5, 5.0))
+    assert force[time < -0.05].max() == 0.0
+    assert force.max() == pytest.approx(landed.recording["bearing.contact.force"].max())
+    assert 0.3 < time[np.argmax(force)] < 1.2  # ms
+
+
+def test_an_inset_hides_no_force(landed: Finished) -> None:
+    """The rotor still bounces under it in so short a run."""
+    (seat,) = touchdown_seats(landed.system)
+    figure = sheet()
+    for axes in forces(figure, landed, seat):
+        for inset in axes.child_axes:
+            left, bottom = axes.transAxes.inverted().transform(inset.get_window_extent().p0)
+            for line in axes.lines:
+                x, y = axes.transAxes.inverted().transform(axes.transData.transform(line.get_xydata())).T
+                assert y[x > left].max(initial=0.0) < bottom
+
+
+def test_a_journal_that_has_not_touched_has_no_inset(tmp_path: Path) -> None:
+    scene = load_scene("disk-caged-simplified").set({"run.duration": 0.002})
+    result = run_scene(scene, tmp_path, in_process=True, pictures=False)
+    run = Finished(result.scene, result.ending, result.recording)
+    assert not forces(sheet(), run, *touchdown_seats(run.system))[0].child_axes
+
+
+def test_speeds_are_in_rpm_with_cage_and_balls_apart(landed: Finished) -> None:
+    """What rolls without slip is as fast as the geometry of the bearing says."""
+    (seat,) = touchdown_seats(landed.system)
+    panels = speeds(sheet(), landed, seat)
+    drawn = {line.get_label(): np.asarray(line.get_ydata())[-1] for axes in panels for line in axes.lines}
+    value = landed.system.value
+    assert drawn["rotor"] == pytest.approx(value("rotor.speed") * 30.0 / np.pi, rel=0.01)
+    assert drawn["inner ring without slip"] == pytest.approx(0.97 * drawn["rotor"], rel=1e-6)
+    ratio = value("bearing.balls.diameter") / value("bearing.balls.pitch_diameter")
+    assert drawn["inner ring"] > 500.0
+    assert drawn["cage"] == pytest.approx(0.5 * (1.0 - ratio) * drawn["inner ring"], rel=0.2)
+    assert drawn["balls, mean"] > drawn["inner ring"], "of the last panels: the balls' spin"
+    assert {axes.get_ylabel() for axes in panels} >= {"rotor, ring [rpm]", "round the axis [rpm]"}
+
+
+def test_the_legend_of_energies_stands_beside_the_curves(landed: Finished) -> None:
+    figure = sheet()
+    flows, _ = energy(figure, landed)
+    figure.draw_without_rendering()
+    legend = flows.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().x0 > flows.get_window_extent().x1
+    ends = {line.get_label(): np.asarray(line.get_ydata())[-1] for line in flows.lines}
+    named = [ends[text.get_text()] for text in legend.get_texts()]
+    assert named == sorted(named, reverse=True)

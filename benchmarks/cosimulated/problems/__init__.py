@@ -1,0 +1,1 @@
+"""Systems that masters are compared on."""

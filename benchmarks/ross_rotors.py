@@ -1,0 +1,133 @@
+"""ROSS's published example rotors, imported: their modes by ROSS and by us, free and on their bearings.
+
+    python benchmarks/ross_rotors.py [-o FOLDER]
+
+needs ROSS (`pip install ross-rotordynamics "plotly<6"`). Each example is saved by `rotor.save` and imported
+by one command. ROSS's own matrices are solved here without its axial and torsional coordinates, undamped;
+`run_modal` and `run_ucs` (critical speeds over the stiffness of the bearings) are solved as they are. With
+-o it leaves saved files and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import json
+import math
+from contextlib import redirect_stdout
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import ross
+
+import touchdown
+from touchdown.master.cli import main as command
+from touchdown.rotor.beams.shaft import Support
+from touchdown.rotor.modal.campbell import supported_whirl
+from touchdown.rotor.modal.modes import basis
+
+EXAMPLES = ("rotor_example", "rotor_example_with_damping", "compressor_example")
+SPEEDS = (0.0, 6000.0, 12000.0)  # rpm
+MODES = 12  # six, backward and forward
+STIFFNESS = (5, 9, 5)  # decades of N/m, and how many
+STILL = 1.0  # rad/s; below, a free rotor does not bend
+
+
+def ross_modes(rotor: ross.Rotor, speed: float) -> np.ndarray:
+    """Undamped lateral whirl frequencies (Hz), ascending, at `speed` (rad/s), of ROSS's matrices."""
+    keep = [6 * node + i for node in range(len(rotor.nodes)) for i in (0, 1, 3, 4)]
+    M, K, G = (m[np.ix_(keep, keep)] for m in (rotor.M(speed), rotor.K(speed), rotor.G()))
+    inverse = np.linalg.inv(M)
+    zero, one = np.zeros_like(M), np.eye(len(M))
+    found = np.linalg.eigvals(np.block([[zero, one], [-inverse @ K, -speed * inverse @ G]])).imag
+    return np.sort(found[found > STILL])[:MODES] / (2.0 * math.pi)
+
+
+def our_modes(rotor: touchdown.Rotor, speed: float, supports: tuple[Support, ...]) -> np.ndarray:
+    """The same of ours on the springs of `supports`."""
+    springs = [replace(s, damping=0.0, damping_y=0.0) for s in supports]
+    found = supported_whirl(basis(rotor, 0), speed, springs).frequencies
+    return np.sort(found[found > STILL / (2.0 * math.pi)])[:MODES]
+
+
+def bending(frequencies: np.ndarray, rotor: touchdown.Rotor) -> np.ndarray:
+    """Without the free rotor's precession."""
+    return frequencies[frequencies > 0.5 * rotor.frequencies(3)[2]]
+
+
+def main() -> None:
+    """Print a line for each example and speed."""
+    options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("-o", "--output", type=Path)
+    folder = options.parse_args().output
+    print(
+        f"ROSS {ross.__version__}; largest relative deviation of {MODES // 2} modes, backward and forward"
+    )
+    print(f"{'example':28}{'rpm':>7}{'free':>10}{'on bearings':>13}{'run_modal':>11}{'run_ucs':>10}")
+    with TemporaryDirectory() as temporary:
+        told = {name: compared(name, folder or Path(temporary)) for name in EXAMPLES}
+    if folder:
+        kept = {"ross": ross.__version__, "hz": told}
+        (folder / "frequencies.json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+
+
+def compared(name: str, folder: Path) -> dict[str, dict[str, list[float]]]:
+    """Print the lines of an example; returns ROSS's frequencies (Hz), free and on bearings, by speed."""
+    original = getattr(ross, name)()
+    free = ross.Rotor(original.shaft_elements, original.disk_elements)
+    bearings = [b for b in original.bearing_elements if not isinstance(b, ross.SealElement)]
+    held = ross.Rotor(original.shaft_elements, original.disk_elements, bearings)
+    saved = folder / f"{name}.toml"
+    saved.unlink(missing_ok=True)
+    original.save(saved)
+    told: dict[str, dict[str, list[float]]] = {"free": {}, "held": {}}
+    for rpm in SPEEDS:
+        speed = rpm * math.pi / 30.0
+        rotor = imported(saved, rpm)
+        theirs = {"free": bending(ross_modes(free, speed), rotor), "held": ross_modes(held, speed)}
+        ours = {"free": bending(our_modes(rotor, speed, ()), rotor)}
+        if "cross-coupled" not in rotor.about:
+            ours["held"] = our_modes(rotor, speed, rotor.supports)
+        apart = {kind: f"{np.max(np.abs(ours[kind] / theirs[kind] - 1.0)):.1e}" for kind in ours}
+        cells = (apart["free"], apart.get("held", "-"), run_modal(held, rotor, speed))
+        for kind in ours:
+            told[kind][f"{rpm:g}"] = theirs[kind].tolist()
+        print(f"{name:28}{rpm:7.0f}{cells[0]:>10}{cells[1]:>13}{cells[2]:>11}", end="\n" if rpm else "")
+        if not rpm:
+            told["critical"], line = critical(original, rotor)
+            print(line)
+    return told
+
+
+def critical(original: ross.Rotor, rotor: touchdown.Rotor) -> tuple[dict[str, list[float]], str]:
+    """Critical speeds (rad/s) by the stiffness of the bearings, ROSS's; and how far ours are from them."""
+    low, high, count = STIFFNESS
+    found = original.run_ucs((low, high), num=count, num_modes=16, synchronous=True).wn.T
+    theirs = {f"{k:g}": row.tolist() for k, row in zip(np.logspace(low, high, count), found, strict=True)}
+    ours = [
+        rotor.critical_speeds({s.name: float(k) for s in rotor.stations})[: found.shape[1]] for k in theirs
+    ]
+    return theirs, f"{np.max(np.abs(np.array(ours) / found - 1.0)):10.1e}"
+
+
+def imported(saved: Path, rpm: float) -> touchdown.Rotor:
+    """By the command, from what ROSS saved."""
+    with TemporaryDirectory() as temporary, redirect_stdout(io.StringIO()):
+        path = str(Path(temporary) / "imported.toml")
+        assert command(["import-rotor", str(saved), "-o", path, "--speed", f"{rpm} rpm"]) == 0
+        return touchdown.Rotor.load(path)
+
+
+def run_modal(held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> str:
+    """How far ROSS's own damped modes are from ours, where nothing is left out of the import."""
+    if len(rotor.about.splitlines()) > 1:
+        return "-"
+    theirs = held.run_modal(speed, num_modes=4 * MODES, sparse=False).wd / (2.0 * math.pi)
+    ours = supported_whirl(basis(rotor, 0), speed, rotor.supports).frequencies[: MODES // 2]
+    return f"{max(np.min(np.abs(theirs / one - 1.0)) for one in ours):.1e}"
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+"""terminalsAndIcons/: which variables belong to one port, and pictures to draw FMU and ports with.
+
+FMI 3.0 defines it (2.4.9), and FMI 2.0 takes it over from its release 2.0.4 on. Tools that know it connect
+a bearing with a journal by one line instead of thirty: members of one name belong together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from touchdown.fmus.description import causality
+from touchdown.fmus.presentation.icon import dot, icon
+from touchdown.modelkit.model import Model, slots
+from touchdown.modelkit.variables import Causality
+
+FOLDER = "terminalsAndIcons"
+PORT_ICON = "port"
+SIZE, PORT = 100.0, 12.0  # half the width of the drawing, and of a port in it
+_CROSSING = (Causality.INPUT, Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
+
+
+def entries(model: Model) -> dict[str, bytes]:
+    """The folder's files by their names in the FMU."""
+    return {
+        f"{FOLDER}/terminalsAndIcons.xml": _xml(model),
+        f"{FOLDER}/icon.png": icon(model),
+        f"{FOLDER}/{PORT_ICON}.png": dot(),
+    }
+
+
+def ports(model: Model) -> dict[str, list[str]]:
+    """Members of each port of `model`: whatever has a position x and y, or takes a force fx and fy."""
+    found: dict[str, list[str]] = {}
+    for slot in slots(model):
+        port, _, member = slot.variable.name.partition(".")
+        if member and causality(slot)[0] in _CROSSING:
+            found.setdefault(port, []).append(member)
+    kinds = ({"x", "y"}, {"fx", "fy"})
+    return {port: members for port, members in found.items() if any(k <= set(members) for k in kinds)}
+
+
+def _xml(model: Model) -> bytes:
+    root = Element("fmiTerminalsAndIcons", {"fmiVersion": "3.0"})
+    picture = SubElement(root, "GraphicalRepresentation")
+    SubElement(picture, "CoordinateSystem", {**_corners(0.0, SIZE), "suggestedScalingFactorTo_mm": "0.1"})
+    SubElement(picture, "Icon", _corners(0.0, SIZE))
+    terminals = SubElement(root, "Terminals")
+    for (port, members), height in zip(ports(model).items(), _heights(len(ports(model))), strict=True):
+        terminal = SubElement(terminals, "Terminal", {"name": port, "matchingRule": "bus"})
+        for member in members:
+            SubElement(
+                terminal,
+                "TerminalMemberVariable",
+                {"variableName": f"{port}.{member}", "memberName": member, "variableKind": "signal"},
+            )
+        place = {**_corners(height, PORT), "iconBaseName": PORT_ICON}
+        SubElement(terminal, "TerminalGraphicalRepresentation", place)
+    indent(root)
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+
+
+def _heights(count: int) -> Iterator[float]:
+    """Where `count` ports stand at the left edge, from the top."""
+    return (SIZE - (2.0 * i + 1.0) * SIZE / count for i in range(count))
+
+
+def _corners(height: float, half: float) -> dict[str, str]:
+    """A square: the whole drawing, or a port at the left edge of it at some height."""
+    middle = 0.0 if half == SIZE else -SIZE
+    return {
+        "x1": f"{middle - half:g}",
+        "y1": f"{height - half:g}",
+        "x2": f"{middle + half:g}",
+        "y2": f"{height + half:g}",
+    }

@@ -1,0 +1,61 @@
+"""A model for rotors of some number of modes: what it starts from, and which modes its seats tell of.
+
+A seat has room for twenty elastic modes, each with a connector for everything that the contract names.
+Where fewer are in use the others are in the way, most of all where connections are drawn by hand.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+
+from touchdown.fmus.variants.starts import defaults, starting_from
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import Model, ModelError
+
+ALL = 0  # modes of the finite elements
+RIGID = 2  # per plane
+_MODE = re.compile(r"(?:^|\.)mode\[(\d+)\]")
+
+
+def with_modes(model: Model, count: int) -> Model:
+    """`model` for rotors of `count` modes per plane, the two rigid ones included; `ALL`: it stays.
+
+    A rotor starts with so many, and where they are the rigid ones with nothing else. Seats tell of as many
+    elastic modes: two less, and the residual vectors of two seats; for a rigid rotor of none. Where a
+    variable lies in memory, its value reference, does not change.
+    """
+    if count == ALL:
+        return model
+    told = 0 if count == RIGID else count
+    own = defaults(model)
+    starts = {name: value for name, value in _starts(count).items() if name in own and own[name] != value}
+    started = starting_from(model, starts) if starts else model
+    rename = partial(_exposed, model.rename, told)
+    return replace(started, rename=rename, content=f"{started.content}_modes{count}")
+
+
+def _starts(count: int) -> Mapping[str, float]:
+    """What a rotor of `count` modes starts from."""
+    return {"modes": count} | ({"residual": 0} if count == RIGID else {})
+
+
+def _exposed(rename: Callable[[str], str | None], told: int, name: str) -> str | None:
+    """The name that `rename` gives a declared variable; None for those of modes beyond the first `told`."""
+    mode = _MODE.search(name)
+    return None if mode and int(mode[1]) > told else rename(name)
+
+
+def refusal(model: Model, parameters: Mapping[str, int]) -> str:
+    """Why a model does not start with these whole parameters, as far as it has them, or ""."""
+    instance = Instance(model)
+    for slot in instance.slots:
+        if slot.variable.name in parameters:
+            instance.integers[slot.index] = parameters[slot.variable.name]
+    try:
+        instance.start(0.0)
+    except ModelError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,1 @@
+"""Where components come from, and how they are loaded and made ready."""

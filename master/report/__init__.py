@@ -1,0 +1,1 @@
+"""Reports: what a run found as a page that is handed on, and as moving pictures."""

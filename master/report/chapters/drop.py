@@ -1,0 +1,190 @@
+"""The contact event: under which conditions the rotor fell, and how it moved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+import numpy as np
+
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.report.animation.motion import motions
+from touchdown.master.report.facts.numbers import digits, listed, quantity, share, speed
+from touchdown.master.report.facts.series import Line
+from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
+from touchdown.master.report.page.blocks import (
+    Absent,
+    Block,
+    Lacking,
+    Motion,
+    Picture,
+    Series,
+    Table,
+    Text,
+)
+from touchdown.master.report.pictures.charts import series
+from touchdown.master.report.pictures.orbit import Orbit, orbits
+from touchdown.master.report.pictures.svg import inline
+from touchdown.master.results.ending import housing_port
+from touchdown.master.results.figures.style import within
+from touchdown.master.results.recording import NotRecordedError
+from touchdown.master.results.summary import relative_orbit
+
+UM = 1e6
+MOVED = "Where the journal goes"
+
+
+def drop(subject: Subject) -> list[Block]:
+    """Conditions and events, orbits, displacement over time."""
+    subject.need_seats()
+    blocks: list[Block] = [_conditions(subject), _events(subject)]
+    try:
+        blocks += [*_moving(subject), _orbits(subject)]
+        blocks += [_displacement(subject, a) for a in subject.seats]
+    except NotRecordedError as error:
+        blocks.append(Lacking(MOVED, f"{error}."))
+    return blocks
+
+
+def _conditions(subject: Subject) -> Table:
+    system, rows = subject.run.system, []
+    for name in dict.fromkeys(a.body for a in subject.seats):
+        rows += [[f"{what} ({name})", value] for what, value in _of_body(subject, name)]
+    for a in system.attachments:
+        if f"{a.bearing}.shutdown_time" in system and a not in subject.seats:
+            time = system.value(f"{a.bearing}.shutdown_time") - subject.zero
+            rows.append([f"{a.bearing} is shut down at", quantity(time, "s")])
+    for a in subject.seats:
+        clearance = subject.setting(a, "clearance")
+        if clearance is not None:
+            rows.append([f"Radial clearance of {a.bearing}", quantity(clearance, "m")])
+    return Table("Conditions of the drop; times count from the shutdown", ["Condition", "Value"], rows, 1)
+
+
+def _of_body(subject: Subject, name: str) -> Iterator[tuple[str, str]]:
+    system = subject.run.system
+    for variable, what in (("mass", "Mass"), ("inertia", "Polar moment of inertia")):
+        if f"{name}.{variable}" in system:
+            known = system.components[name].variables[variable].unit or "1"
+            yield what, quantity(system.value(f"{name}.{variable}"), known)
+    spin = next(a.motion("omega") for a in subject.seats if a.body == name)
+    if spin in subject.run.recording:
+        yield "Speed at the start", speed(float(subject.run.recording[spin][0]))
+    for variable, unit in (("eccentricity", "m"), ("unbalance_angle", "rad"), ("unbalance_scale", "1")):
+        if f"{name}.{variable}" in system:
+            words = variable.replace("_", " ").capitalize()
+            yield words, quantity(system.value(f"{name}.{variable}"), unit)
+
+
+def _events(subject: Subject) -> Table:
+    rows = []
+    for a in subject.seats:
+        falls = subject.figure(FIRST_CONTACT, a)
+        hits = subject.figure("first_contact_speed_m_s", a)
+        loss = subject.figure("largest_displacement_um", a)
+        rows.append(
+            [
+                subject.name(a),
+                quantity(falls, "s"),
+                quantity(hits, "m/s", 3),
+                quantity(subject.figure("peak_contact_force_N", a), "N", 3),
+                quantity(None if loss is None else 1e-6 * loss, "m", 3),
+                quantity(subject.figure("pendulum_frequency_Hz", a), "Hz", 3),
+            ]
+        )
+    head = [
+        "Seat",
+        "First contact",
+        "at",
+        "Largest force",
+        "Largest displacement in space",
+        "Main frequency sideways",
+    ]
+    return Table("What happened, seat by seat", head, rows, numbers=1)
+
+
+def _moving(subject: Subject) -> Iterator[Block]:
+    """The drop as a moving picture, of the seats that can be drawn."""
+    shown, lacking = motions(subject)
+    if shown:
+        factors = listed(list(dict.fromkeys(f"{digits(m.shape.magnified, 2)} times" for m in shown)))
+        data = f"[{','.join(m.for_page() for m in shown)}]"
+        yield Motion(
+            data,
+            "The drop: slowly through the first impact, then faster. Displacements and clearance are "
+            f"magnified {factors}; the arrow is the bearing's force on the journal, the lines on journal "
+            "and ring turn with them. Balls are carried on by their mean orbit.",
+        )
+    yield from (Lacking("The drop as a moving picture", why) for why in lacking)
+
+
+def _orbits(subject: Subject) -> Picture:
+    shown = [_orbit(subject, a) for a in subject.seats]
+    names = listed([subject.name(a) for a in subject.seats])
+    alt = f"Orbits of the journal in its clearance circle at {names}"
+    return Picture(
+        inline(partial(orbits, shown=shown), "orbits", alt),
+        "Orbit of the journal as it lies to its housing, all to one scale. Dashed: the clearance, about "
+        "where the housing is at the start; orange: the first impact; cross: the axis of the magnetic "
+        "bearings; dot: the end of the run.",
+    )
+
+
+def _orbit(subject: Subject, a: Attachment) -> Orbit:
+    recording = subject.run.recording
+    x, y = relative_orbit(subject.run.system, a, recording)
+    port = housing_port(subject.run.system, a)
+    middle = (0.0, 0.0)
+    if port is not None:
+        middle = float(recording[f"{port}.x"][0]), float(recording[f"{port}.y"][0])
+    impact = subject.impact or (np.inf, np.inf)
+    words = subject.whirl(a)
+    title = f"{subject.name(a)}: {words}" if isinstance(words, str) else subject.name(a)
+    landing = within(recording.time, impact)
+    return Orbit(title, x, y, landing, subject.setting(a, "clearance"), middle)
+
+
+def _displacement(subject: Subject, a: Attachment) -> Series:
+    x, y = relative_orbit(subject.run.system, a, subject.run.recording)
+    curves = [
+        Line("sideways (x)", "orange", UM * x),
+        Line("upwards (y)", "blue", UM * y),
+        Line("from the middle", "grey", UM * np.hypot(x, y)),
+    ]
+    seat = subject.name(a)
+    chart = subject.chart(f"displacement-{seat}", f"Displacement at {seat}", "displacement [µm]", curves)
+    return series(chart, f"Displacement of the journal at {seat} from its housing.")
+
+
+def test_figures(subject: Subject) -> list[Block]:
+    """The figures that a drop test can be held against."""
+    if subject.first_contact is None:
+        raise Absent("nothing touched, so that there is nothing a drop test could be held against.")
+    rows = []
+    for a in subject.seats:
+        displacement = subject.figure("largest_displacement_um", a)
+        clearance = subject.setting(a, "clearance")
+        beyond = None
+        if displacement is not None and clearance:
+            beyond = 1e-6 * displacement / clearance
+        rows.append(
+            [
+                subject.name(a),
+                quantity(subject.figure(FIRST_CONTACT, a), "s"),
+                quantity(None if displacement is None else 1e-6 * displacement, "m", 3),
+                share(beyond, 3),
+                quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),
+                quantity(subject.figure("ring_sync_time_s", a), "s"),
+            ]
+        )
+    head = [
+        *("Seat", "Fall time", "Largest displacement in space", "over the clearance"),
+        "Whirl frequency",
+        "Ring rolls with the rotor after",
+    ]
+    return [
+        Table("What proximity probes and a speed pickup on the ring would show", head, rows, 1),
+        Text(
+            "Displacements are of the journal from its place at the shutdown, with what the housing gives."
+        ),
+    ]

@@ -1,0 +1,129 @@
+"""What rolls: how the rings are spun up, what the balls carry, and how hard they press on the races."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from touchdown.bearings import rating
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.report.facts.numbers import RPM, listed, quantity, share
+from touchdown.master.report.facts.rating import Rated, rated
+from touchdown.master.report.facts.series import Line
+from touchdown.master.report.facts.subject import COLOURS, Subject
+from touchdown.master.report.page.blocks import Absent, Block, Lacking, Series, Table
+from touchdown.master.report.pictures.charts import series
+
+RING, BALL = "ring.omega", "balls.force"
+CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
+GPA = 1e-9
+RUN_UP = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
+
+
+def run_up(subject: Subject) -> list[Block]:
+    """Speeds of rotor, inner rings and cages over time, in rpm."""
+    turning = _rolling(subject, RING, "ring that turns")
+    spin = turning[0].motion("omega")
+    lines = []
+    if spin in subject.run.recording:
+        lines.append(Line("rotor", "ink", RPM * subject.run.recording[spin]))
+    for k, a in enumerate(turning):
+        colour = COLOURS[k % len(COLOURS)]
+        lines.append(Line(f"inner ring {subject.name(a)}", colour, RPM * subject.values(a, RING)))
+    for k, a in enumerate(turning[:2]):
+        orbit = _orbit_speed(subject, a)
+        if orbit is not None:
+            lines.append(Line(f"balls' orbit {subject.name(a)}", ("green", "purple")[k], RPM * orbit))
+    chart = subject.chart("run-up", "Speeds of rotor, rings and balls", "speed [rpm]", lines)
+    rows = [_synchronous(subject, a) for a in turning]
+    return [
+        series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
+        Table("Run-up of the inner rings", RUN_UP, rows, 1),
+    ]
+
+
+def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:
+    """Of the balls round the bearing (rad/s, with the rotor's sign)."""
+    pitch = subject.setting(a, "balls.pitch_diameter")
+    known = next((name for name in CAGE if subject.has(a, name)), None)
+    if known is None or not pitch:
+        return None
+    return subject.values(a, known) / (0.5 * pitch)
+
+
+def _synchronous(subject: Subject, a: Attachment) -> list[str]:
+    ring = subject.values(a, RING)
+    spin = a.motion("omega")
+    end = float(subject.run.recording[spin][-1]) if spin in subject.run.recording else 0.0
+    slip = float(ring[-1]) / end if end else None
+    sync = subject.figure("ring_sync_time_s", a)
+    said = "not in this run" if sync is None else quantity(sync, "s")
+    return [subject.name(a), said, f"{quantity(RPM * float(ring[-1]), '1')} rpm", share(slip, 3)]
+
+
+def balls(subject: Subject) -> list[Block]:
+    """Loads of the balls, pressure on the races."""
+    loaded = _rolling(subject, BALL, "ball")
+    if subject.first_contact is None:
+        raise Absent("nothing touched.")
+    lines = [
+        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, BALL))
+        for k, a in enumerate(loaded)
+    ]
+    chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
+    blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
+    told = {subject.name(a): rated(subject, a) for a in loaded}
+    found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
+    why = {seat: one for seat, one in told.items() if isinstance(one, str)}
+    if found:
+        blocks += [_pressure(subject, found), _pressures(found)]
+    blocks += [Lacking(f"Hertz pressure at {seat}", f"{reason}.") for seat, reason in why.items()]
+    return blocks
+
+
+def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
+    lines = [
+        Line(seat, COLOURS[k % len(COLOURS)], GPA * one.pressure(rating.INNER))
+        for k, (seat, one) in enumerate(found.items())
+    ]
+    title = "Hertz pressure on the inner race"
+    chart = subject.chart("pressure", title, "largest pressure [GPa]", lines)
+    return series(
+        chart,
+        "Largest pressure of the most loaded ball on the inner race, by Hertz from the ball's load and the "
+        "stated geometry. At 4.2 GPa ball and race keep a dent of a ten-thousandth of the ball's diameter "
+        "(ISO 76).",
+    )
+
+
+def _pressures(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.loads.peak, "N"),
+            quantity(one.peak_pressure(rating.INNER), "Pa", 3),
+            quantity(one.peak_pressure(rating.OUTER), "Pa", 3),
+            " by ".join(quantity(axis, "m", 3) for axis in one.half_axes),
+        ]
+        for seat, one in found.items()
+    ]
+    head = [
+        "Seat",
+        "Largest ball load",
+        "Pressure, inner race",
+        "outer race",
+        "Contact's half axes, inner race",
+    ]
+    return Table("Largest loads and pressures of the run", head, rows, 1)
+
+
+def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]:
+    """The seats whose bearings tell of a variable. Raises Absent where none does."""
+    found = [a for a in subject.need_seats() if subject.has(a, variable)]
+    if not found:
+        names = listed(
+            [f"{a.bearing} ({subject.result.scene.components[a.bearing].fmu})" for a in subject.seats]
+        )
+        raise Absent(f"{names} has no {what}, or it was not recorded.")
+    return found

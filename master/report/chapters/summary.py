@@ -1,0 +1,166 @@
+"""The verdict, on what it rests, and the figures that are asked for first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from touchdown.bearings import rating
+from touchdown.master.common.ended import Ended
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.report.facts.numbers import RPM, digits, listed, quantity, share
+from touchdown.master.report.facts.rating import Rated, rated
+from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
+from touchdown.master.report.page.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
+from touchdown.master.results.whirl.evidence import evidence
+from touchdown.master.results.whirl.unbalance import unbalanced
+
+NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
+UNTOLD = "not told, for no clearance is stated or no orbit recorded"
+SPINS = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
+
+
+def headline(subject: Subject) -> str:
+    """The verdict in one sentence."""
+    result = subject.result
+    if result.ended is Ended.STOPPED:
+        return f"The run stopped before its end: {result.stopped_because}."
+    cut = "" if result.ended is Ended.COMPLETED else " The run was ended early."
+    if not subject.seats:
+        return f"The scene has no touchdown bearing.{cut}"
+    if subject.first_contact is None:
+        seconds = quantity(float(subject.run.recording.time[-1]), "s")
+        return f"The rotor touches no bearing within {seconds} of the shutdown.{cut}"
+    return f"{_verdict(subject)}{cut}"
+
+
+def _verdict(subject: Subject) -> str:
+    said = {subject.name(a): subject.whirl(a) for a in subject.seats}
+    whirls = {
+        seat: words for seat, words in said.items() if isinstance(words, str) and "ward whirl" in words
+    }
+    if whirls:
+        where = _by_words(whirls)
+        return f"The rotor whirls: {where}."
+    told = {seat: words for seat, words in said.items() if isinstance(words, str)}
+    if not told:
+        return f"The rotor lands; whether it whirls is {UNTOLD}."
+    return f"The rotor lands and does not whirl: {_by_words(told)}."
+
+
+def _by_words(said: dict[str, str]) -> str:
+    """'pendulum at A and B', 'pendulum at A; no whirl at B'."""
+    groups: dict[str, list[str]] = {}
+    for seat, words in said.items():
+        groups.setdefault(words, []).append(seat)
+    return "; ".join(f"{words} at {listed(seats)}" for words, seats in groups.items())
+
+
+def summary(subject: Subject) -> list[Block]:
+    """Verdicts and first figures."""
+    blocks: list[Block] = [Tiles(list(_tiles(subject)))]
+    blocks += [Remark(text, grave) for text, grave in _remarks(subject)]
+    if subject.seats:
+        blocks.append(_verdicts(subject, subject.seats))
+        told = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
+        blocks += [Text("What the verdicts rest on:"), Points(told)] if told else []
+    return blocks
+
+
+def _tiles(subject: Subject) -> Iterator[Tile]:
+    if subject.first_contact is not None:
+        yield Tile("First contact", quantity(subject.first_contact, "s"), "after the shutdown")
+    for key, unit, factor, label in (
+        ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
+        ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
+        ("largest_displacement_um", "m", 1e-6, "Largest displacement in space"),
+    ):
+        found = [(v, a) for a in subject.seats if (v := subject.figure(key, a)) is not None]
+        if found:
+            value, a = max(found, key=lambda pair: pair[0])
+            yield Tile(label, quantity(factor * value, unit, 3), _at(subject, a))
+    yield from _rated(subject)
+    stress = number(subject.summary.get("peak_bending_stress_MPa"))
+    if stress is not None:
+        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), "in the shaft")
+    speed = number(subject.summary.get("rotor_speed_end_rpm"))
+    if speed is not None:
+        end = quantity(float(subject.run.recording.time[-1]), "s")
+        yield Tile("Rotor at the end", f"{digits(speed, 4)} rpm", f"after {end}")
+
+
+def _rated(subject: Subject) -> Iterator[Tile]:
+    """What the largest ball load means for the races."""
+    told = [(one, a) for a in subject.seats if isinstance(one := rated(subject, a), Rated)]
+    if subject.first_contact is None or not told:
+        return
+    one, a = min(told, key=lambda pair: pair[0].pressure_safety)
+    pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
+    yield Tile("Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a))
+    yield Tile("Static safety s₀, estimate", digits(one.static_safety, 3), _at(subject, a))
+
+
+def _at(subject: Subject, a: Attachment) -> str:
+    return f"at {subject.name(a)}"
+
+
+def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
+    rows = []
+    for a in seats:
+        contact = subject.figure(FIRST_CONTACT, a)
+        words = subject.whirl(a)
+        frequency = number(subject.whirl(a, "_frequency_Hz"))
+        turns = number(subject.whirl(a, "_revolutions"))
+        rows.append(
+            [
+                f"{subject.name(a)} ({a.bearing})",
+                words if isinstance(words, str) else UNTOLD,
+                quantity(contact, "s"),
+                quantity(subject.figure("peak_contact_force_N", a), "N", 3),
+                quantity(turns or None, "1", 3),
+                quantity(frequency, "Hz", 3),
+            ]
+        )
+    head = ["Seat", "Verdict", "First contact", "Largest contact force", "Whirl turns", "Whirl frequency"]
+    return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
+
+
+def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
+    """What has to be known before the figures are used; and whether it may make them wrong."""
+    result = subject.result
+    if result.ended is not Ended.COMPLETED:
+        yield (
+            f"The run was {result.ended.value}: {result.stopped_because}. What follows is up to there.",
+            True,
+        )
+    yield from ((f"{warning.rstrip('.')}.", True) for warning in result.warnings)
+    made = number(subject.summary.get("energy_made_of_turnover"))
+    if made is not None and abs(made) > NOT_ACCURATE:
+        yield (
+            f"The coupling {'made' if made > 0.0 else 'lost'} {share(abs(made))} of the energy that "
+            "crossed it; a shorter run.macro_step shows what hangs on that.",
+            True,
+        )
+    if unbalanced(subject.run.system) and subject.seats:
+        yield (
+            "This is one phase of the unbalance. Whether a rotor whirls may hang on the phase; "
+            "`touchdown verdict` runs them all.",
+            False,
+        )
+    yield from _still_turning(subject)
+
+
+def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
+    if subject.first_contact is None:
+        return
+    name = subject.seats[0].motion("omega")
+    if name not in subject.run.recording:
+        return
+    spin = abs(subject.run.recording[name])
+    if spin[-1] > SPINS * spin[0] > 0.0:
+        end = quantity(float(subject.run.recording.time[-1]), "s")
+        left = f"{digits(RPM * float(spin[-1]), 4)} of {digits(RPM * float(spin[0]), 4)} rpm"
+        yield (
+            f"The run ends {end} after the shutdown, when the rotor still has {left}: figures are of this "
+            "time, not of the whole run-down.",
+            False,
+        )

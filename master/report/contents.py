@@ -1,0 +1,91 @@
+"""The chapters of a report, in the order of ISO 14839-5's scope (touchdown bearings) where it has them.
+
+The standard's scope is public: a) architecture, b) functional requirements, c) dynamic system,
+d) environment, e) operation and contact events, f) failure modes, g) loads, sizing and analysis,
+h) acceptance tests, i) condition monitoring and inspection, j) life cycle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from touchdown.master.report.chapters.accuracy import accuracy
+from touchdown.master.report.chapters.drop import drop, test_figures
+from touchdown.master.report.chapters.figures import spectra, stresses
+from touchdown.master.report.chapters.forces import forces
+from touchdown.master.report.chapters.life import life
+from touchdown.master.report.chapters.machine import machine
+from touchdown.master.report.chapters.model import model
+from touchdown.master.report.chapters.repeat import repeat
+from touchdown.master.report.chapters.rolling import balls, run_up
+from touchdown.master.report.chapters.settings import settings
+from touchdown.master.report.chapters.summary import summary
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Absent, Block, Section
+from touchdown.master.results.recording import NotRecordedError
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """One of a report."""
+
+    name: str  # of its anchor
+    title: str
+    blocks: Callable[[Subject], list[Block]]
+    scope: str = ""  # letter in the scope of ISO 14839-5
+
+
+def never(why: str) -> Callable[[Subject], list[Block]]:
+    """Of a chapter that no run can give."""
+
+    def blocks(subject: Subject) -> list[Block]:
+        raise Absent(why)
+
+    return blocks
+
+
+CHAPTERS = (
+    Chapter("summary", "Summary", summary),
+    Chapter("machine", "The machine", machine, "a"),
+    Chapter(
+        "requirements",
+        "Requirements",
+        never("a scene states none: neither allowed displacement nor number of drops."),
+        "b",
+    ),
+    Chapter("model", "What was modelled, and what was left out", model, "c"),
+    Chapter(
+        "environment",
+        "Environment",
+        never("temperature, pressure and medium are not modelled."),
+        "d",
+    ),
+    Chapter("drop", "The contact event", drop, "e"),
+    Chapter("forces", "Contact forces and where they act", forces, "f"),
+    Chapter("run-up", "Run-up of rings and balls", run_up, "f"),
+    Chapter("spectra", "Spectra", spectra, "f"),
+    Chapter("balls", "Ball loads and Hertz pressure", balls, "g"),
+    Chapter("life", "Static safety, and drops until a limit", life, "g"),
+    Chapter("stresses", "Shaft stresses", stresses, "g"),
+    Chapter("accuracy", "Energy, and what it says about accuracy", accuracy, "g"),
+    Chapter("test", "What a drop test would show", test_figures, "h"),
+    Chapter(
+        "inspection",
+        "Condition monitoring and inspection",
+        never("a run tells nothing of a bearing in service; the limits above say what a drop may leave."),
+        "i",
+    ),
+    Chapter("settings", "Settings in force", settings),
+    Chapter("repeat", "Run it again", repeat),
+)
+
+
+def section(chapter: Chapter, subject: Subject) -> Section:
+    """A chapter as it is printed."""
+    try:
+        return Section(chapter.name, chapter.title, chapter.blocks(subject), scope=chapter.scope)
+    except Absent as absent:
+        return Section(chapter.name, chapter.title, lacking=str(absent), scope=chapter.scope)
+    except NotRecordedError as error:
+        return Section(chapter.name, chapter.title, lacking=f"{error}.", scope=chapter.scope)

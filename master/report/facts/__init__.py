@@ -1,0 +1,1 @@
+"""What chapters ask of a run, and how its numbers are shown."""

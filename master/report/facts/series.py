@@ -1,0 +1,87 @@
+"""Curves over time for a chart that can be zoomed: few enough points, no peak lost.
+
+Where a recording has more rows than MOST_ROWS, those of the first impact are all kept, and of the others
+each stretch keeps the rows where one of the curves is largest or smallest.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+MOST_ROWS = 16_000
+IMPACT_ROWS = 5_000  # of them for the first impact
+BEFORE = 0.02  # of these, before the first contact
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve: its name, its colour (a word of the page's style), values of shape (rows,)."""
+
+    label: str
+    colour: str
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Curves with one unit over `time` (rows,), s from the shutdown."""
+
+    name: str  # of its anchor
+    title: str
+    axis: str  # what is drawn, with its unit
+    time: np.ndarray
+    lines: Sequence[Line]
+    impact: tuple[float, float] | None = None  # s, what the button to the first impact shows
+
+    @property
+    def data(self) -> str:
+        """JSON for the page's script; numbers as base64 of little-endian floats."""
+        values = {
+            "title": self.title,
+            "axis": self.axis,
+            "time": _packed(self.time, "<f8"),
+            "lines": [
+                {"label": one.label, "colour": one.colour, "values": _packed(one.values, "<f4")}
+                for one in self.lines
+            ],
+            "impact": self.impact,
+        }
+        return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _packed(values: np.ndarray, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
+
+
+def chosen_rows(time: np.ndarray, columns: Sequence[np.ndarray], first: float | None) -> np.ndarray:
+    """Rows (ascending) that a chart keeps of `columns`, each (rows,), over `time` (rows,), s.
+
+    first: s, of the first contact, whose surroundings are kept whole; None: there is none.
+    """
+    count = len(time)
+    if count <= MOST_ROWS:
+        return np.arange(count)
+    whole = np.arange(0)
+    if first is not None:
+        start = max(0, int(np.searchsorted(time, first)) - int(BEFORE * IMPACT_ROWS))
+        whole = np.arange(start, min(start + IMPACT_ROWS, count))
+    size = -(-2 * len(columns) * count // (MOST_ROWS - IMPACT_ROWS))
+    kept = [whole, np.array([0, count - 1])]
+    for column in columns:
+        kept += _extremes(column, size)
+    return np.unique(np.concatenate(kept))
+
+
+def _extremes(values: np.ndarray, size: int) -> list[np.ndarray]:
+    """Rows of the smallest and the largest value in each stretch of `size` rows, the last one longer."""
+    count = len(values) // size
+    known = np.nan_to_num(values)
+    blocks = known[: count * size].reshape(count, size)
+    begins, tail = size * np.arange(count), (count - 1) * size
+    last = np.array([tail + known[tail:].argmin(), tail + known[tail:].argmax()])
+    return [begins + blocks.argmin(axis=1), begins + blocks.argmax(axis=1), last]

@@ -1,0 +1,122 @@
+"""What a report is about: a run, and what several chapters ask of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.simulation import zero_of
+from touchdown.master.report.facts.numbers import quantity
+from touchdown.master.report.facts.series import Chart, Line, chosen_rows
+from touchdown.master.report.page.blocks import Absent
+from touchdown.master.results.ending import Finished
+from touchdown.master.results.result import Result
+from touchdown.master.results.summary import seat_name, touchdown_seats
+
+COLOURS = ("blue", "orange", "green", "purple", "grey", "ink")
+SHOWN_IMPACT = (0.002, 0.018)  # s before and after the first contact
+FIRST_CONTACT = "first_contact_time_s"
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A run that is over."""
+
+    result: Result
+
+    @cached_property
+    def run(self) -> Finished:
+        """As pictures take it."""
+        return Finished(self.result.scene, self.result.ending, self.result.recording)
+
+    @property
+    def summary(self) -> Mapping[str, object]:
+        """The figures of the run."""
+        return self.result.summary
+
+    @cached_property
+    def seats(self) -> list[Attachment]:
+        """Where a journal can touch down, in the scene's order."""
+        return touchdown_seats(self.result.ending)
+
+    @cached_property
+    def zero(self) -> float:
+        """When the scene's zero was (s on the simulation's clock)."""
+        try:
+            return zero_of(self.result.scene, self.result.ending)
+        except TouchdownError:  # a component that failed tells nothing any more
+            return 0.0
+
+    @property
+    def rotor(self) -> str:
+        """The body that drops: the first that a touchdown bearing can catch."""
+        return self.need_seats()[0].body
+
+    def need_seats(self) -> list[Attachment]:
+        """The seats. Raises Absent where there are none."""
+        if not self.seats:
+            raise Absent("the scene has no touchdown bearing that tells of its contact.")
+        return self.seats
+
+    def name(self, a: Attachment) -> str:
+        """Of a seat, for people, such as A."""
+        return seat_name(a, self.seats)
+
+    def figure(self, key: str, a: Attachment) -> float | None:
+        """A number of the summary that each touchdown bearing has; None where there is none."""
+        tail = f"_{a.bearing}" if len(self.seats) > 1 else ""
+        return number(self.summary.get(f"{key}{tail}"))
+
+    def whirl(self, a: Attachment, key: str = "") -> object:
+        """Of the verdict at a seat: in words, or one of its figures."""
+        return self.summary.get(f"whirl_{self.name(a)}{key}")
+
+    def has(self, a: Attachment, variable: str) -> bool:
+        """Whether a bearing's variable was recorded."""
+        return f"{a.bearing}.{variable}" in self.run.recording
+
+    def values(self, a: Attachment, variable: str) -> np.ndarray:
+        """A bearing's variable over the recorded times, (rows,), in SI."""
+        return self.run.recording[f"{a.bearing}.{variable}"]
+
+    def setting(self, a: Attachment, variable: str) -> float | None:
+        """A bearing's parameter or output at the end; None where it has none of that name."""
+        name = f"{a.bearing}.{variable}"
+        return self.run.system.value(name) if name in self.run.system else None
+
+    @cached_property
+    def first_contact(self) -> float | None:
+        """The first anywhere (s from the zero); None: nothing touched."""
+        times = [t for a in self.seats if (t := self.figure(FIRST_CONTACT, a)) is not None]
+        return min(times, default=None)
+
+    def chart(self, name: str, title: str, axis: str, curves: list[Line]) -> Chart:
+        """A chart of curves that have a value for each recorded time."""
+        time = self.run.recording.time
+        rows = chosen_rows(time, [c.values for c in curves], self.first_contact)
+        kept = [Line(c.label, c.colour, c.values[rows]) for c in curves]
+        return Chart(name, title, axis, time[rows], kept, self.impact)
+
+    @cached_property
+    def impact(self) -> tuple[float, float] | None:
+        """The surroundings of the first contact (s)."""
+        if self.first_contact is None:
+            return None
+        before, after = SHOWN_IMPACT
+        return self.first_contact - before, self.first_contact + after
+
+    @property
+    def interval(self) -> str:
+        """From one recorded moment to the next, for people."""
+        time = self.run.recording.time
+        return quantity(float(np.median(np.diff(time))), "s") if len(time) > 1 else "moment"
+
+
+def number(value: object) -> float | None:
+    """A figure, where it is a number."""
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None

@@ -1,0 +1,63 @@
+"""A run read back from its folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.results.folder import ENDING, SCENE, SUMMARY
+from touchdown.master.results.folder.ending import read_ending
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.result import RECORDING, Result
+from touchdown.master.scene.file import SCENE_FILE
+from touchdown.master.scene.restored import restored
+
+
+def reopened(folder: Path) -> Result:
+    """What a run left in `folder`, as `run_scene` returned it, without its pictures.
+
+    Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
+    """
+    if not folder.is_dir():
+        raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
+    if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
+        raise TouchdownError(
+            f"{folder} is a machine's folder; `touchdown run {folder}` first, and give the folder it names"
+        )
+    summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
+    told = _values(folder, ENDING, "an earlier version left it; run the scene again")
+    scene = _values(folder, SCENE, "run the scene again")
+    try:
+        ending, warnings = read_ending(told)
+        return Result(
+            restored(scene),
+            Recording(folder / RECORDING),
+            folder,
+            summary,
+            ending,
+            Ended(summary["ended"]),
+            summary.get("stopped_because", ""),
+            warnings,
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise TouchdownError(
+            f"{folder} is not as a run leaves it ({type(error).__name__}: {error}); run the scene again"
+        ) from None
+
+
+def _values(folder: Path, name: str, lacking: str) -> dict[str, Any]:
+    """Of a file of the folder; `lacking`: why there may be none. Raises TouchdownError."""
+    try:
+        values = json.loads((folder / name).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise TouchdownError(f"{folder} has no {name}: {lacking}") from None
+    except OSError as error:
+        raise TouchdownError(f"cannot read {folder / name}: {error.strerror}") from None
+    except ValueError as error:
+        raise TouchdownError(f"{folder / name} is no JSON: {error}") from None
+    if not isinstance(values, dict):
+        raise TouchdownError(f"{folder / name} is not as a run leaves it; run the scene again")
+    return values

@@ -1,0 +1,1 @@
+"""Section 4.3: a disk on four models of bearings."""

@@ -1,0 +1,108 @@
+"""What a figure or table of the source becomes here."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Span = tuple[float, float]  # smallest and largest
+Value = float | Span | str
+AGREES, DIFFERS, UNCOMPARED = "agrees", "differs", "no value to compare"
+UNEXPLAINED = "unexplained"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One quantity, as the source states it and as it comes out here.
+
+    A number agrees with a number within `near`, and with a span inside it; for words `holds` says it.
+
+    >>> Row("mass [kg]", 3.3, 3.31).verdict
+    'agrees'
+    >>> Row("mass [kg]", 3.3, 4.0, why="another rotor").verdict
+    'differs: another rotor'
+    """
+
+    what: str  # with its unit
+    source: Value | None  # None: only in the source's picture
+    ours: Value | None  # None: it did not happen
+    near: float = 0.05  # of the source's value
+    holds: bool | None = None  # for what is no number, whether they say the same
+    why: str = ""  # what a deviation hinges on, or what the value assumes
+
+    @property
+    def deviation(self) -> float | None:
+        """Ours over the source's less one; None where they are not both numbers."""
+        if not (_number(self.source) and _number(self.ours)) or self.source == 0.0:
+            return None
+        return float(self.ours) / float(self.source) - 1.0  # pyright: ignore[reportArgumentType]
+
+    @property
+    def within(self) -> str:
+        """Up to which deviation it agrees, as text; nothing where it is no question of a number."""
+        return "" if self.deviation is None else f"{100.0 * self.near:.3g} %"
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether they agree; None where there is nothing to compare."""
+        if self.source is None:
+            return None
+        if self.ours is None:
+            return False
+        if self.holds is not None:
+            return self.holds
+        if isinstance(self.source, tuple):
+            low, high = _ends(self.ours)
+            return self.source[0] <= low and high <= self.source[1]
+        if self.deviation is not None:
+            return abs(self.deviation) <= self.near
+        return self.source == self.ours
+
+    @property
+    def verdict(self) -> str:
+        """Whether they agree, and why not."""
+        if self.agrees is None:
+            return f"{UNCOMPARED}: {self.why or 'the source has it in its picture alone'}"
+        if self.agrees:
+            return f"{AGREES}; {self.why}" if self.why else AGREES
+        return f"{DIFFERS}: {self.why or UNEXPLAINED}"
+
+
+class Exhibit(NamedTuple):
+    """A figure or table of the source as it comes out here."""
+
+    figure: Figure | None  # None for a table
+    rows: Sequence[Row]
+    notes: Sequence[str] = ()  # what is assumed
+
+
+def _number(value: Value | None) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
+def _ends(value: Value) -> Span:
+    """Of a number or a span; not a number of words."""
+    if isinstance(value, tuple):
+        return value
+    return (math.nan, math.nan) if isinstance(value, str) else (value, value)
+
+
+def shown(value: Value | None) -> str:
+    """A value as text; a dash where there is none."""
+    if value is None:
+        return "-"
+    if isinstance(value, tuple):
+        if math.isinf(value[1]):
+            return f"above {value[0]:.4g}"
+        return " to ".join(f"{end:.4g}" for end in value)
+    return value if isinstance(value, str) else f"{value:.4g}"
+
+
+def percent(deviation: float | None) -> str:
+    """A deviation as text; nothing where there is none."""
+    return "" if deviation is None else f"{100.0 * deviation:+.1f} %"

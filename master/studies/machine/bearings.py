@@ -1,0 +1,74 @@
+"""The bearings that scenes may take by name, as tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from touchdown.bearings import catalogue
+from touchdown.bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
+from touchdown.master.common.errors import TouchdownError, one_of
+
+SHOWN = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (57.29577951308232, "deg"), "1": (1.0, "")}
+MICRO = ("play",)  # in um
+CLOSE = 1e-6  # m, of a bore asked for
+
+
+def known(folder: Path) -> dict[str, Bearing]:
+    """All bearings that a scene in `folder` may take by name: its own first. Raises TouchdownError."""
+    try:
+        mine = catalogue.own(folder)
+    except CatalogueError as error:
+        raise TouchdownError(str(error)) from None
+    return mine | {name: catalogue.bearing(name) for name in catalogue.built_in() if name not in mine}
+
+
+def find_bearing(name: str, folder: Path) -> Bearing:
+    """The bearing that a scene in `folder` calls `name`. Raises TouchdownError."""
+    try:
+        return catalogue.bearing(catalogue.reference(name, folder))
+    except CatalogueError as error:
+        remedy = f"; {one_of(name, error.known)}" if error.known else ""
+        raise TouchdownError(f"{error}{remedy}") from None
+
+
+def described(bearing: Bearing) -> str:
+    """All numbers of a bearing, with unit, meaning and origin."""
+    lines = [bearing.designation]
+    for name, value in bearing.numbers().items():
+        unit, meaning = NUMBERS[name]
+        factor, shown = (1e6, "um") if name in MICRO else SHOWN.get(unit, (1.0, unit))
+        lines.append(f"  {name:<16}{factor * value:>12.5g} {shown:<8}{meaning} ({bearing.origins[name]})")
+    rated = bearing.capacity()
+    if bearing.balls.rows > 1:
+        lines.append(f"  all rows: C0 {1e-3 * rated.static:.4g} kN, C {1e-3 * rated.dynamic:.4g} kN")
+    return "\n".join(lines)
+
+
+def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
+    """A line per bearing: its size in mm, balls, ratings of a row in kN. bore: m, of those to list."""
+    chosen = {n: b for n, b in bearings.items() if bore is None or abs(b.bore - bore) < CLOSE}
+    if not chosen:
+        there = ", ".join(f"{1e3 * size:g}" for size in sorted({b.bore for b in bearings.values()}))
+        raise TouchdownError(
+            f"no bearing has a bore of {1e3 * (bore or 0.0):g} mm; there are (mm): {there}"
+        )
+    width = max(len(name) for name in chosen)
+    head = f"{'':<{width}}  bore x outside x width [mm]   balls     C [kN]    C0 [kN]  ratings by"
+    return "\n".join((head, *_lines(chosen, width)))
+
+
+def _lines(chosen: Mapping[str, Bearing], width: int) -> Iterable[str]:
+    for name, b in chosen.items():
+        size = " x ".join(f"{1e3 * length:g}" for length in (b.bore, b.outside, b.width))
+        balls = f"{b.balls.rows} x {b.balls.count}" if b.balls.rows > 1 else str(b.balls.count)
+        by = " and ".join(dict.fromkeys((b.origins["dynamic_rating"], b.origins["static_rating"])))
+        yield (
+            f"{name:<{width}}  {size:<27}{balls:>7} {1e-3 * b.dynamic_rating:>10.4g} "
+            f"{1e-3 * b.static_rating:>10.4g}  {by}"
+        )
+
+
+def as_file(bearing: Bearing) -> str:
+    """The bearing as it stands in a file of one's own, which scenes beside it take (`bearings.toml`)."""
+    return f"# To change and keep beside a scene as {OWN_FILE}.\n{catalogue.as_file(bearing)}"

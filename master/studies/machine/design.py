@@ -1,0 +1,131 @@
+"""What a machine's scene needs, derived from its rotor and its bearings by rules that are said.
+
+The rules are those of the scenes that come with the project, which are of real machines; each stands as a
+comment beside its value in the scene that is written (`machine.scene_text`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from touchdown.bearings.catalogue import Bearing
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.studies.rotor.report import pulling
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.modal.modes import RIGID, basis
+from touchdown.rotor.statics import at_rest
+
+GRAVITY = 9.81  # m/s2
+RPM = 2.0 * math.pi / 60.0
+LEVITATION = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
+LEVITATION_DAMPING = 0.3  # ratio
+FORCE = 6.0  # limit of a magnetic bearing's force over the static load
+FAST = 1.5  # times the speed of the rule; above, it is said
+BELOW_BENDING = 0.7  # speed over the first bending frequency
+MOST_BORE_SPEED = 1e3  # m rpm, bore times speed
+CONTACT = 6e10  # N/m^(10/9) per m of width, journal in ring
+HOUSING_SHARE = 0.15  # housing over what it carries
+LEAST_HOUSING = 2.0  # kg
+HOUSING_FREQUENCY = 2.0 * math.pi * 500.0  # rad/s
+HOUSING_DAMPING = 0.2  # ratio
+MOST_KEPT = 8  # modes per plane, the two rigid ones included
+
+
+@dataclass(frozen=True)
+class Support:
+    """A magnetic or a touchdown bearing: its name, its place on the rotor, what it bears at rest."""
+
+    component: str
+    station: str
+    load: float  # N, upwards on the rotor; negative: it would have to pull
+
+
+@dataclass(frozen=True)
+class Design:
+    """A machine: all numbers in SI."""
+
+    rotor: str  # the FMU's name, or the rotor's file
+    title: str
+    mass: float
+    inertia: float | None  # of a rigid rotor
+    modes: int | None  # of a flexible one, per plane
+    bending: float | None  # its first bending frequency, Hz
+    speed: float
+    clearance: float
+    magnetic: tuple[Support, ...]
+    touchdown: tuple[Support, ...]
+    bearings: tuple[Bearing, ...]  # at each of `touchdown`
+    presets: tuple[str, ...]  # what the scene calls them
+
+    @property
+    def levitated_mass(self) -> float:
+        """On the magnetic bearing that bears most (kg)."""
+        return max(abs(support.load) for support in self.magnetic) / GRAVITY
+
+    @property
+    def landed_mass(self) -> float:
+        """On the touchdown bearing that bears most (kg)."""
+        return max(abs(support.load) for support in self.touchdown) / GRAVITY
+
+    def notes(self) -> list[str]:
+        """What the user is to know of it, one line each."""
+        told = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
+        usual = sensible_speed(self.bending, self.bearings)
+        if self.speed > FAST * usual:
+            told.append(
+                f"speed = {self.speed / RPM:.5g} rpm is more than such a machine runs "
+                f"({usual / RPM:.5g} rpm by the rule); a number without a unit is in rad/s"
+            )
+        return told
+
+
+def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) -> tuple[Support, ...]:
+    """Bearings at these stations of a rotor, and what each bears. Raises TouchdownError."""
+    known = [station.name for station in shaft.stations]
+    for name in stations:
+        if name not in known:
+            raise TouchdownError(
+                f"{option} {name}: {shaft.title} has no such station; {one_of(name, known)}"
+            )
+    if not stations:
+        raise TouchdownError(
+            f"{shaft.title}: its file does not tell which stations are meant (levitated_at does); give "
+            f"{option} and two of {', '.join(known) or 'its stations, of which there are none'}"
+        )
+    if len(stations) < 2 or len(set(stations)) != len(stations):
+        raise TouchdownError(
+            f"{option} {','.join(stations)}: name two stations of the rotor or more, each once; "
+            f"there are: {', '.join(known) or 'none'}"
+        )
+    try:
+        rest = at_rest(shaft, [(shaft.node(name), math.inf) for name in stations], GRAVITY)
+    except ModelError as error:
+        raise TouchdownError(f"{option} {','.join(stations)}: {error}") from None
+    return tuple(
+        Support(f"{prefix}_{name.removeprefix(f'{prefix}_')}", name, float(load))
+        for name, load in zip(stations, rest.reactions, strict=True)
+    )
+
+
+def first_bending(shaft: Shaft) -> float:
+    """The lowest bending frequency of the free rotor (Hz)."""
+    return float(basis(shaft, 0).omega[RIGID]) / (2.0 * math.pi)
+
+
+def sensible_speed(bending: float | None, bearings: Sequence[Bearing]) -> float:
+    """A speed (rad/s) below the first bending frequency (Hz) that ball bearings run, two digits of rpm."""
+    fastest = MOST_BORE_SPEED / max(bearing.bore for bearing in bearings)
+    below = math.inf if bending is None else BELOW_BENDING * bending * 60.0
+    return rounded(min(below, fastest), down=True) * RPM
+
+
+def rounded(value: float, down: bool = False) -> float:
+    """To two digits; `down`: never above `value`."""
+    if value == 0.0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - 1)
+    digits = math.floor(value / unit + 1e-9) if down else round(value / unit)
+    return float(f"{digits * unit:.12g}")

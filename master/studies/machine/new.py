@@ -1,0 +1,227 @@
+"""A machine of one's own: a folder with a scene to start from."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from touchdown.bearings import catalogue
+from touchdown.bearings.catalogue import OWN_FILE, Bearing, CatalogueError
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.files import writing_to
+from touchdown.master.scene.file import SCENE_FILE
+from touchdown.master.studies.machine.bearings import find_bearing
+from touchdown.master.studies.machine.design import (
+    GRAVITY,
+    MOST_KEPT,
+    Design,
+    Support,
+    first_bending,
+    sensible_speed,
+    supports,
+)
+from touchdown.master.studies.machine.rotor_text import rewritten, with_places
+from touchdown.master.studies.machine.scene_text import scene_text
+from touchdown.master.studies.rotor.report import find_rotor
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import shipped, text_of
+
+ROTOR_FILE = "rotor.toml"
+UNITS = {"speed": "rad/s", "clearance": "m", "mass": "kg", "inertia": "kg.m2"}  # of what may be given
+CLEARANCE = 0.25e-3  # m; half an air gap of 0.5 mm
+ROUNDING = 1e-9  # m, of a journal that is to have its clearance
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is asked for; numbers in SI, None where a rule is to say."""
+
+    bearings: Sequence[str]  # one for all, or one for each place
+    rotor: str | None = None  # a name, or the path of a rotor's .toml
+    at: Sequence[str] | None = None  # stations of the touchdown bearings
+    amb: Sequence[str] | None = None  # and of the magnetic ones
+    speed: float | None = None  # rad/s
+    clearance: float = CLEARANCE
+    mass: float | None = None  # of a rigid rotor
+    inertia: float | None = None  # and its polar moment of inertia
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The files of a machine: their texts by name, and what the user is to know."""
+
+    files: Mapping[str, str]
+    notes: Sequence[str] = field(default_factory=list)
+
+
+def machine(wanted: Wanted, title: str) -> Machine:
+    """The files of the machine asked for. Raises TouchdownError for what cannot be."""
+    for name, unit in UNITS.items():
+        value = getattr(wanted, name)
+        if value is not None and not 0.0 < value < math.inf:
+            raise TouchdownError(f"{name} = {value:g} {unit} must be above 0")
+    places = _Bearings(wanted.bearings)
+    if wanted.rotor is not None:
+        if wanted.mass is not None or wanted.inertia is not None:
+            raise TouchdownError("--mass and --inertia are of a rigid rotor; leave them out, or --rotor")
+        shaft = find_rotor(os.fspath(wanted.rotor))
+        design, files = _flexible(wanted, shaft, places)
+        return Machine(
+            files | {SCENE_FILE: scene_text(design)}, [*design.notes(), *_of_rotor(shaft, design)]
+        )
+    if wanted.at or wanted.amb:
+        raise TouchdownError("--at and --amb are stations of a rotor's file; give --rotor, too")
+    if wanted.mass is None:
+        raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
+    design = _rigid(wanted, wanted.mass, title, places)
+    return Machine(places.files | {SCENE_FILE: scene_text(design)})
+
+
+def write(made: Machine, folder: Path, force: bool) -> Path:
+    """Write a machine's files into `folder`; returns the scene's path.
+
+    Raises TouchdownError where one of them is there and `force` does not say to replace it.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
+    for name, text in made.files.items():
+        if not force and (folder / name).exists() and not _holds(folder / name, text):
+            raise TouchdownError(f"{folder / name} is there already; choose another folder, or --force")
+    with writing_to(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in made.files.items():
+            (folder / name).write_text(text, encoding="utf-8")
+    return folder / SCENE_FILE
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a file is what it is to become."""
+    try:
+        return path.read_text(encoding="utf-8") == text
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+class _Bearings:
+    """The touchdown bearings asked for, and the file of one's own that goes along with the scene."""
+
+    def __init__(self, names: Sequence[str]) -> None:
+        if not names:
+            raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
+        self.files: dict[str, str] = {}
+        found = [(self._preset(name), find_bearing(name, Path())) for name in names]
+        self._found: list[tuple[str, Bearing]] = found
+
+    def of(self, places: Sequence[Support]) -> tuple[tuple[str, ...], tuple[Bearing, ...]]:
+        """What the scene calls them, and themselves, for each place. Raises TouchdownError."""
+        if len(self._found) not in (1, len(places)):
+            raise TouchdownError(
+                f"--bearings names {len(self._found)} bearings for {len(places)} places; "
+                "give one for all, or one for each"
+            )
+        found = self._found * len(places) if len(self._found) == 1 else self._found
+        return tuple(name for name, _ in found), tuple(bearing for _, bearing in found)
+
+    def _preset(self, name: str) -> str:
+        """What the scene is to call it; a file of one's own is copied along."""
+        try:
+            found = catalogue.reference(name, Path())
+        except CatalogueError:
+            return name  # `find_bearing` says why
+        file, colon, inside = found.rpartition(":")
+        if not colon:
+            return name
+        text = Path(file).read_text(encoding="utf-8-sig")
+        if self.files.setdefault(OWN_FILE, text) != text:
+            raise TouchdownError(
+                f"--bearings: bearings of two files cannot both become {OWN_FILE}; join them"
+            )
+        return inside
+
+
+def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
+    """A machine with a rotor's file, which goes along with the places of its bearings in it."""
+    source = os.fspath(wanted.rotor or "")
+    seats = wanted.at if wanted.at is not None else _seats(shaft)
+    magnets = wanted.amb if wanted.amb is not None else shaft.levitated_at
+    touchdown = supports(shaft, "bearing", seats, "--at")
+    supports(shaft, "amb", magnets, "--amb")
+    placed, held = with_places(shaft, seats, magnets)
+    path = Path(source) if source.endswith(".toml") else shipped()[source]
+    presets, kinds = bearings.of(touchdown)
+    bending = first_bending(shaft)
+    design = Design(
+        rotor=ROTOR_FILE,
+        title=shaft.title,
+        mass=shaft.mass,
+        inertia=None,
+        modes=min(MOST_KEPT, 2 * shaft.nodes),
+        bending=bending,
+        speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
+        clearance=_checked_clearance(wanted.clearance, kinds),
+        magnetic=supports(placed, "amb", held, "--amb"),
+        touchdown=touchdown,
+        bearings=kinds,
+        presets=presets,
+    )
+    return design, bearings.files | {ROTOR_FILE: rewritten(text_of(path), shaft, placed)}
+
+
+def _seats(shaft: Shaft) -> list[str]:
+    """Stations that do not hold the rotor at the start: those where it touches down."""
+    return [station.name for station in shaft.stations if station.name not in shaft.levitated_at]
+
+
+def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:
+    """A machine with a rigid rotor on one touchdown bearing, in the plane of its middle."""
+    weight = mass * GRAVITY
+    touchdown = (Support("bearing", "A", weight),)
+    presets, kinds = bearings.of(touchdown)
+    clearance = _checked_clearance(wanted.clearance, kinds)
+    radius = 0.5 * kinds[0].bore - clearance
+    return Design(
+        rotor="rigid_rotor",
+        title=title,
+        mass=mass,
+        inertia=mass * radius**2 if wanted.inertia is None else wanted.inertia,
+        modes=None,
+        bending=None,
+        speed=sensible_speed(None, kinds) if wanted.speed is None else wanted.speed,
+        clearance=clearance,
+        magnetic=(Support("amb", "amb", weight),),
+        touchdown=touchdown,
+        bearings=kinds,
+        presets=presets,
+    )
+
+
+def _checked_clearance(clearance: float, bearings: Sequence[Bearing]) -> float:
+    """The clearance (m), which leaves a journal in each bore. Raises TouchdownError."""
+    for bearing in bearings:
+        if not 0.0 < clearance < 0.25 * bearing.bore:
+            raise TouchdownError(
+                f"--clearance of {1e3 * clearance:g} mm leaves no journal in the bore of "
+                f"{bearing.designation}, {1e3 * bearing.bore:g} mm; give a radial one such as 0.25 mm"
+            )
+    return clearance
+
+
+def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
+    """What the rotor's file is to be looked at for: journals without their clearance, no unbalance."""
+    notes = list[str]()
+    for support, bearing in zip(design.touchdown, design.bearings, strict=True):
+        node = shaft.node(support.station)
+        around = shaft.elements[max(node - 2, 0) : node]
+        thickest = max(element.widest for element in around)
+        room = bearing.bore - 2.0 * design.clearance
+        if thickest > room + ROUNDING:
+            notes.append(
+                f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
+                f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"
+            )
+    if not any(unbalance.moment for unbalance in shaft.unbalances):
+        notes.append(f"the rotor has no unbalance; add [[unbalance]] to its file {ROTOR_FILE}")
+    return notes

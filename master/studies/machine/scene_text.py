@@ -1,0 +1,186 @@
+"""A machine's scene as text: TOML with a comment beside each value that a designer may want to change."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+
+from touchdown.bearings.catalogue import Bearing
+from touchdown.master.studies.machine.design import (
+    BELOW_BENDING,
+    CONTACT,
+    FORCE,
+    GRAVITY,
+    HOUSING_DAMPING,
+    HOUSING_FREQUENCY,
+    HOUSING_SHARE,
+    LEAST_HOUSING,
+    LEVITATION,
+    LEVITATION_DAMPING,
+    MOST_BORE_SPEED,
+    RPM,
+    Design,
+    rounded,
+)
+
+MM = 1e3  # in a metre
+HERTZ = 2.0 * math.pi
+
+
+def scene_text(design: Design) -> str:
+    """The scene's file. Each value stands once: what all bearings share in [set], at the end."""
+    lines = [*_head(design), *_rotor(design), *_bearings(design), *_magnetic(design), *_touchdown(design)]
+    return "\n".join([*lines, *_housings(design)]) + "\n"
+
+
+def _head(d: Design) -> Iterator[str]:
+    amb, first = d.magnetic[0].component, d.touchdown[0].component
+    yield from (
+        "# A machine of one's own, to be run with `touchdown run` and this folder.",
+        "# Each value stands once. The rule that it is from stands beside it: put your own value there.",
+        f"title = {_quoted(f'{d.title} dropped at {d.speed / RPM:g} rpm')}",
+        f'zero = "{amb}.shutdown_time"  # times count from here',
+        f'energy_scale = ["rotor.mass", "{first}.gravity", "{first}.clearance"]',
+        "attach = [  # a bearing's port, and where on the rotor or in which housing it sits",
+    )
+    yield from (f'    ["{s.component}.journal", "rotor.{s.station}"],' for s in d.magnetic)
+    for s in d.touchdown:
+        yield f'    ["{s.component}.journal", "rotor.{s.station}"],'
+        yield f'    ["{s.component}.housing", "{_housing(s.component)}.seat"],'
+    yield from (
+        "]",
+        "",
+        "[run]",
+        'duration = "0.5 s"',
+        'macro_step = "20 us"  # `touchdown advise` says how long it may be',
+    )
+
+
+def _rotor(d: Design) -> Iterator[str]:
+    yield from ("", "# -- the rotor", "", "[components.rotor]", f'fmu = "{d.rotor}"')
+    yield "[components.rotor.set]"
+    if d.inertia is not None:
+        yield f'mass = "{d.mass:g} kg"'
+        yield f'inertia = "{d.inertia:.3g} kg.m2"  # polar; by default mass times journal radius squared'
+    else:
+        yield f"modes = {d.modes}  # per plane, the two rigid ones included; 0: all"
+    yield f'speed = "{d.speed / RPM:g} rpm"  # by default {_speed_rule(d)}'
+
+
+def _speed_rule(d: Design) -> str:
+    """How fast `sensible_speed` has a machine turn."""
+    bore = f"{MOST_BORE_SPEED * MM:,.0f} mm rpm over the bore"
+    if d.bending is None:
+        return bore
+    return f"{BELOW_BENDING:g} of the first bending frequency, {d.bending:.4g} Hz, and at most {bore}"
+
+
+def _bearings(d: Design) -> Iterator[str]:
+    """The components themselves, and of the touchdown bearings what is not the same in all."""
+    for s in d.magnetic:
+        yield from ("", f"[components.{s.component}]", f'fmu = "amb"  # bears {s.load:.4g} N at rest')
+    for s, bearing, preset in zip(d.touchdown, d.bearings, d.presets, strict=True):
+        yield from (
+            "",
+            f"[components.{s.component}]",
+            f'fmu = "simplified_caged"  # bears {s.load:.4g} N once the rotor lies',
+        )
+        if not _alike(d):
+            yield f"preset = {_quoted(preset)}"
+            yield from (f"[components.{s.component}.set]", *_fitted(bearing, d.clearance))
+    for s, bearing in zip(d.touchdown, d.bearings, strict=True):
+        yield from ("", f"[components.{_housing(s.component)}]", 'fmu = "housing"')
+        if not _alike(d):
+            yield from (f"[components.{_housing(s.component)}.set]", _outer_ring(bearing))
+
+
+def _magnetic(d: Design) -> Iterator[str]:
+    mass = d.levitated_mass
+    stiffness = rounded(mass * LEVITATION**2)
+    damping = rounded(2.0 * LEVITATION_DAMPING * mass * LEVITATION)
+    force = rounded(FORCE * mass * GRAVITY)
+    yield from (
+        "",
+        f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that bears most",
+        "",
+        _shared(d, [s.component for s in d.magnetic]),
+        'shutdown_time = "20 ms"',
+        f"stiffness = {_stiffness(stiffness)}  # that mass swings with {LEVITATION / HERTZ:.3g} Hz",
+        f'damping = "{damping:g} N.s/m"  # {LEVITATION_DAMPING:g} of critical',
+        f'force_limit = "{force:g} N"  # {FORCE:g} times what it bears at rest',
+        'bandwidth = "12566 rad/s"  # of the amplifier: 2 kHz',
+    )
+
+
+def _touchdown(d: Design) -> Iterator[str]:
+    yield from ("", "# -- the touchdown bearings", "", _shared(d, [s.component for s in d.touchdown]))
+    if _alike(d):
+        yield f"preset = {_quoted(d.presets[0])}  # `touchdown catalogue` tells its numbers, and of others"
+    yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
+    if _alike(d):
+        yield from _fitted(d.bearings[0], d.clearance)
+    yield from (
+        "contact.exponent = 1.1111111111111112  # 10/9: a line contact",
+        "contact.damping = 0",
+        "contact.dissipation = 0.12  # s/m, what a hit loses: steel on steel",
+        "friction = { kind = 0, dynamic = 0.15 }  # journal on ring: dry steel",
+    )
+
+
+def _housings(d: Design) -> Iterator[str]:
+    mass = max(rounded(HOUSING_SHARE * d.landed_mass), LEAST_HOUSING)
+    stiffness = rounded(mass * HOUSING_FREQUENCY**2)
+    damping = rounded(2.0 * HOUSING_DAMPING * mass * HOUSING_FREQUENCY)
+    yield from (
+        "",
+        "# -- what holds the touchdown bearings",
+        "",
+        _shared(d, [_housing(s.component) for s in d.touchdown]),
+        f'mass = "{mass:g} kg"  # {HOUSING_SHARE:g} of what it carries, {LEAST_HOUSING:g} kg at least',
+        f"stiffness = {_stiffness(stiffness)}  # {HOUSING_FREQUENCY / HERTZ:.3g} Hz by itself",
+        f'damping = "{damping:g} N.s/m"  # {HOUSING_DAMPING:g} of critical',
+    )
+    if _alike(d):
+        yield _outer_ring(d.bearings[0])
+
+
+def _fitted(bearing: Bearing, clearance: float) -> Iterator[str]:
+    """What hangs on the bearing's size."""
+    radius, contact = 0.5 * bearing.bore - clearance, CONTACT * bearing.width
+    yield f'journal_radius = "{radius * MM:g} mm"  # half the bore less the clearance'
+    yield f"contact.stiffness = {contact:g}  # N/m^(10/9), {CONTACT / MM:g} per mm of the width"
+    if bearing.damping == 0.0:
+        yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not tell'
+
+
+def _outer_ring(bearing: Bearing) -> str:
+    return f'outer_ring = "{bearing.outer_ring:.3g} kg"  # of the {bearing.designation}'
+
+
+def _quoted(text: str) -> str:
+    """Text as TOML has it."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _stiffness(value: float) -> str:
+    """A stiffness (N/m) as text with a unit."""
+    return f'"{1e-6 * value:g} MN/m"' if value >= 1e6 else f'"{1e-3 * value:g} kN/m"'
+
+
+def _alike(d: Design) -> bool:
+    """Whether all touchdown bearings are the same."""
+    return len(set(d.presets)) == 1
+
+
+def _housing(bearing: str) -> str:
+    """The name of the housing of a touchdown bearing."""
+    return bearing.replace("bearing", "housing", 1)
+
+
+def _shared(d: Design, names: list[str]) -> str:
+    """The heading of what these components share."""
+    if len(names) == 1:
+        return f"[set.{names[0]}]"
+    kind = names[0].partition("_")[0]
+    return f'[set."{kind}_*"]'

@@ -1,0 +1,301 @@
+"""What a sweep was asked to do: its scene, its points, and what they are run with.
+
+It stands in its folder as sweep.json, so that the sweep can go on, be merged with others, and be read by
+programs. Two sweeps are the same where all that changes a number is.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any, cast
+
+from touchdown.fmus.version import VERSION
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.files import replace_text
+from touchdown.master.components.component import SETTABLE
+from touchdown.master.components.library.sources import locate
+from touchdown.master.coupling.assembly import checked
+from touchdown.master.coupling.simulation import open_system, opened
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.run_spec import UNITS
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.sweep.design import Design
+
+FILE = "sweep.json"
+UNSAID = ("name", "title", "about", "folder")  # of a scene: they change no number
+OF_COMPONENT = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
+SAID = 3  # differences that are told
+
+
+@dataclass(frozen=True)
+class Column:
+    """A setting that varies."""
+
+    name: str  # as it was asked for
+    settings: tuple[str, ...]  # all that take its value
+    unit: str | None  # SI; None for words
+
+
+@dataclass(frozen=True)
+class Definition:
+    """What is asked."""
+
+    version: str
+    scene: Mapping[str, Any]  # as plain values
+    scheme: Mapping[str, Any]
+    made_of: Mapping[str, str]  # by component: a hash over its file, or the project's own sources
+    in_process: bool
+    about: str  # how the points were chosen
+    columns: tuple[Column, ...]
+    points: Sequence[Sequence[object]]  # as they were given, by column
+    values: Sequence[Sequence[object]]  # the same in SI, or as words
+    part: tuple[int, int]  # (2, 8): it runs every eighth point from the second on
+
+    @property
+    def numbers(self) -> range:
+        """Of the points that it runs, from 1."""
+        return range(self.part[0], len(self.points) + 1, self.part[1])
+
+    @property
+    def whole(self) -> Definition:
+        """The same, that runs all points."""
+        return replace(self, part=(1, 1))
+
+    def settings(self, number: int) -> dict[str, object]:
+        """Of a point: values as they were given, by the name of their column."""
+        return {c.name: value for c, value in zip(self.columns, self.points[number - 1], strict=True)}
+
+    @property
+    def by_number(self) -> dict[int, dict[str, object]]:
+        """The settings of all points, whoever runs them."""
+        return {number: self.settings(number) for number in self.whole.numbers}
+
+    def at(self, scene: Scene, number: int) -> Scene:
+        """The scene at a point."""
+        given = zip(self.columns, self.points[number - 1], strict=True)
+        return scene.set({setting: value for column, value in given for setting in column.settings})
+
+    def write(self, folder: Path) -> None:
+        """Write it into `folder`. Raises OSError."""
+        replace_text(folder / FILE, json.dumps(asdict(self), default=str) + "\n")
+
+
+def define(scene: Scene, design: Design, in_process: bool) -> Definition:
+    """A sweep of `scene`. Raises TouchdownError where a setting cannot be, or cannot take a value."""
+    targets = _targets(scene, design)
+    at_first = zip(targets, design.points[0], strict=True)
+    first = scene.set({setting: value for settings, value in at_first for setting in settings})
+    with opened(first, in_process=True) as system:
+        columns = [
+            Column(name, settings, _unit(system, settings[0]))
+            for name, settings in zip(design.names, targets, strict=True)
+        ]
+        values = _values(first, system, columns, design)
+    plain = json.loads(json.dumps(scene.resolved(), default=str))
+    return Definition(
+        version=VERSION,
+        scene=plain,
+        scheme=asdict(scene.run.scheme),
+        made_of=origins(scene) | _varied_catalogues(scene, columns, design),
+        in_process=in_process,
+        about=design.about,
+        columns=tuple(columns),
+        points=design.points,
+        values=values,
+        part=design.part,
+    )
+
+
+def origins(scene: Scene) -> dict[str, str]:
+    """By component: a hash over what it is made of, files' content or the project's own sources."""
+    found: dict[str, str] = {}
+    for name, spec in scene.components.items():
+        source = locate(spec.fmu, scene.folder)
+        found[name] = _content(source) if isinstance(source, Path) else source.content
+        file, _, _ = (spec.preset or "").rpartition(":")  # a catalogue of the user's own
+        if file:
+            found[name] += _content(scene.folder / file)
+    return found
+
+
+def _varied_catalogues(scene: Scene, columns: Sequence[Column], design: Design) -> dict[str, str]:
+    """By file: a hash over each catalogue of the user's own that a preset varies over."""
+    found: dict[str, str] = {}
+    for place, column in enumerate(columns):
+        component, _, variable = column.settings[0].partition(".")
+        if variable == "preset":
+            for value in dict.fromkeys(str(point[place]) for point in design.points):
+                preset = scene.set({f"{component}.preset": value}).components[component].preset or ""
+                file, _, _ = preset.rpartition(":")
+                if file:
+                    found[Path(file).name] = _content(scene.folder / file)
+    return found
+
+
+def _content(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes() if path.is_file() else b"").hexdigest()
+
+
+# -- names and values --------------------------------------------------------------------------------
+
+
+def _targets(scene: Scene, design: Design) -> list[tuple[str, ...]]:
+    """By column: the settings that its name means. Raises TouchdownError where it means none."""
+    targets: list[tuple[str, ...]] = []
+    for name in design.names:
+        settings = [one for part in name.split(",") for one in _matching(scene, part.strip())]
+        targets.append(tuple(dict.fromkeys(settings)))
+    every = [setting for settings in targets for setting in settings]
+    if twice := [setting for setting in every if every.count(setting) > 1]:
+        raise TouchdownError(f"{twice[0]} varies twice; give it once")
+    return targets
+
+
+def _matching(scene: Scene, name: str) -> list[str]:
+    """The settings that a name with * or ? means; another name means itself."""
+    component, dot, variable = name.partition(".")
+    components = scene.matching(component)
+    if not any(sign in variable for sign in "*?"):
+        return [f"{one}{dot}{variable}" for one in components]
+    known = [full for full in _settable(scene) if full.partition(".")[0] in components]
+    found = fnmatch.filter(known, name)
+    if not found:
+        raise TouchdownError(f"no component has a setting {name}; {one_of(name, known)}")
+    return found
+
+
+def _settable(scene: Scene) -> list[str]:
+    """All numbers of all components that can be set."""
+    with opened(scene, in_process=True) as system:
+        return [
+            f"{name}.{variable.name}"
+            for name, component in system.components.items()
+            for variable in component.variables.values()
+            if variable.settable and variable.kind in SETTABLE
+        ]
+
+
+def _unit(system: System, setting: str) -> str | None:
+    """The SI unit of a setting; None for one that is no number."""
+    component, _, variable = setting.partition(".")
+    if component == "run":
+        return UNITS.get(variable)
+    found = system.components[component].variables.get(variable)
+    return None if found is None else found.unit or "1"
+
+
+def _values(
+    first: Scene, system: System, columns: Sequence[Column], design: Design
+) -> list[tuple[object, ...]]:
+    """All points in SI. Raises TouchdownError for a value that a setting cannot take."""
+    known: dict[tuple[str, str], object] = {}
+
+    def value(column: Column, given: object) -> object:
+        key = (column.name, repr(given))
+        if key not in known:
+            taken = [_value(first, system, setting, given) for setting in column.settings]
+            known[key] = taken[0]
+        return known[key]
+
+    return [tuple(value(c, given) for c, given in zip(columns, p, strict=True)) for p in design.points]
+
+
+def _value(first: Scene, system: System, setting: str, given: object) -> object:
+    """A value in SI, or as a word; `system` is that of the `first` point."""
+    varied = first.set({setting: given})
+    component, _, variable = setting.partition(".")
+    if setting == "run.scheme" or variable in ("preset", "every"):  # what is connected may change
+        open_system(varied, in_process=True).close()
+    if component == "run":
+        taken = getattr(varied.run, variable)
+        return float(taken) if variable in UNITS else str(getattr(taken, "name", taken))
+    if variable in OF_COMPONENT:
+        return str(given)
+    return float(checked(system.components[component], variable, given))
+
+
+# -- read back ---------------------------------------------------------------------------------------
+
+
+def read_definition(folder: Path) -> Definition:
+    """What the sweep in `folder` was asked. Raises TouchdownError where there is none that can be read."""
+    path = folder / FILE
+    try:
+        given = json.loads(path.read_text(encoding="utf-8"))
+        columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
+        return Definition(**{**given, "columns": tuple(columns), "part": tuple(given["part"])})
+    except FileNotFoundError:
+        raise TouchdownError(f"there is no sweep in {folder}: it has no {FILE}") from None
+    except OSError as error:
+        raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
+    except (ValueError, TypeError, KeyError):
+        raise TouchdownError(
+            f"{path} cannot be read; it is of another version, or damaged. Take another folder"
+        ) from None
+
+
+def differences(there: Definition, here: Definition) -> list[str]:
+    """What differs between two sweeps that are not the same, in words; empty where they are."""
+    one, other = _compared(there), _compared(here)
+    if len(there.points) != len(here.points):  # told by their number
+        del one["point"], other["point"]
+    said = list(_differences(one, other, ""))
+    return said if len(said) <= SAID else [*said[:SAID], f"and {len(said) - SAID} more"]
+
+
+def refuse_other(folder: Path, there: Definition, here: Definition) -> None:
+    """Raise TouchdownError where the sweep in `folder` is another one than is asked for."""
+    found = differences(there, here)
+    if found:
+        raise TouchdownError(
+            f"{folder} holds another sweep: {'; '.join(found)}. Choose another folder with -o, or start "
+            "anew with --anew"
+        )
+
+
+def _compared(definition: Definition) -> dict[str, Any]:
+    """All of it that changes a number, as JSON has it."""
+    plain = cast(dict[str, Any], json.loads(json.dumps(asdict(definition), default=str)))
+    scene, columns = plain.pop("scene"), plain.pop("columns")
+    del plain["about"], plain["values"]
+    points, part = plain.pop("points"), plain.pop("part")
+    for component in scene["components"].values():
+        del component["own"]  # where a value was given changes no number
+    names = [column["name"] for column in columns]
+    return {
+        **plain,
+        **{key: value for key, value in scene.items() if key not in UNSAID},
+        "varied": ", ".join(names),
+        "settings": {column["name"]: ", ".join(column["settings"]) for column in columns},
+        "shard": "/".join(map(str, part)),
+        "number of points": len(points),
+        "point": {str(i): dict(zip(names, row, strict=True)) for i, row in enumerate(points, start=1)},
+    }
+
+
+def _differences(there: Any, here: Any, where: str) -> Iterator[str]:
+    if isinstance(there, dict) and isinstance(here, dict):
+        for key in dict.fromkeys((*there, *here)):
+            deeper = _differences(there.get(key), here.get(key), f"{where}.{key}" if where else key)
+            yield from deeper
+    elif there != here:
+        yield _said(where, there, here)
+
+
+def _said(where: str, there: object, here: object) -> str:
+    if where.startswith("made_of."):
+        return f"what {where.partition('.')[2]} is made of has changed"
+    name = where.removeprefix("components.").replace(".set.", ".", 1)
+    if name.startswith("point."):
+        _, number, name = name.split(".", 2)
+        name = f"{name} of point {number}"
+    return f"{name} is {_told(there)} there and {_told(here)} here"
+
+
+def _told(value: object) -> object:
+    return "not set" if value is None else value

@@ -1,0 +1,1 @@
+"""A sweep as pictures over one or two of its settings."""

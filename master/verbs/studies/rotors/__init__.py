@@ -1,0 +1,1 @@
+"""Verbs about rotors alone: describe them, and import those of others."""

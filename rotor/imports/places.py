@@ -1,0 +1,62 @@
+"""Where bearings hold an imported rotor, where it is levitated, and where its motion is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from touchdown.modelkit.units import UnitError, to_si
+from touchdown.rotor.beams.nodes import node_at, with_node
+from touchdown.rotor.beams.shaft import Shaft, Station
+from touchdown.rotor.imports.mistakes import ImportedRotorError
+
+Places = Mapping[str, int | str]
+
+
+def placed(
+    shaft: Shaft,
+    seats: Places | None = None,
+    levitated: Places | None = None,
+    sensors: Places | None = None,
+) -> Shaft:
+    """`shaft` with stations: `seats` for touchdown bearings, and those it is `levitated` at.
+
+    A place is the number of a node, from 1, or a distance from node 1 as text with a unit ("120 mm"),
+    where a node is made if there is none. What is given replaces all that was there of its kind, and what
+    was there by its name; the others stay. Raises ImportedRotorError, and ModelError for
+    places that are not on the shaft.
+    """
+    kinds = [dict(kind or {}) for kind in (seats, levitated, sensors)]
+    names = [name for kind in kinds for name in kind]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise ImportedRotorError(f"{twice} is there twice; each station and sensor has a name of its own")
+    where = [{name: _position(shaft, name, at) for name, at in kind.items()} for kind in kinds]
+    for kind in where:
+        for position in kind.values():
+            shaft = with_node(shaft, position)
+    own, ambs, looks = (
+        tuple(Station(name, node_at(shaft, position) or 0) for name, position in kind.items())
+        for kind in where
+    )
+    if own or ambs:
+        stay = [s for s in shaft.stations if s.name not in names]
+        own = own or tuple(s for s in stay if s.name not in shaft.levitated_at)
+        ambs = ambs or tuple(s for s in stay if s.name in shaft.levitated_at)
+        shaft = replace(shaft, stations=own + ambs, levitated_at=tuple(s.name for s in ambs))
+    return replace(shaft, sensors=looks) if looks else shaft
+
+
+def _position(shaft: Shaft, name: str, at: int | str) -> float:
+    """Of a place (m from node 1)."""
+    text = str(at).strip()
+    if text.isdecimal():
+        if not 1 <= int(text) <= shaft.nodes:
+            raise ImportedRotorError(
+                f"{name} = {text} is not a node of the rotor {shaft.title}, which has nodes 1 to "
+                f"{shaft.nodes}; for a distance from node 1 write its unit, such as 120 mm"
+            )
+        return float(shaft.positions()[int(text) - 1])
+    try:
+        return to_si(text, "m", name)
+    except UnitError as error:
+        raise ImportedRotorError(f"{error}; write a node's number, or a distance from node 1") from None

@@ -1,0 +1,57 @@
+"""Which kind of file a rotor is imported from, and who reads it."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.imports.mistakes import ImportedRotorError
+from touchdown.rotor.imports.ross import of_elements
+from touchdown.rotor.imports.sections import of_sections
+
+TABLES = (".csv", ".tsv", ".txt")
+MODELS = (".toml", ".json")
+
+
+def read(path: str | Path, speed: float | None = None) -> Shaft:
+    """The rotor in the file at `path`: saved by ROSS (.toml, .json), or a table of sections (.csv).
+
+    `about` says what of the original it leaves out or has otherwise.
+
+    speed: rad/s, at which bearings whose coefficients hang on it are taken. Raises ImportedRotorError.
+    """
+    path = Path(path)
+    kind = path.suffix.lower()
+    if kind in TABLES:
+        return of_sections(_text(path), str(path), path.stem)
+    if kind in MODELS:
+        return of_elements(_parsed(path), str(path), path.stem, speed)
+    raise ImportedRotorError(
+        f"{path}: rotors are imported from ROSS's files ({', '.join(MODELS)}) and tables of sections "
+        f"({', '.join(TABLES)})"
+    )
+
+
+def _parsed(path: Path) -> dict[str, Any]:
+    text = _text(path)
+    try:
+        data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ImportedRotorError(f"{path}: cannot be read: {error}") from None
+    if not isinstance(data, dict):
+        raise ImportedRotorError(f"{path}: is no model of ROSS's: it holds a {type(data).__name__}")
+    return data
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ImportedRotorError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ImportedRotorError(
+            f"{path}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"
+        ) from None

@@ -1,0 +1,163 @@
+"""Bearings of a user's own: found, filled in, and each mistake told in one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from touchdown.bearings.catalogue import CatalogueError, as_file, bearing, built_in, own, reference
+from touchdown.bearings.catalogue.file import read
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.file import load_scene
+
+OURS = """
+["our 7014"]
+kind = "angular contact"
+bore = "70 mm"
+outside = "110 mm"
+width = "20 mm"
+balls = 19
+static_rating = "43 kN"
+
+["our 7014".origins]
+static_rating = "the drawing"
+"""
+SIZES = 'bore = "20 mm"\noutside = "42 mm"\nwidth = "12 mm"\n'
+SCENE = '[components.bearing]\nfmu = "simplified_caged"\npreset = "{}"\n'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a file of one's own."""
+    (tmp_path / "bearings.toml").write_text(OURS, encoding="utf-8")
+    return tmp_path
+
+
+def test_what_is_given_stays_and_the_rest_is_filled_in(folder: Path) -> None:
+    made = own(folder)["our 7014"]
+    rule = bearing("7014")
+    assert (made.balls.count, made.static_rating) == (19, 43000.0)
+    assert made.balls.diameter == rule.balls.diameter
+    assert made.dynamic_rating == pytest.approx(rule.dynamic_rating * (19 / 20) ** (2 / 3))
+    assert made.origins["static_rating"] == "the drawing"
+    assert made.origins["balls"] == "bearings.toml"
+    assert made.origins["dynamic_rating"] == "ISO 281"
+    assert made.capacity().static == 43000.0
+
+
+def test_found_from_the_scenes_folder_or_by_a_path(folder: Path) -> None:
+    found = reference("our 7014", folder)
+    assert found == reference("bearings.toml:our 7014", folder) == f"{folder / 'bearings.toml'}:our 7014"
+    assert bearing(found).balls.count == 19
+    assert reference("7014", folder) == "7014"
+
+
+def test_ones_own_come_before_the_built_in(folder: Path) -> None:
+    text = as_file(bearing("6305")).replace("balls = 7", "balls = 8")
+    (folder / "bearings.toml").write_text(text, encoding="utf-8")
+    assert bearing(reference("6305", folder)).balls.count == 8
+    assert bearing("6305").balls.count == 7
+
+
+@pytest.mark.parametrize("name", ["6004", "7914 pair", "7014", "61800"])
+def test_a_bearing_written_is_read_again(name: str, tmp_path: Path) -> None:
+    """But for the source's way to compute stiffness, and six digits."""
+    path = tmp_path / "own.toml"
+    path.write_text(as_file(bearing(name)), encoding="utf-8")
+    again = read(path)[name]
+    assert again.numbers() == pytest.approx(bearing(name).numbers(), rel=1e-5)
+    assert again.origins == bearing(name).origins
+
+
+def test_a_scene_takes_it(folder: Path) -> None:
+    path = folder / "scene.toml"
+    path.write_text(SCENE.format("our 7014"), encoding="utf-8")
+    scene = load_scene(str(path))
+    with opened(scene, in_process=True) as system:
+        assert system.value("bearing.balls.count") == 19
+    again = load_scene("disk-caged-simplified").set(
+        {"bearing.preset": f"{folder / 'bearings.toml'}:our 7014"}
+    )
+    assert again.components["bearing"].preset == scene.components["bearing"].preset
+    path.write_text(SCENE.format("our 701"), encoding="utf-8")
+    with pytest.raises(
+        TouchdownError, match=r"bearing\]: there is no preset our 701; did you mean our 7014"
+    ):
+        load_scene(str(path))
+
+
+def test_a_setting_finds_it_from_where_the_user_stands(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the scene's own folder does not have."""
+    monkeypatch.chdir(folder)
+    scene = load_scene("disk-caged-simplified")
+    found = f"{folder / 'bearings.toml'}:our 7014"
+    for name in ("our 7014", "bearings.toml:our 7014"):
+        assert scene.set({"bearing.preset": name}).components["bearing"].preset == found
+    with pytest.raises(TouchdownError, match="bearing: there is no preset our 701; did you mean"):
+        scene.set({"bearing.preset": "our 701"})
+    (folder / "bearings.toml").write_text("[a", encoding="utf-8")
+    with pytest.raises(TouchdownError, match="not valid TOML"):
+        scene.set({"bearing.preset": "our 7014"})
+    assert scene.set({"bearing.preset": "7014"}).components["bearing"].preset == "7014"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[a]\n", "bore is missing"),
+        ("a = 1\n", "must be a table"),
+        ("[a", "not valid TOML"),
+        ("[a]\n" + SIZES.replace('"20 mm"', "20"), "bore = 20 has no unit; it is measured in m"),
+        ("[a]\n" + SIZES.replace("42 mm", "19 mm"), "outside = 0.019 m must be above bore = 0.02 m"),
+        ("[a]\n" + SIZES + "ball = 3\n", "ball is not known of a bearing; did you mean balls"),
+        ("[a]\n" + SIZES + "balls = 7.5\n", "must be a whole number"),
+        ("[a]\n" + SIZES + 'static_rating = "0 N"\n', "must be above 0"),
+        ("[a]\n" + SIZES + 'static_rating = "5 m"\n', "has the unit m; it is measured in N"),
+        ("[a]\n" + SIZES + 'ball_diameter = "12 mm"\n', "do not fit between bore and outside"),
+        ("[a]\n" + SIZES + "inner_groove = 0.4\n", "not a ball bearing"),
+        ("[a]\n" + SIZES + 'contact_angle = "100 deg"\n', "contact angle of 1.74533 rad"),
+        ("[a]\n" + SIZES.replace("12 mm", "0.1 mm"), "leaves nothing of a ring"),
+        ("[a]\n" + SIZES + 'kind = "roller"\n', "write 'deep groove' or 'angular contact'"),
+        (
+            "[a]\n" + SIZES + "[a.origins]\nbores = 'x'\n",
+            "bores is not known of a bearing; did you mean bore",
+        ),
+    ],
+)
+def test_a_mistake_is_one_line(text: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "bearings.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(CatalogueError) as caught:
+        own(tmp_path)
+    assert says in str(caught.value)
+    assert str(tmp_path / "bearings.toml") in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_not_there_is_named(folder: Path) -> None:
+    with pytest.raises(CatalogueError, match="cannot be read") as caught:
+        reference("others.toml:x", folder)
+    assert caught.value.known == ()
+    with pytest.raises(CatalogueError, match="has no bearing x") as caught:
+        reference("bearings.toml:x", folder)
+    assert caught.value.known == ("our 7014",)
+    with pytest.raises(CatalogueError) as caught:
+        reference("x", folder)
+    assert caught.value.known == ("our 7014", *built_in())
+
+
+def test_two_rows_in_twice_the_width_weigh_as_two_bearings(tmp_path: Path) -> None:
+    sizes = 'bore = "70 mm"\noutside = "110 mm"\n'
+    (tmp_path / "bearings.toml").write_text(
+        f'["one"]\nkind = "angular contact"\n{sizes}width = "20 mm"\n'
+        f'["pair"]\nkind = "angular contact"\n{sizes}width = "40 mm"\nrows = 2\n',
+        encoding="utf-8",
+    )
+    found = own(tmp_path)
+    one, pair = found["one"], found["pair"]
+    assert pair.ring.mass == pytest.approx(2.0 * one.ring.mass)
+    assert pair.ring.inertia == pytest.approx(2.0 * one.ring.inertia)
+    assert pair.outer_ring == pytest.approx(2.0 * one.outer_ring)

@@ -1,0 +1,118 @@
+"""Ratings: balance, limits, and what must not depend on how it is asked."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+
+from touchdown.bearings import rating
+from touchdown.bearings.rating import INNER, OUTER, RatedBearing
+from touchdown.bearings.rolling.balls import BallSet
+
+BEARING = RatedBearing(9, 12.7e-3, 65e-3, 0.52, 0.52)
+
+
+@pytest.mark.parametrize("clearance", [-20e-6, -1e-6, 0.0, 7.5e-6, 1e-3])
+@pytest.mark.parametrize("angle", [0.0, math.radians(25.0)])
+@pytest.mark.parametrize("rows", [1, 2])
+def test_balls_carry_the_load(clearance: float, angle: float, rows: int) -> None:
+    bearing = replace(BEARING, rows=rows, contact_angle=angle)
+    shared = rating.load_distribution(bearing, 8900.0, clearance)
+    carried = rows * math.cos(angle) * float(shared.loads @ np.cos(shared.angles))
+    assert carried == pytest.approx(8900.0, rel=1e-9)
+    assert shared.loads[0] == shared.loads.max()
+    if clearance < 0.0:
+        assert shared.loads.min() > 0.0 or shared.deflection > -clearance
+    if clearance == 1e-3:
+        assert np.count_nonzero(shared.loads) == 1  # no other ball is reached
+        assert shared.deflection > clearance
+
+
+def test_clearance_loads_the_lowest_ball_more() -> None:
+    most = [rating.load_distribution(BEARING, 8900.0, c).loads.max() for c in (-5e-6, 0.0, 7.5e-6, 50e-6)]
+    assert most == sorted(most)
+
+
+def test_a_contact_angle_of_a_radial_bearing_only() -> None:
+    with pytest.raises(ValueError, match="contact angle of 1\\.6 rad"):
+        replace(BEARING, contact_angle=1.6)
+    with pytest.raises(ValueError, match="not a ball bearing"):
+        replace(BEARING, diameter=70e-3)
+    with pytest.raises(ValueError, match="load of 0 N"):
+        rating.load_distribution(BEARING, 0.0)
+
+
+def test_from_the_parameters_of_a_model() -> None:
+    values = {f"balls.{name}": float(value) for name, value in asdict(BallSet()).items()}
+    bearing = RatedBearing.of(values)
+    assert (bearing.count, bearing.inner_groove, bearing.outer_groove) == (9, 0.52, 0.52)
+    wider = RatedBearing.of(values | {"balls.outer_conformity": 1.06})
+    assert (wider.inner_groove, wider.outer_groove) == (0.52, 0.53)
+    law = rating.point_contact(bearing, OUTER)
+    assert law.approach(100.0) == pytest.approx((100.0 / law.stiffness) ** (2.0 / 3.0))
+
+
+def test_contacts_bear_no_pull() -> None:
+    contact = rating.point_contact(BEARING, INNER)
+    assert contact.pressure([-5.0, 0.0]).tolist() == [0.0, 0.0]
+
+
+def test_safety_by_load_and_by_pressure() -> None:
+    """The most loaded ball bears five times the mean where clearance is usual, and 4200 MPa at C_0."""
+    static = rating.static_rating(BEARING)
+    ball = 5.0 * static / BEARING.count
+    worst = max(float(rating.point_contact(BEARING, race).pressure(ball)) for race in (INNER, OUTER))
+    assert worst == pytest.approx(rating.PRESSURE_LIMIT)
+    assert rating.pressure_safety(worst / 2.0) == pytest.approx(8.0)
+    assert rating.static_safety(static, [0.0, static / 8.0]).tolist() == [math.inf, pytest.approx(8.0)]
+
+
+def test_makers_ratings_come_first() -> None:
+    pair = replace(BEARING, rows=2)
+    own = rating.capacity(pair)
+    assert own.static == 2.0 * rating.static_rating(BEARING)
+    assert own.dynamic == pytest.approx(2.0**0.7 * rating.dynamic_rating(BEARING))
+    assert rating.capacity(pair, 1e4, 2e4) == (2e4, pytest.approx(2.0**0.7 * 2e4))
+
+
+def test_wider_grooves_and_larger_balls_are_rated_less() -> None:
+    rated = rating.dynamic_rating(BEARING)
+    assert rating.dynamic_rating(replace(BEARING, inner_groove=0.50001)) == rated
+    assert rating.dynamic_rating(replace(BEARING, inner_groove=0.54)) < 0.9 * rated
+    at, above = (RatedBearing(9, d, 5.0 * d) for d in (25.4e-3, 25.4001e-3))
+    assert rating.dynamic_rating(above) == pytest.approx(rating.dynamic_rating(at), rel=1e-4)
+
+
+def test_lives_fall_with_the_third_power_of_the_load() -> None:
+    loads = rating.load_distribution(BEARING, 1000.0).loads
+    life = rating.reference_life(BEARING, 33200.0, loads)
+    assert rating.reference_life(BEARING, 33200.0, 2.0 * loads) == pytest.approx(life / 8.0)
+    assert rating.basic_life(33200.0, 1000.0) == pytest.approx(33.2**3 * 1e6)
+    assert life == pytest.approx(float(rating.basic_life(33200.0, 1000.0)), rel=0.15)  # clearance: none
+    assert rating.reference_life(BEARING, 33200.0, 0.0 * loads) == math.inf
+
+
+def test_lives_by_race_by_ring_and_by_rows() -> None:
+    loads = rating.load_distribution(BEARING, 1000.0).loads
+    life = rating.reference_life(BEARING, 33200.0, loads)
+    assert rating.reference_life(BEARING, 33200.0, np.column_stack([loads, loads])) == pytest.approx(life)
+    assert rating.reference_life(BEARING, 33200.0, loads, turning=OUTER) < life
+    pair = replace(BEARING, rows=2)  # also as two bearings, 10/9 the Weibull slope
+    twice = rating.reference_life(pair, 2.0**0.7 * 33200.0, loads)
+    assert twice == pytest.approx(life * 2.0**-0.9)
+
+
+def test_damage_of_a_drop() -> None:
+    """A ring that turns once per stretch, at the loads of a bearing without clearance."""
+    loads = rating.load_distribution(BEARING, 1000.0).loads
+    life = rating.reference_life(BEARING, 33200.0, loads)
+    most = float(loads.max())
+    damage = rating.drop_damage(BEARING, 33200.0, [most, 2.0 * most, 0.0], [1.0, 1.0, 5.0])
+    assert damage == pytest.approx(9.0 / life)
+    assert rating.drops(damage) == pytest.approx(life / 9.0)
+    assert rating.drops(rating.drop_damage(BEARING, 33200.0, [0.0], [1.0])) == math.inf
+    with pytest.raises(ValueError, match="1 loads and 2 numbers"):
+        rating.drop_damage(BEARING, 33200.0, [1.0], [1.0, 2.0])

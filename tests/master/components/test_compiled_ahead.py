@@ -1,0 +1,64 @@
+"""What a scene has to compile is compiled before it runs, by other processes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+import touchdown
+from touchdown.fmus.recipes import recipe
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.library import ahead
+from touchdown.master.results.run import make_ready
+
+
+@pytest.fixture
+def handed_out(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
+    """Titles of the models that each process would be handed; nothing is compiled."""
+    lists: list[list[str]] = []
+
+    def take(models: Iterable[ahead.NewModel]) -> None:
+        lists.append([model.title for model in models])
+
+    monkeypatch.setattr(ahead, "_have_compiled", take)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 1})
+    return lists
+
+
+@pytest.mark.parametrize("in_process", [True, False])
+def test_each_new_model_is_handed_out_once(
+    in_process: bool, own_cache: Path, handed_out: list[list[str]]
+) -> None:
+    said: list[str] = []
+    make_ready(touchdown.load("rotor1-9000"), in_process, said.append)
+    assert len(handed_out) == 2
+    titles = [title for titles in handed_out for title in titles]
+    assert sorted(titles) == ["amb", "housing", "rotor_I", "simplified_cageless"]
+    assert len(said) == 1
+    assert all(title in said[0] for title in titles)
+
+
+def test_one_processor_compiles_as_it_goes(
+    own_cache: Path, handed_out: list[list[str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0})
+    make_ready(touchdown.load("rotor1-9000"), True, pytest.fail)
+    assert not handed_out
+
+
+def test_what_is_compiled_is_not_new(own_cache: Path) -> None:
+    housing = recipe("housing")
+    assert not ahead._is_compiled(housing, in_process=True)
+    ahead._have_compiled(iter([ahead.NewModel("housing", "housing", in_process=True, size=0)]))
+    assert ahead._is_compiled(housing, in_process=True)
+    assert not ahead._is_compiled(housing, in_process=False)
+
+
+def test_a_mistake_does_not_wait_for_the_compiler(own_cache: Path, handed_out: list[list[str]]) -> None:
+    scene = touchdown.load("rotor1-9000").set({"bearing_A.weight": 1.0})
+    with pytest.raises(TouchdownError, match="no variable weight"):
+        make_ready(scene, False)
+    assert not handed_out

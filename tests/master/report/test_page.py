@@ -1,0 +1,169 @@
+"""What a report says of a run."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import Command
+
+import touchdown
+from touchdown.master.report.contents import CHAPTERS, section
+from touchdown.master.report.facts.numbers import digits, listed, quantity
+from touchdown.master.report.facts.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.page.blocks import Table
+from touchdown.master.report.sweeps import _is_sample
+
+
+def test_a_run_is_read_back_as_it_was(dropped: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    left = touchdown.run(scene, dropped.parent / "again", in_process=True)
+    back = touchdown.open_result(left.folder)
+    assert back.scene == left.scene
+    assert (back.summary, back.ended, back.warnings) == (left.summary, left.ended, left.warnings)
+    assert back.ending == left.ending
+    assert list(back.recording.time) == list(left.recording.time)
+
+
+def test_a_run_s_scene_can_be_run_again(dropped: Path) -> None:
+    scene = touchdown.load(dropped / "scene.json")
+    again = touchdown.run(scene.set({"run.duration": "10 ms"}), in_process=True)
+    assert again.recording.at_end("bearing.contact.first_time") == touchdown.open_result(
+        dropped
+    ).ending.value("bearing.contact.first_time")
+
+
+def test_every_chapter_is_there_or_says_why_not(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for chapter in CHAPTERS:
+        assert f'<section id="{chapter.name}"' in text
+    lacking = re.findall(r'<p class="lacking">Not in this report: (.*)</p>', text)
+    assert len(lacking) == 5  # requirements, environment, spectra, stresses, inspection
+    assert "the rotor is rigid" in " ".join(lacking)
+
+
+def test_the_page_asks_for_nothing_beside_it(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    outside = set(re.findall(r'(?:src|href)="(?!#|data:)([^"]*)"', text))
+    assert not outside
+    assert "url(http" not in text
+    assert page.stat().st_size < 2_000_000
+
+
+def test_settings_tell_where_they_come_from(dropped: Path) -> None:
+    chapter = next(c for c in CHAPTERS if c.name == "settings")
+    tables = [
+        b for b in section(chapter, Subject(touchdown.open_result(dropped))).blocks if isinstance(b, Table)
+    ]
+    rows = {row[0]: row for table in tables for row in table.rows}
+    assert rows["bearing.clearance"][1:3] == ["250\N{NO-BREAK SPACE}µm", "set for this run"]
+    assert rows["bearing.balls.count"][1:3] == ["9", "catalogue"]
+    assert rows["rotor.mass"][2] == "scene"
+    assert rows["run.duration"][2] == "set for this run"
+    assert rows["run.scheme"][1:] == ["interface", "default"]
+
+
+def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert "touchdown run disk-caged-simplified --set run.duration=0.06" in text
+    found = re.search(r'href="data:application/json;base64,([^"]+)"', text)
+    assert found is not None
+    inside = json.loads(base64.b64decode(found[1]))
+    assert inside["components"] == json.loads((dropped / "scene.json").read_text())["components"]
+
+
+def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "4 ms"})
+    page = touchdown.report(touchdown.run(scene, in_process=True), tmp_path / "none.html")[0]
+    assert "touches no bearing within 4\N{NO-BREAK SPACE}ms" in page.read_text(encoding="utf-8")
+    with pytest.raises(touchdown.TouchdownError, match="nothing touched"):
+        touchdown.animate(touchdown.run(scene, in_process=True), tmp_path / "none.gif")
+
+
+def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "9 ms"})
+    varied = {"bearing.clearance": ["0.2 mm", "0.25 mm"]}
+    touchdown.sweep(scene, varied, tmp_path / "sweep", jobs=1, in_process=True)
+    assert command("report", tmp_path / "sweep").status == 0
+    text = (tmp_path / "sweep" / "report.html").read_text(encoding="utf-8")
+    assert "0 of 2 drops whirl (0\N{NO-BREAK SPACE}%)" in text.replace("0 %", "0\N{NO-BREAK SPACE}%")
+    assert "The map of stress: not in this report" in text
+    assert "all drops ran to their end" in text
+
+
+def test_only_drops_drawn_one_by_one_tell_of_all() -> None:
+    """Those of several phases at each drawn point are not independent of each other."""
+    drawn = touchdown.Design.random({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1)
+    phases = touchdown.Design.grid({"rotor.unbalance_angle": ["0 deg", "180 deg"]})
+    assert _is_sample(drawn.about)
+    assert not _is_sample((drawn * phases).about)
+    assert not _is_sample(phases.about)
+    assert not _is_sample(touchdown.Design.sobol({"bearing.clearance": "0.2:0.3 mm"}, 8, seed=1).about)
+
+
+def test_the_rows_of_a_chart_keep_all_peaks() -> None:
+    random = np.random.default_rng(1)
+    time = np.linspace(0.0, 5.0, 200_001)
+    columns = [random.normal(size=time.size) for _ in range(3)]
+    columns[0][123_456] = 99.0
+    columns[2][-1] = -99.0
+    rows = chosen_rows(time, columns, 1.0)
+    assert len(rows) <= MOST_ROWS + 10
+    assert {0, 123_456, time.size - 1} <= set(rows.tolist())
+    first = int(np.searchsorted(time, 1.0))
+    assert set(range(first, first + IMPACT_ROWS // 2)) <= set(rows.tolist())
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.00025, "m", "250 µm"),
+        (1.5e9, "Pa", "1.5 GPa"),
+        (2.4e9, "N/m^n", "2.4·10⁹ N/mⁿ"),
+        (0.0, "m", "0 mm"),
+        (25500.0, "1", "25\N{NARROW NO-BREAK SPACE}500"),
+        (-3.2e-7, "J", "\N{MINUS SIGN}0.32 µJ"),
+        (None, "s", "–"),
+    ],
+)
+def test_numbers_are_readable(value: float | None, unit: str, text: str) -> None:
+    assert quantity(value, unit).replace("\N{NO-BREAK SPACE}", " ") == text
+
+
+def test_words_are_listed() -> None:
+    assert [listed(words) for words in ([], ["a"], ["a", "b"], ["a", "b", "c"])] == [
+        "",
+        "a",
+        "a and b",
+        "a, b and c",
+    ]
+    assert digits(float("inf")) == "∞"
+
+
+def test_what_cannot_be_reported_is_one_line(command: Command, tmp_path: Path, dropped: Path) -> None:
+    assert "there is no folder" in command("report", tmp_path / "nowhere").line
+    (tmp_path / "empty").mkdir()
+    assert "no summary.json" in command("report", tmp_path / "empty").line
+    assert "is a folder" in command("report", dropped, "-o", tmp_path).line
+    assert "ends in .html" in command("report", dropped, "-o", tmp_path / "drop.pdf").line
+    assert "ends in .mp4 or .gif" in command("animate", dropped, "-o", tmp_path / "drop.avi").line
+
+
+def test_without_a_browser_there_is_no_pdf(
+    command: Command, dropped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert "is on the PATH" in command("report", dropped, "--pdf", "-o", tmp_path / "x.html").line
+
+
+def test_without_ffmpeg_there_is_no_mp4(
+    command: Command, dropped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    assert "an .mp4 takes ffmpeg" in command("animate", dropped, "-o", tmp_path / "x.mp4").line

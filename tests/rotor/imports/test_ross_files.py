@@ -1,0 +1,180 @@
+"""Rotors of ROSS: its published examples by its own frequencies, its objects, and what cannot be imported.
+
+The files in `saved` and the frequencies beside them are ROSS's; `benchmarks/ross_rotors.py` makes them.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from copy import deepcopy
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from touchdown.rotor.beams.shaft import Shaft, Station, Support
+from touchdown.rotor.file import parse, written
+from touchdown.rotor.imports import ImportedRotorError, from_ross, read
+from touchdown.rotor.imports.ross import of_elements
+from touchdown.rotor.modal.campbell import supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.critical import critical_speeds
+from touchdown.rotor.modal.modes import basis
+
+SAVED = Path(__file__).parent / "saved"
+THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
+AGREE = 1e-9  # relative; found: 9e-11
+STEEL = {"name": "Steel", "rho": 7810.0, "E": 211e9, "G_s": 81.2e9, "color": "#525252"}
+SHAFT = {"L": 0.1, "idl": 0.0, "odl": 0.05, "material": STEEL}
+SOFT = {**STEEL, "E": 1e4, "G_s": 1e4}
+OLD: dict[str, dict[str, Any]] = {  # as versions before 2.0 wrote them
+    "parameters": {},
+    "ShaftElement_ShaftElement 0": {**SHAFT, "idr": 0.01, "odr": 0.06, "n": 0},
+    "ShaftElement_ShaftElement 1": {**SHAFT, "n": 1},
+    "ShaftElement_sleeve": {**SHAFT, "idl": 0.05, "odl": 0.07, "n": 1, "material": SOFT},
+    "DiskElement_Disk 0": {"n": 2, "m": 3.0, "Id": 0.01, "Ip": 0.02, "tag": "Disk 0"},
+    "BearingElement_Bearing 0": {"n": 0, "kxx": [1e6], "kyy": [2e6], "cxx": [0.0], "cyy": [5.0]},
+    "BearingElement_Bearing 1": {"n": 2, "kxx": [1e6, 3e6], "cxx": [0.0, 0.0], "frequency": [0.0, 100.0]},
+}
+
+
+def bent(whirl: np.ndarray, shaft: Shaft) -> np.ndarray:
+    """Without the free rotor's precession."""
+    return whirl[whirl > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [(n, kind) for n, kinds in THEIRS.items() for kind in ("free", "held") if kinds[kind]]
+)
+def test_six_modes_of_a_published_example(name: str, kind: str) -> None:
+    """Backward and forward, at rest and spinning, free and on its bearings."""
+    shaft = read(SAVED / f"{name}.toml")
+    for rpm, theirs in THEIRS[name][kind].items():
+        speed = float(rpm) * math.pi / 30.0
+        if kind == "free":
+            found = bent(np.abs(whirl_frequencies(basis(shaft, 0), [speed])[0]) / (2.0 * math.pi), shaft)
+        else:
+            springs = [Support(s.node, s.stiffness, s.stiffness_y) for s in shaft.supports]
+            found = supported_whirl(basis(shaft, 0), speed, springs).frequencies
+        ours = np.sort(found)
+        assert len(theirs) >= 10
+        assert ours[: len(theirs)] == pytest.approx(theirs, rel=AGREE)
+
+
+@pytest.mark.parametrize("name", THEIRS)
+def test_its_critical_speeds_over_the_stiffness_of_its_bearings(name: str) -> None:
+    """Those of `ross.Rotor.run_ucs`, synchronous."""
+    shaft = read(SAVED / f"{name}.toml")
+    modes = basis(shaft, 0)
+    for stiffness, theirs in THEIRS[name]["critical"].items():
+        ours = critical_speeds(modes, [Support(s.node, float(stiffness)) for s in shaft.stations])
+        assert len(theirs) == 4
+        assert ours[:4] == pytest.approx(theirs, rel=1e-7)  # found: 8e-9
+
+
+@pytest.mark.parametrize("name", THEIRS)
+def test_an_imported_rotor_can_be_written(name: str) -> None:
+    shaft = read(SAVED / f"{name}.toml", speed=100.0)
+    assert parse(written(shaft), "again") == shaft
+
+
+def test_layers_of_the_compressor() -> None:
+    shaft = read(SAVED / "compressor_example.toml")
+    assert (len(shaft.elements), sum(1 + len(e.layers) for e in shaft.elements)) == (55, 91)
+    assert shaft.supports == ()
+    assert "12 seals are left out." in shaft.about
+    assert "Bearing 0: its coefficients hang on the speed" in shaft.about
+    assert shaft.stations == (Station("A", 8), Station("B", 49))
+
+
+def old(**changes: Any) -> Shaft:
+    """The rotor of `OLD` with tables changed; None removes one."""
+    data = deepcopy(OLD)
+    for name, values in changes.items():
+        key = next(key for key in data if key.endswith(name.replace("_", " ")))
+        data[key] = {**data[key], **values}
+    return of_elements(data, "old.toml", "old", speed=50.0)
+
+
+def test_a_file_of_an_older_version() -> None:
+    shaft = old()
+    cone, layered = shaft.elements
+    assert (cone.diameters(0.0), cone.diameters(1.0)) == ((0.05, 0.0), (0.06, 0.01))
+    assert layered.layers[0].density == 7810.0
+    assert layered.layers[0].poisson == pytest.approx(-0.5)
+    assert layered.poisson == pytest.approx(211.0 / 162.4 - 1.0)
+    assert shaft.points[0].node == 3
+    assert shaft.supports == (Support(1, 1e6, 2e6, 0.0, 5.0), Support(3, 2e6))
+    assert parse(written(shaft), "again") == shaft
+
+
+def test_json_says_the_same(tmp_path: Path) -> None:
+    path = tmp_path / "old.json"
+    path.write_text(json.dumps({"_note": "by ROSS", **OLD}), encoding="utf-8")
+    assert read(path, speed=50.0) == old()
+
+
+def test_an_object_says_the_same() -> None:
+    def element(key: str) -> SimpleNamespace:
+        values = dict(OLD[key])
+        if "material" in values:
+            values["material"] = SimpleNamespace(**values["material"])
+        return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
+
+    kinds = {"Shaft": "shaft_elements", "Disk": "disk_elements", "Beari": "bearing_elements"}
+    lists = {name: [element(key) for key in OLD if key.startswith(kind)] for kind, name in kinds.items()}
+    shaft = from_ross(SimpleNamespace(tag="old", **lists), speed=50.0)
+    expected = old()
+    assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
+    assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)
+
+
+def test_what_is_otherwise_is_said() -> None:
+    assert "1 shaft elements have shear_effects = false" in old(Element_1={"shear_effects": False}).about
+    assert "axial_force of shaft elements is left out" in old(Element_1={"axial_force": 9.0}).about
+    assert "set damping_ratio" in old(Element_1={"beta": 1e-5}).about
+    assert "cross-coupled" in old(Bearing_0={"kxy": [1e5]}).about
+    assert "bearings are grounded" in old(Bearing_0={"n_link": 5}).about
+    hutchinson = old(Element_1={"shear_method_calc": "hutchinson"}).elements[1].shear_factor
+    assert hutchinson == pytest.approx(0.71197, abs=1e-5)  # by ROSS 2.3.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"Element_1": {"n": 5}}, "no shaft element begins at node 2"),
+        ({"sleeve": {"L": 0.2}}, "another element on the same nodes has 0.1 m"),
+        ({"Element_1": {"material": "Steel"}}, "material = 'Steel' has no values"),
+        ({"Element_1": {"odl": "wide"}}, "odl = 'wide' is not a number"),
+        ({"Disk_0": {"n": 9}}, "n = 9 is not on the shaft, whose nodes are 0 to 2"),
+        ({"Disk_0": {"m": math.nan}}, "m = nan is not a finite number"),
+        ({"Disk_0": {"n": 0.5}}, "n = 0.5 is no node"),
+        ({"Element_1": {"n": 1e9}}, "no shaft element begins at node 2"),
+        ({"Element_1": {"odl": 0.0}}, "odl = 0 must be above 0"),
+        ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material: G_s = 0 must be above 0"),
+        ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
+    ],
+)
+def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) -> None:
+    with pytest.raises(ImportedRotorError) as caught:
+        old(**changes)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
+    path = tmp_path / "other.toml"
+    path.write_text('title = "x"', encoding="utf-8")
+    with pytest.raises(ImportedRotorError, match="is no rotor that ROSS saved"):
+        read(path)
+    path.write_text("[", encoding="utf-8")
+    with pytest.raises(ImportedRotorError, match="cannot be read"):
+        read(path)
+    with pytest.raises(ImportedRotorError, match="imported from ROSS's files"):
+        read(tmp_path / "rotor.xls")
+    with pytest.raises(ImportedRotorError, match=r"gone\.csv: cannot be read: No such file"):
+        read(tmp_path / "gone.csv")
+    with pytest.raises(ImportedRotorError, match="a str is no"):
+        from_ross("rotor")

@@ -1,0 +1,143 @@
+"""Rotors as tables of sections, and the places put on them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.nodes import with_node
+from touchdown.rotor.beams.shaft import Shaft, Station, Unbalance
+from touchdown.rotor.imports import ImportedRotorError, placed
+from touchdown.rotor.imports.sections import of_sections
+
+HEAD = (
+    "Length [mm], outer_diameter [mm], inner diameter (mm), outer diameter end [mm], material, elements, "
+    "mass [kg], polar inertia [kg.cm2], unbalance [g.mm], unbalance angle [deg], station"
+)
+TABLE = f"""
+# from the drawing
+{HEAD}
+30, 20, 0, , steel, , 0.5, 4, , , A
+200, 40, 10, 60, steel, 4, , , 7, 90,
+30, 20, , , aluminium, , , , , , B
+, , , , , , 1.2, , , ,
+"""
+
+
+def table(text: str) -> Shaft:
+    return of_sections(text, "mine.csv", "mine")
+
+
+def test_a_table() -> None:
+    shaft = table(TABLE)
+    assert shaft.positions() == pytest.approx([0.0, 0.015, 0.03, 0.08, 0.13, 0.18, 0.23, 0.245, 0.26])
+    assert [e.diameters(1.0)[0] for e in shaft.elements[1:6]] == pytest.approx(
+        [0.02, 0.045, 0.05, 0.055, 0.06]
+    )
+    assert {e.inner_diameter for e in shaft.elements[2:6]} == {0.01}
+    assert (shaft.elements[0].modulus, shaft.elements[-1].density) == (207e9, 2700.0)
+    assert [(p.node, p.mass, p.polar_inertia) for p in shaft.points] == [
+        (1, 0.5, pytest.approx(4e-4)),
+        (9, 1.2, 0.0),
+    ]
+    assert shaft.unbalances == (Unbalance(3, pytest.approx(7e-6), pytest.approx(math.pi / 2.0)),)
+    assert shaft.stations == (Station("A", 1), Station("B", 7))
+
+
+def test_spreadsheets_with_decimal_commas() -> None:
+    shaft = table(
+        "length [mm];outer diameter [mm];modulus [GPa];density [kg/m3];poisson\n12,5;20,5;70;2700;0,33\n"
+    )
+    assert (shaft.elements[0].length, shaft.elements[0].outer_diameter) == (0.0125, 0.0205)
+    assert shaft.elements[0].poisson == 0.33
+
+
+def test_a_sleeve() -> None:
+    head = "length [mm],outer diameter [mm],material,sleeve diameter [mm],sleeve density [kg/m3]"
+    element = table(f"{head}\n20,30,steel,50,7650\n").elements[0]
+    assert (element.sleeve_diameter, element.sleeve_density, element.sleeve_modulus) == (0.05, 7650.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("Length [mm]", "Length", "line 3: length has no unit; write it as length [mm]"),
+        ("Length [mm]", "Breadth [mm]", "line 3: the column 'Breadth [mm]' is not known; there are:"),
+        ("Length [mm]", "Length [kg]", "line 4: length = '30 kg' has the unit kg"),
+        ("elements", "material", "line 3: there are two columns material"),
+        ("30, 20, 0, , steel", "30, , 0, , steel", "line 4: outer diameter is missing"),
+        ("30, 20, 0, , steel", "x, 20, 0, , steel", "line 4: length = 'x mm' is not a number"),
+        ("30, 20, 0, , steel", "-3, 20, 0, , steel", "line 4: length = '-3' must not be negative"),
+        ("30, 20, 0, , steel", "30, 20, 20, , steel", "line 4: inner diameter = '20' is not less than"),
+        ("30, 20, 0, , steel", "30, 20, 0, , stele", "line 4: material = 'stele' is not known; there are"),
+        ("30, 20, 0, , steel", "30, 20, 0, , ", "line 4: material is missing"),
+        ("200, 40", ", 40", "line 5: length is missing"),
+        ("steel, 4", "steel, 4.5", "line 5: elements = '4.5' must be a whole number"),
+        ("A\n200", "A, 5\n200", "line 4: has 12 cells, the header 11"),
+        ("steel, 4", "steel, 1e9", "line 5: length = '200' makes 1e+09 elements; with those before"),
+        (", B\n", ", A\n", "line 6: station = 'A' is there twice"),
+        (TABLE, "", "mine.csv: is empty"),
+        (TABLE, "length [mm], outer diameter [mm]", "has no section"),
+        (TABLE, "length [mm]\n3", "the header must name"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_named(old: str, new: str, says: str) -> None:
+    assert old in TABLE
+    with pytest.raises(ImportedRotorError) as caught:
+        table(TABLE.replace(old, new, 1))
+    assert str(caught.value).startswith("mine.csv")
+    assert says in str(caught.value)
+
+
+def test_places_by_node_and_by_distance() -> None:
+    shaft = table(TABLE)
+    with_places = placed(shaft, {"A": 2, "B": "250 mm"}, {"amb_A": "50 mm"}, {"eye": "80 mm"})
+    assert [(s.name, s.node) for s in with_places.stations] == [("A", 2), ("B", 10), ("amb_A", 4)]
+    assert with_places.levitated_at == ("amb_A",)
+    assert [(s.name, s.node) for s in with_places.sensors] == [("eye", 5)]
+    assert with_places.positions()[[3, 9]] == pytest.approx([0.05, 0.25])
+    assert (with_places.unbalances[0].node, with_places.points[1].node) == (3, 11)
+    assert with_places.mass == pytest.approx(shaft.mass, rel=1e-12)
+    assert with_places.centre_of_mass == pytest.approx(shaft.centre_of_mass, rel=1e-12)
+    assert with_places.diametral_inertia == pytest.approx(shaft.diametral_inertia, rel=1e-12)
+    assert placed(shaft).stations == shaft.stations
+
+
+def test_a_name_stands_once() -> None:
+    with pytest.raises(ImportedRotorError, match="A is there twice"):
+        placed(table(TABLE), {"A": 1}, {"A": 2})
+
+
+@pytest.mark.parametrize(
+    ("place", "says"),
+    [
+        (0, "A = 0 is not a node of the rotor mine, which has nodes 1 to 9"),
+        ("30", "A = 30 is not a node"),
+        ("261 mm", "261 mm is not on the rotor mine, which ends at 260 mm"),
+        ("-1 mm", "-1 mm is not on the rotor"),
+        ("30.05 mm", "30.05 mm is less than 0.1 mm from node 3"),
+        ("wide", "A = 'wide' is not a number"),
+        ("3 kg", "A = '3 kg' has the unit kg"),
+    ],
+)
+def test_places_that_are_not_there(place: int | str, says: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        placed(table(TABLE), {"A": place})
+    assert says in str(caught.value)
+
+
+def test_a_node_more_leaves_the_others_where_they_were() -> None:
+    shaft = table(TABLE)
+    more = with_node(shaft, 0.1)
+    assert more.nodes == shaft.nodes + 1
+    assert set(shaft.positions().round(12)) < set(more.positions().round(12))
+    assert with_node(more, 0.1) == more
+
+
+def test_the_example() -> None:
+    path = Path(__file__).parents[3] / "examples" / "pump_sections.csv"
+    shaft = of_sections(path.read_text(encoding="utf-8"), str(path), "pump")
+    assert [s.name for s in shaft.stations] == ["A", "amb_A", "amb_B", "B"]

@@ -1,0 +1,93 @@
+"""Critical speeds and modes on supports: closed forms of rigid rotors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from touchdown.rotor.beams.element import Element
+from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance, disc
+from touchdown.rotor.file import find
+from touchdown.rotor.modal.campbell import supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.critical import DECADES, LINES, critical_map, critical_speeds
+from touchdown.rotor.modal.modes import basis
+
+K = 1e6
+LENGTH = 0.6
+STIFF = Element(length=LENGTH / 2.0, outer_diameter=0.05, modulus=2e14, density=7830.0, poisson=0.3)
+SLENDER = Shaft("slender", (STIFF, STIFF), unbalances=(Unbalance(2, 1e-5),))
+WHEEL = replace(SLENDER, points=(disc(2, 0.6, 0.05, 0.02, 7830.0),))
+ENDS = (Support(1, K), Support(3, K))
+
+
+def moments(shaft: Shaft) -> tuple[float, float]:
+    """(k l^2 / 2) and Id - Ip: what a tilt has against it, and its inertia when it whirls forwards."""
+    return K * LENGTH**2 / 2.0, shaft.diametral_inertia - shaft.polar_inertia
+
+
+def test_a_slender_rotor_has_two() -> None:
+    back, inertia = moments(SLENDER)
+    found = critical_speeds(basis(SLENDER, 2), ENDS)
+    assert found == pytest.approx(sorted([math.sqrt(2.0 * K / SLENDER.mass), math.sqrt(back / inertia)]))
+
+
+def test_a_wheel_has_one() -> None:
+    """Its gyroscopic moment outruns the tilt: Ip > Id."""
+    assert moments(WHEEL)[1] < 0.0
+    assert critical_speeds(basis(WHEEL, 2), ENDS) == pytest.approx([math.sqrt(2.0 * K / WHEEL.mass)])
+
+
+def test_planes_that_differ() -> None:
+    """Translations by their own springs; tilts where w^4 (Id^2 - Ip^2) - w^2 (a + b) Id + a b = 0."""
+    held = [Support(1, K, 4.0 * K), Support(3, K, 4.0 * K)]
+    found = critical_speeds(basis(SLENDER, 2), held)
+    a, Id, Ip = moments(SLENDER)[0], SLENDER.diametral_inertia, SLENDER.polar_inertia
+    tilts = np.sqrt(np.roots([Id**2 - Ip**2, -5.0 * a * Id, 4.0 * a**2]))
+    across = [math.sqrt(f * 2.0 * K / SLENDER.mass) for f in (1.0, 4.0)]
+    assert found == pytest.approx(sorted([*tilts, *across]))
+
+
+@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
+def test_at_a_critical_speed_a_forward_whirl_is_as_fast_as_the_spin(name: str) -> None:
+    shaft = find(name)
+    modes = basis(shaft, 0)
+    held = [Support(shaft.node("amb_A"), 2e7), Support(shaft.node("amb_B"), 2e7)]
+    springs = [(s.node, s.stiffness) for s in held]
+    for speed in critical_speeds(modes, held)[:LINES]:
+        whirl = whirl_frequencies(modes, [speed], springs)[0]
+        assert np.min(np.abs(whirl / speed - 1.0)) < 1e-8
+
+
+def test_a_map_marks_what_the_shaft_stands_on() -> None:
+    places = [Station("A", 1), Station("B", 3), Station("also_B", 3)]
+    shaft = replace(SLENDER, supports=(*ENDS, Support(2, 5.0)))
+    found = critical_map(shaft, basis(shaft, 0), places)
+    assert found.speeds.shape == (len(found.stiffness), LINES)
+    assert np.log10(found.stiffness[-1] / found.stiffness[0]) == pytest.approx(DECADES[1] - DECADES[0])
+    assert (np.diff(found.speeds[:, 0]) > 0.0).all()
+    assert found.marked == ENDS
+    assert found.own == pytest.approx(critical_speeds(basis(shaft, 0), ENDS)[:LINES])
+    assert not len(critical_map(SLENDER, basis(SLENDER, 0), places).own)
+
+
+def test_damping_of_a_rigid_rotor_on_supports() -> None:
+    """A mass on two springs and dampers: w^2 = 2 k / m, zeta = c / sqrt(2 k m) / ... by its own formula."""
+    held = [Support(node, K, damping=500.0, damping_y=0.0) for node in (1, 3)]
+    found = supported_whirl(basis(SLENDER, 2), 0.0, held)
+    size = math.sqrt(2.0 * K / SLENDER.mass)
+    across = np.isclose(np.abs(found.roots), size, rtol=1e-9)
+    assert across.sum() == 2
+    zeta = 2.0 * 500.0 / (2.0 * size * SLENDER.mass)
+    assert sorted(found.damping_ratios[across]) == pytest.approx([0.0, zeta], abs=1e-12)
+
+
+def test_the_sense_of_a_whirl() -> None:
+    """Held alike in both planes, a spinning rotor whirls in circles, backward ones first."""
+    found = supported_whirl(basis(SLENDER, 2), 800.0, ENDS)
+    tilts = ~np.isclose(np.abs(found.roots), math.sqrt(2.0 * K / SLENDER.mass), rtol=1e-6)
+    assert found.sense[tilts] == pytest.approx([-1.0, 1.0], abs=1e-9)
+    expected = np.abs(whirl_frequencies(basis(SLENDER, 2), [800.0], [(1, K), (3, K)])[0]) / (2.0 * math.pi)
+    assert found.frequencies == pytest.approx(np.sort(expected))

@@ -1,0 +1,95 @@
+"""Rotors with more nodes than are kept as modes or followed for their stresses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from touchdown.rotor.beams.element import split
+from touchdown.rotor.beams.shaft import Shaft, Support
+from touchdown.rotor.file import find
+from touchdown.rotor.modal.critical import critical_speeds
+from touchdown.rotor.modal.data import MOST_ENDS, MOST_MODES, tabulate
+from touchdown.rotor.modal.modes import MOST_SOLVED, basis, flexibility, fullest
+from touchdown.rotor.modal.watched import MOST_WATCHED, watched
+
+
+def finer(name: str, count: int) -> Shaft:
+    """A shipped rotor with each of its elements divided."""
+    shaft = find(name)
+
+    def moved(things):
+        return tuple(replace(t, node=(t.node - 1) * count + 1) for t in things)
+
+    return replace(
+        shaft,
+        elements=tuple(piece for e in shaft.elements for piece in split(e, count)),
+        points=moved(shaft.points),
+        unbalances=moved(shaft.unbalances),
+        stations=moved(shaft.stations),
+        sensors=moved(shaft.sensors),
+    )
+
+
+FINE = finer("rotor_II", 3)  # 73 nodes
+HELD = [s.node for s in FINE.stations]
+
+
+def test_modes_by_either_solver_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    few = basis(FINE, 20)
+    monkeypatch.setattr("touchdown.rotor.modal.modes.MOST_SOLVED", 2 * FINE.nodes)
+    dense = basis(FINE, 20)
+    assert few.omega == pytest.approx(dense.omega, rel=1e-9)
+    assert np.abs(few.shapes - dense.shapes).max() < 1e-6 * np.abs(dense.shapes).max()
+
+
+def test_so_many_modes_are_kept() -> None:
+    assert 2 * FINE.nodes > MOST_SOLVED
+    assert basis(FINE, 0).kept == MOST_SOLVED
+    gram = basis(FINE, 0)
+    with pytest.raises(Exception, match=f"has {MOST_SOLVED} modes per plane to keep"):
+        basis(FINE, MOST_SOLVED + 1)
+    assert len(gram.omega) == MOST_SOLVED
+
+
+def test_held_nodes_keep_their_flexibility() -> None:
+    """With residual vectors, a stiff support meets what it meets of the whole."""
+    kept = fullest(FINE, HELD)
+    elastic = kept.deflections(HELD)[:, 2:]
+    there = elastic @ (elastic.T / kept.omega[2:, None] ** 2)
+    whole = flexibility(FINE, HELD)[[2 * (node - 1) for node in HELD]]
+    assert there == pytest.approx(whole, rel=1e-6, abs=1e-6 * np.abs(whole).max())
+    held = [Support(FINE.node(name), 5e9) for name in ("A", "B")]
+    coarse = critical_speeds(
+        basis(find("rotor_II"), 0), [replace(s, node=(s.node - 1) // 3 + 1) for s in held]
+    )
+    assert critical_speeds(kept, held)[:3] == pytest.approx(coarse[:3], rel=5e-3)
+
+
+def test_which_nodes_are_watched() -> None:
+    assert watched(find("rotor_II")) == tuple(range(1, 26))
+    nodes = watched(FINE)
+    assert len(nodes) == MOST_WATCHED
+    assert nodes == tuple(sorted(set(nodes)))
+    assert {1, FINE.nodes, *HELD} <= set(nodes)
+    changes = {i + 2 for i, (a, b) in enumerate(zip(FINE.elements, FINE.elements[1:], strict=False))
+               if a.outer_diameter != b.outer_diameter}  # fmt: skip
+    assert changes <= set(nodes)
+
+
+def test_the_stresses_of_watched_nodes_are_theirs() -> None:
+    """Rows of the table against those of all nodes."""
+    table = tabulate(FINE, 10, 1).stress
+    nodes, rows = watched(FINE), int(table.ends)
+    assert rows <= MOST_ENDS
+    assert [nodes[int(place)] for place in table.place[:rows]] == [int(n) for n in table.node[:rows]]
+    assert set(table.node[:rows]) == set(nodes)
+    assert table.bending.shape == (MOST_MODES, MOST_ENDS)
+
+
+def test_a_thousand_nodes() -> None:
+    fine = finer("rotor_II", 42)
+    assert fine.nodes > 1000
+    assert basis(fine, 8).omega[2:] == pytest.approx(basis(finer("rotor_II", 4), 8).omega[2:], rel=2e-3)
