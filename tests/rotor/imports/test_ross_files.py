@@ -118,7 +118,7 @@ def test_json_says_the_same(tmp_path: Path) -> None:
 
 def test_an_object_says_the_same() -> None:
     def element(key: str) -> SimpleNamespace:
-        values = dict(OLD[key])
+        values = {n: np.array(v) if isinstance(v, list) else v for n, v in OLD[key].items()}
         if "material" in values:
             values["material"] = SimpleNamespace(**values["material"])
         return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
@@ -129,6 +129,12 @@ def test_an_object_says_the_same() -> None:
     expected = old()
     assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
     assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)
+
+
+@pytest.mark.parametrize(("speed", "said"), [(50.0, False), (100.0, False), (120.0, True)])
+def test_coefficients_at_a_speed_beyond_theirs_are_said(speed: float, said: bool) -> None:
+    shaft = of_elements(deepcopy(OLD), "old.toml", "old", speed)
+    assert ("Bearing 1: taken at 100 rad/s, the nearest" in shaft.about) == said
 
 
 def test_what_is_otherwise_is_said() -> None:
@@ -155,6 +161,7 @@ def test_what_is_otherwise_is_said() -> None:
         ({"Element_1": {"odl": 0.0}}, "odl = 0 must be above 0"),
         ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material: G_s = 0 must be above 0"),
         ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
+        ({"Bearing_1": {"frequency": [100.0, 0.0]}}, "the speeds it is given at do not rise"),
     ],
 )
 def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) -> None:
