@@ -7,10 +7,11 @@ a bearing with a journal by one line instead of thirty: members of one name belo
 from __future__ import annotations
 
 from collections.abc import Iterator
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement, indent
 
 from touchdown.fmus.description import causality
 from touchdown.fmus.presentation.icon import dot, icon
+from touchdown.fmus.presentation.xml import document
 from touchdown.modelkit.model import Model, slots
 from touchdown.modelkit.variables import Causality
 
@@ -46,7 +47,8 @@ def _xml(model: Model) -> bytes:
     SubElement(picture, "CoordinateSystem", {**_corners(0.0, SIZE), "suggestedScalingFactorTo_mm": "0.1"})
     SubElement(picture, "Icon", _corners(0.0, SIZE))
     terminals = SubElement(root, "Terminals")
-    for (port, members), height in zip(ports(model).items(), _heights(len(ports(model))), strict=True):
+    found = ports(model)
+    for (port, members), height in zip(found.items(), _heights(len(found)), strict=True):
         terminal = SubElement(terminals, "Terminal", {"name": port, "matchingRule": "bus"})
         for member in members:
             SubElement(
@@ -57,7 +59,7 @@ def _xml(model: Model) -> bytes:
         place = {**_corners(height, PORT), "iconBaseName": PORT_ICON}
         SubElement(terminal, "TerminalGraphicalRepresentation", place)
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+    return document(root)
 
 
 def _heights(count: int) -> Iterator[float]:

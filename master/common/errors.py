@@ -28,3 +28,9 @@ def one_of(name: str, known: Iterable[str]) -> str:
         return f"did you mean {' or '.join(near)}"
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")
     return f"there are: {listed}" if known else "there are none"
+
+
+def with_remedy(error: Exception, name: str, known: Iterable[str]) -> str:
+    """What an error says, and of the names there are, where it is of an unknown `name`, the nearest."""
+    names = tuple(known)
+    return f"{error}; {one_of(name, names)}" if names else str(error)

@@ -90,10 +90,9 @@ def changes(scene: Scene, system: System) -> list[str]:
     """What the user set beside the scene, for people, with units."""
     told: list[str] = []
     for name, spec in scene.components.items():
-        given = {"preset": spec.preset, **spec.set}
-        for key in spec.own:
+        for key, value in spec.set_beside.items():
             unit = system.components[name].variable(key).unit if key in spec.set else None
-            told.append(f"{name}.{key} = {_told(given[key], unit)}")
+            told.append(f"{name}.{key} = {_told(value, unit)}")
     return told
 
 

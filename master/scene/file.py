@@ -42,7 +42,7 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -96,7 +96,7 @@ def locate(name: str) -> Path:
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
-    """A scene from the tables of its TOML file."""
+    """A scene from the tables of its TOML file, as `tables` gives them."""
     known = (
         "title",
         "about",
@@ -131,9 +131,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
     )
-    given = data.get("set", {})
-    layers = cast("list[_Shared]", given) if isinstance(given, list) else [_shared(data, f"scene {name}")]
-    return _with_shared(scene, layers)
+    return _with_shared(scene, data.get("set", ()))
 
 
 class _Shared(NamedTuple):
@@ -163,9 +161,8 @@ def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
     there = scene
     for layer in layers:
         for name, value in layer.settings.items():
-            head, dot, tail = name.partition(".")
-            settings = [f"{component}{dot}{tail}" for component in scene.matching(head)]
-            there = there.set({setting: value for setting in settings if setting not in layer.exact})
+            general = [setting for setting in scene.meant(name) if setting not in layer.exact]
+            there = there.set(dict.fromkeys(general, value))
     components = {name: replace(spec, own=()) for name, spec in there.components.items()}
     return replace(there, components=components, own=scene.own)
 

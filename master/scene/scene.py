@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
 from touchdown.master.common.units import plain
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.tables import switch, whole
@@ -32,6 +32,11 @@ class ComponentSpec:
     native: bool = False  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
+
+    @property
+    def set_beside(self) -> dict[str, object]:
+        """What the user set in it beside the scene, by name."""
+        return {name: self.preset if name == "preset" else self.set[name] for name in self.own}
 
     def swapped(self, fmu: str) -> ComponentSpec:
         """What another FMU in its place starts from."""
@@ -92,10 +97,17 @@ class Scene:
         """
         scene = self
         for name, value in settings.items():
-            head, dot, tail = name.partition(".")
-            for component in self.matching(head):
-                scene = scene._with_setting(f"{component}{dot}{tail}", value)
+            for setting in self.meant(name):
+                scene = scene._with_setting(setting, value)
         return scene
+
+    def meant(self, name: str) -> list[str]:
+        """The settings that COMPONENT.VARIABLE means, of all components that match.
+
+        Raises TouchdownError where none matches.
+        """
+        head, dot, tail = name.partition(".")
+        return [f"{component}{dot}{tail}" for component in self.matching(head)]
 
     def matching(self, pattern: str) -> list[str]:
         """Components whose names match a `pattern` with * or ?; what is no pattern stands for itself.
@@ -208,5 +220,4 @@ def checked_preset(name: object, where: str, *folders: Path) -> str | None:
     try:
         return find_preset(str(name), *folders)
     except CatalogueError as error:
-        remedy = f"; {one_of(str(name), error.known)}" if error.known else ""
-        raise TouchdownError(f"{where}: {error}{remedy}") from None
+        raise TouchdownError(f"{where}: {with_remedy(error, str(name), error.known)}") from None

@@ -266,7 +266,9 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
             given_at = _speeds(part)
             nearest = np.clip(abs(speed), given_at[0], given_at[-1])
             if nearest != abs(speed):
-                remarks.append(f"{part.name}: taken at {nearest:.6g} rad/s, the nearest speed it is given at")
+                remarks.append(
+                    f"{part.name}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
+                )
         if any(
             abs(_coefficient(part, name, speed)) > LEAST_CROSS * abs(k or 1.0)
             for name in ("kxy", "kyx", "cxy", "cyx")

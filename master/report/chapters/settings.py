@@ -10,9 +10,9 @@ from touchdown.master.report.facts.numbers import RPM, digits, quantity
 from touchdown.master.report.facts.origins import Origin, origin_of, run_origin
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Block, Folded, Table, Text
+from touchdown.master.scene.run_spec import UNITS
 from touchdown.modelkit.variables import Causality
 
-RUN_UNITS = {"duration": "s", "macro_step": "s", "tolerance": "m", "call_timeout": "s", "impact_step": "s"}
 HEAD = ["Setting", "Value", "Origin", "Meaning"]
 
 
@@ -46,7 +46,7 @@ def _run_value(key: str, value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, (int, float)):
-        return quantity(float(value), RUN_UNITS.get(key, "1"), 6)
+        return quantity(float(value), UNITS.get(key, "1"), 6)
     if isinstance(value, (tuple, list)):
         return ", ".join(str(part) for part in value) or "–"
     return str(value)

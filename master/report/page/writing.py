@@ -58,9 +58,9 @@ def report_on(result: Result) -> Page:
 def _changes(scene: Scene) -> list[str]:
     """What was set beside the scene, which its title may deny."""
     return [
-        f"{name}.{key} = {spec.preset if key == 'preset' else spec.set[key]}"
+        f"{name}.{key} = {value}"
         for name, spec in scene.components.items()
-        for key in spec.own
+        for key, value in spec.set_beside.items()
     ]
 
 

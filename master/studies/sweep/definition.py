@@ -24,7 +24,7 @@ from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import UNITS
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.design import Design
+from touchdown.master.studies.sweep.design import Design, numbers_of
 
 FILE = "sweep.json"
 UNSAID = ("name", "title", "about", "folder")  # of a scene: they change no number
@@ -59,7 +59,7 @@ class Definition:
     @property
     def numbers(self) -> range:
         """Of the points that it runs, from 1."""
-        return range(self.part[0], len(self.points) + 1, self.part[1])
+        return numbers_of(self.part, len(self.points))
 
     @property
     def whole(self) -> Definition:
@@ -117,9 +117,7 @@ def origins(scene: Scene) -> dict[str, str]:
     for name, spec in scene.components.items():
         source = locate(spec.fmu, scene.folder)
         found[name] = _content(source) if isinstance(source, Path) else source.content
-        file, _, _ = (spec.preset or "").rpartition(":")  # a catalogue of the user's own
-        if file:
-            found[name] += _content(scene.folder / file)
+        found[name] += "".join(_own_catalogue(scene, spec.preset).values())
     return found
 
 
@@ -130,11 +128,15 @@ def _varied_catalogues(scene: Scene, columns: Sequence[Column], design: Design) 
         component, _, variable = column.settings[0].partition(".")
         if variable == "preset":
             for value in dict.fromkeys(str(point[place]) for point in design.points):
-                preset = scene.set({f"{component}.preset": value}).components[component].preset or ""
-                file, _, _ = preset.rpartition(":")
-                if file:
-                    found[Path(file).name] = _content(scene.folder / file)
+                varied = scene.set({f"{component}.preset": value}).components[component]
+                found |= _own_catalogue(scene, varied.preset)
     return found
+
+
+def _own_catalogue(scene: Scene, preset: str | None) -> dict[str, str]:
+    """By name, a hash over the user's own catalogue that a preset is from; nothing of another one."""
+    file, _, _ = (preset or "").rpartition(":")
+    return {Path(file).name: _content(scene.folder / file)} if file else {}
 
 
 def _content(path: Path) -> str:
@@ -158,10 +160,10 @@ def _targets(scene: Scene, design: Design) -> list[tuple[str, ...]]:
 
 def _matching(scene: Scene, name: str) -> list[str]:
     """The settings that a name with * or ? means; another name means itself."""
-    component, dot, variable = name.partition(".")
-    components = scene.matching(component)
+    component, _, variable = name.partition(".")
     if not any(sign in variable for sign in "*?"):
-        return [f"{one}{dot}{variable}" for one in components]
+        return scene.meant(name)
+    components = scene.matching(component)
     known = [full for full in _settable(scene) if full.partition(".")[0] in components]
     found = fnmatch.filter(known, name)
     if not found:

@@ -116,8 +116,7 @@ class Design:
     @property
     def numbers(self) -> range:
         """Of the points that are its own, from 1."""
-        number, of = self.part
-        return range(number, len(self.points) + 1, of)
+        return numbers_of(self.part, len(self.points))
 
     def point(self, number: int) -> dict[str, object]:
         """Values by setting."""
@@ -133,6 +132,12 @@ class Design:
         _refuse_too_many(len(self.points) * len(other.points))
         points = tuple(mine + theirs for mine in self.points for theirs in other.points)
         return Design(self.names + other.names, points, f"{self.about}; {other.about}")
+
+
+def numbers_of(part: tuple[int, int], count: int) -> range:
+    """Of the points, from 1, that a part such as (2, 8) has of `count` points."""
+    number, of = part
+    return range(number, count + 1, of)
 
 
 def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]]) -> Design:
