@@ -18,6 +18,7 @@ from typing import Any
 from touchdown.fmus.native.targets import NativeError, Target, here
 
 SOURCE = Path(__file__).parent / "source"
+COMMON = ("fmu.c", "fmu.h", "model.h", "numba.c")  # of all libraries; the face is one more
 FLAGS = ("-std=c11", "-O2", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-Wall", "-Wextra")
 _LINKING = {
     ".so": ("-shared", "-Wl,-z,defs", "-Wl,--gc-sections", "-Wl,--build-id=none", "-s", "-lm"),
@@ -38,8 +39,8 @@ def library(code: bytes | None, sources: Mapping[str, str], target: Target, iden
         place = Path(folder)
         if code is not None:
             (place / "kernels.o").write_bytes(machine_code(code, target))
-        for path in sorted(SOURCE.iterdir()):
-            shutil.copy(path, place)
+        for name in COMMON:
+            shutil.copy(SOURCE / name, place)
         for name, text in sources.items():
             (place / name).write_text(text, encoding="utf-8")
         made = f"{identifier}{target.suffix}"

@@ -19,7 +19,7 @@ class Target:
     triple: str  # LLVM's
     processor: str  # the least that code is made for
     zig: str  # zig's triple; for Linux with the oldest glibc that will do
-    folder: str  # in binaries/
+    folder: str  # in binaries/, of FMI 2.0
     suffix: str
 
     @property
@@ -44,6 +44,7 @@ _ALL = (
     ),
 )
 TARGETS = {target.name: target for target in _ALL}
+_FMI_3 = {"arm64": "aarch64", "macos": "darwin"}
 _SYSTEMS = {"linux": "linux", "win32": "windows", "darwin": "macos"}
 _PROCESSORS = {"AMD64": "x86_64", "arm64": "arm64" if sys.platform == "darwin" else "aarch64"}
 
@@ -97,7 +98,7 @@ def _require_apart(targets: tuple[Target, ...]) -> None:
 
 
 def places(targets: tuple[Target, ...]) -> dict[str, Target]:
-    """Folders in binaries/, and whose library lies there.
+    """Folders in binaries/, and whose library lies there, in FMUs of FMI 2.0.
 
     Hosts on 64-bit ARM look where FMI 2.0 has 64-bit Linux: there it lies, too, where nothing else does.
     """
@@ -105,4 +106,13 @@ def places(targets: tuple[Target, ...]) -> dict[str, Target]:
     arm = TARGETS["linux-aarch64"]
     if arm in targets:
         found.setdefault("linux64", arm)
+    return found
+
+
+def places_3(targets: tuple[Target, ...]) -> dict[str, Target]:
+    """The same in FMUs of FMI 3.0, which names processor and system."""
+    found: dict[str, Target] = {}
+    for target in targets:
+        system, processor = (_FMI_3.get(part, part) for part in target.name.split("-")[:2])
+        found[f"{processor}-{system}"] = target
     return found

@@ -22,6 +22,7 @@ OWN = {  # what only a native FMU has to say
     "OLD_PROCESSOR": "this processor lacks AVX2, FMA or BMI2; build the FMU for a target that ends in -v2",
     "NOT_OFFERED": "the FMU does not offer this",
     "NO_ROOM": "there is too little room for the state",
+    "OTHER_COUNT": "{given:d} values for variables that hold {held:d}",
 }
 _CONVERSIONS = {"": "s", "g": "g", ".9g": ".9g", "d": "u"}
 

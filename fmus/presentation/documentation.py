@@ -10,7 +10,7 @@ from inspect import cleandoc
 from itertools import groupby
 from pathlib import Path
 
-from touchdown.fmus.description import causality
+from touchdown.fmus.description.variables import causality
 from touchdown.fmus.python.host import NEEDED
 from touchdown.fmus.python.link import Interpreter
 from touchdown.fmus.python.sources import ROOT
@@ -44,7 +44,10 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = ""
     needs: what it needs in a host, where that is no Python.
     """
     title = _plain(recipe.model.title)
-    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter, needs)]
+    body = [
+        f'<h1><img src="../terminalsAndIcons/icon.png" alt="">{title}</h1>',
+        *article(recipe, interpreter, needs),
+    ]
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"

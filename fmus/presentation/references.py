@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent
 
-from touchdown.fmus.description import causality
+from touchdown.fmus.description.variables import causality, scalars
 from touchdown.fmus.presentation.terminals import ports
 from touchdown.fmus.presentation.xml import document
 from touchdown.modelkit.model import Model, Slot, slots
@@ -91,7 +91,7 @@ def _stimuli(model: Model) -> list[Row]:
     """Times (s) and what the inputs hold then."""
     settable = {s.variable.name for s in slots(model) if s.causality is Causality.INPUT}
     clearance = next((s.variable.default for s in slots(model) if s.variable.name == "clearance"), 0.0)
-    moved = [port for port in ports(model) if not port.startswith("housing")]
+    moved = [port for port in ports(scalars(model)) if not port.startswith("housing")]
 
     def row(time: float) -> Row:
         given = _pressed(clearance, time) | _pushed(time)

@@ -10,6 +10,7 @@ from pathlib import Path
 from touchdown.fmus import build as builder
 from touchdown.fmus.native.build import MODES, Native, prepare
 from touchdown.fmus.native.build import build as build_native
+from touchdown.fmus.native.faces import FACES, FMI_2, Face
 from touchdown.fmus.native.in_c import recipe_in_c
 from touchdown.fmus.native.targets import NativeError, chosen
 from touchdown.fmus.python.link import LinkError, interpreter
@@ -33,21 +34,22 @@ def build(
     native: bool = False,
     targets: Iterable[str] = (),
     modes: Iterable[int] | None = None,
+    fmi: int = 2,
 ) -> list[Path]:
     """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
 
     Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine; native:
     for hosts without Python anywhere, of the machines `targets` (none: this one's kind). modes: per plane,
     the two rigid ones included (0: all): rotors start with so many, and no seat tells of more; native
-    rotors hold constants for each of them and start with the most. Raises TouchdownError for an unknown
-    name, modes that a rotor does not have, where the folder cannot be written, and where a compiler is
-    missing.
+    rotors hold constants for each of them and start with the most. fmi: 2, or 3 for FMI 3.0, native only.
+    Raises TouchdownError for an unknown name, modes that a rotor does not have, where the folder cannot be
+    written, and where a compiler is missing.
 
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
     """
     made = built_one_by_one(
-        fmus, folder, link_python=link_python, native=native, targets=targets, modes=modes
+        fmus, folder, link_python=link_python, native=native, targets=targets, modes=modes, fmi=fmi
     )
     return list(made)
 
@@ -60,15 +62,24 @@ def built_one_by_one(
     native: bool,
     targets: Iterable[str],
     modes: Iterable[int] | None,
+    fmi: int,
 ) -> Iterator[Path]:
     """`build`, each file when it is there."""
     if native and link_python:
         raise TouchdownError("an FMU is native or linked to a Python; choose one")
+    if fmi not in FACES:
+        raise TouchdownError(f"there is no FMI {fmi} to build for; choose 2 or 3")
+    if fmi != FMI_2.version and not native:
+        raise TouchdownError("pythonfmu's FMUs are of FMI 2.0; add --native for FMI 3.0")
     try:
         given = names() if fmus is None else several(fmus)
         counts = None if modes is None else tuple(modes)
         recipes = [_for_modes(_recipe(os.fspath(fmu), native), counts, native) for fmu in given]
-        make = _native(recipes, targets, counts) if native else partial(_in_python, linked=link_python)
+        make = (
+            _native(recipes, targets, counts, FACES[fmi])
+            if native
+            else partial(_in_python, linked=link_python)
+        )
         with writing_to(Path(folder)):
             for recipe in recipes:
                 yield make(recipe, Path(folder))
@@ -98,10 +109,10 @@ def _for_modes(recipe: Recipe, modes: tuple[int, ...] | None, native: bool) -> R
 
 
 def _native(
-    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None
+    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None, face: Face
 ) -> Callable[[Recipe, Path], Path]:
     """How to build each of `recipes`, whose kernels are compiled beside each other first."""
-    native = Native(chosen(list(several(targets))), modes or MODES, modes is None)
+    native = Native(chosen(list(several(targets))), modes or MODES, modes is None, face)
     native.check()
     prepare(recipes)
     return partial(build_native, native=native)

@@ -17,6 +17,10 @@ typedef struct {
     uint8_t access;
 } Slot;
 
+typedef struct { /* where an array's elements lie: how many, and words from one to the next */
+    uint16_t count, stride;
+} Extent;
+
 typedef struct { /* a word that is not zero */
     uint32_t index;
     uint64_t bits;
@@ -37,6 +41,7 @@ typedef struct {
     const char *guid;
     const Slot *slots;
     const uint8_t *access;             /* of each word before `hidden` */
+    const Extent *extents;             /* of the same, of FMI 3.0 only */
     const Word *defaults;              /* of a fresh instance */
     const Word *begun;                 /* of outputs and hidden memory when it starts */
     const Problem *problems;           /* what `settle` finds, from number 1 on */

@@ -18,6 +18,7 @@ EXAMPLES = (
     "touchdown build simplified_caged rotor_I --modes 5 -o build/five-modes",
     "touchdown build --native -o build/native",
     "touchdown build housing --native --target linux-x86_64 windows-x86_64 -o build/native",
+    "touchdown build housing --native --fmi 3 -o build/fmi3",
     "touchdown build --native examples/rubber_ring.py -o build/native",
 )
 
@@ -37,6 +38,13 @@ def declare(verb: argparse.ArgumentParser) -> None:
         help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
     )
     verb.add_argument("--native", action="store_true", help="FMUs that need no Python anywhere")
+    verb.add_argument(
+        "--fmi",
+        type=int,
+        choices=(2, 3),
+        default=2,
+        help="version of FMI; 3.0 with --native only (default: 2)",
+    )
     targets = verb.add_argument(
         "--target",
         nargs="+",
@@ -67,6 +75,7 @@ def execute(options: argparse.Namespace) -> int:
         native=options.native,
         targets=options.target,
         modes=None if options.modes is None else _counts(options.modes),
+        fmi=options.fmi,
     )
     for path in made:
         print(path, flush=True)

@@ -1,0 +1,234 @@
+"""Native FMUs of FMI 3.0: the same models behind another side in C, with arrays."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import fromstring
+
+import h5py
+import numpy as np
+import pytest
+from fmpy import extract, read_model_description
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+
+from touchdown.fmus.description.arrays import TIME, arrays
+from touchdown.fmus.native.build import Native as Choice
+from touchdown.fmus.native.build import build
+from touchdown.fmus.native.faces import FMI_3
+from touchdown.fmus.native.targets import TARGETS, here, places_3
+from touchdown.fmus.recipes import names, recipe
+from touchdown.master.cli import main
+from touchdown.master.common.errors import FAILED
+from touchdown.master.components.contract import element
+from touchdown.master.interop.check import check_fmu
+from touchdown.modelkit.model import slots
+
+Made = Callable[[str], Path]
+CHEAP = ("housing", "rigid_rotor", "bushing", "rotor_I")
+STEP = 2e-5  # s
+DROP = """
+title = "Rotor I drops onto bushings"
+attach = [["one.journal", "rotor.A"], ["two.journal", "rotor.B"]]
+[run]
+duration = "8 ms"
+macro_step = "40 us"
+[components.rotor]
+fmu = "{folder}rotor_I{end}"
+[components.one]
+fmu = "{folder}bushing{end}"
+[components.two]
+fmu = "{folder}bushing{end}"
+"""
+
+pytestmark = pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """The FMU of a model, by name."""
+    target, folder = here(), tmp_path_factory.mktemp("fmi3")
+    assert target is not None
+    return cache(lambda name: build(recipe(name), folder, Choice((target,), face=FMI_3)))
+
+
+@pytest.fixture
+def bushing(made: Made, tmp_path: Path) -> Iterator[tuple[FMU3Slave, dict[str, Any], list[str]]]:
+    """An instance that is not initialised, its variables by name, and what it logs."""
+    folder = extract(str(made("bushing")), str(tmp_path / "bushing"))
+    description = read_model_description(folder)
+    said: list[str] = []
+    fmu = FMU3Slave(
+        guid=description.guid,
+        unzipDirectory=folder,
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="bushing",
+    )
+    fmu.instantiate(loggingOn=True, logMessage=lambda *words: said.append(words[-1].decode()))
+    yield fmu, {v.name: v for v in description.modelVariables}, said
+    fmu.freeInstance()
+    shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("fmu", CHEAP)
+def test_it_is_valid_and_meets_its_experiment(fmu: str, made: Made):
+    assert validate_fmu(str(made(fmu))) == []
+    report = check_fmu(str(made(fmu)))
+    assert report.problems == []
+    assert "valid FMI 3.0 for co-simulation" in report.lines
+
+
+def test_it_shows_all_functions_of_fmi_and_no_more(made: Made, tmp_path: Path):
+    """Those that fmpy knows by name: what a host may look for."""
+    if shutil.which("nm") is None:
+        pytest.skip("nm is not installed")
+    (library,) = Path(extract(str(made("housing")), str(tmp_path))).glob("binaries/*/*.so")
+    told = subprocess.run(["nm", "-D", library], capture_output=True, text=True, check=True).stdout
+    shown = {line.split()[-1] for line in told.splitlines() if " T " in line}
+    import fmpy.fmi3
+
+    source = Path(fmpy.fmi3.__file__).read_text(encoding="utf-8")
+    known = set(re.findall(r"'(fmi3[A-Z]\w+)'", source))
+    assert len(known) > 60
+    assert shown == known
+
+
+@pytest.mark.parametrize("fmu", names())
+def test_arrays_hold_every_variable_of_fmi_2_once(fmu: str):
+    """Under the names that the master reads them by, each in its own word, alike but for their starts."""
+    model = recipe(fmu).model
+    read: list[tuple[str, int]] = []
+    for array in arrays(model):
+        indices = [()] if array.dimension is None else [(k + 1,) for k in range(array.dimension)]
+        places = [array.first.index + k * array.stride for k in range(len(indices))]
+        read += [(element(array.name, index), at) for index, at in zip(indices, places, strict=True)]
+        assert {(s.causality, s.variable.spec) for s in array.elements} == {
+            (array.first.causality, array.first.variable.spec)
+        }
+    assert sorted(read) == sorted((s.variable.name, s.index) for s in slots(model))
+
+
+def test_a_drop_is_recorded_as_in_process(made: Made, tmp_path: Path):
+    """Elastic modes cross in arrays; every number recorded is the same 64-bit word."""
+    folder = made("bushing").parent
+    assert folder == made("rotor_I").parent
+    found = {}
+    for name, text in (
+        ("third", DROP.format(folder=f"{folder}/", end=".fmu")),
+        ("within", DROP.format(folder="", end="")),
+    ):
+        scene = tmp_path / f"{name}.toml"
+        scene.write_text(text)
+        ways = ["--in-process"] if name == "within" else []
+        assert main(["run", str(scene), *ways, "--quiet", "--no-pictures", "-o", str(tmp_path / name)]) == 0
+        found[name] = recorded(tmp_path / name)
+    assert found["within"]["one/contact.force"].max() > 100.0  # N: they hit
+    assert found["third"].keys() == found["within"].keys()
+    assert {n for n, v in found["within"].items() if v.tobytes() != found["third"][n].tobytes()} == set()
+
+
+def recorded(folder: Path) -> dict[str, np.ndarray]:
+    """All numbers that a run recorded, by name."""
+    found: dict[str, np.ndarray] = {}
+
+    def take(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
+            found[name] = np.asarray(item[...])
+
+    with h5py.File(folder / "result.h5") as file:
+        file.visititems(take)
+    return found
+
+
+def test_arrays_are_set_and_read_whole_and_between_scalars(bushing: Any):
+    fmu, variables, _ = bushing
+    x, vy, clearance = (
+        variables[n].valueReference for n in ("journal.mode.x", "journal.mode.vy", "clearance")
+    )
+    given = [*np.arange(1.0, 21.0) * 1e-9, 4e-4, *np.arange(20) * -1e-6]
+    fmu.setFloat64([x, clearance, vy], given)
+    assert fmu.getFloat64([x, clearance, vy], nValues=41) == given
+    assert fmu.getFloat64([vy, x], nValues=40) == [*given[21:], *given[:20]]
+
+
+def test_other_counts_of_values_are_refused(bushing: Any):
+    fmu, variables, said = bushing
+    x = variables["journal.mode.x"].valueReference
+    for refused in (lambda: fmu.setFloat64([x], [0.0] * 19), lambda: fmu.getFloat64([x], nValues=21)):
+        with pytest.raises(Exception, match="fmi3(Set|Get)Float64 failed with status 3"):
+            refused()
+    assert said == [f"{n} values for variables that hold 20" for n in (19, 21)]
+
+
+def test_elements_and_other_types_are_refused_by_name(bushing: Any):
+    fmu, variables, said = bushing
+    second = variables["journal.mode.x"].valueReference + arrays(recipe("bushing").model)[0].stride
+    law = variables["friction.kind"].valueReference
+    for refused in (
+        lambda: fmu.setFloat64([variables["journal.mode.x"].valueReference + 9], [0.0]),
+        lambda: fmu.setFloat64([law], [1.0]),
+        lambda: fmu.setInt32([law], [1]),
+        lambda: fmu.getBoolean([second]),
+    ):
+        with pytest.raises(Exception, match="failed with status 3"):
+            refused()
+    assert said[1] == said[1].replace("Float64", "?").replace("?", "Float64")
+    assert "friction.kind cannot be set as Float64 now" in said[1]
+    assert "friction.kind cannot be set as Int32 now" in said[2]
+
+
+def test_the_time_is_a_variable(bushing: Any):
+    fmu, _, _ = bushing
+    fmu.enterInitializationMode(startTime=0.5)
+    assert fmu.getFloat64([TIME]) == [0.5]
+    fmu.exitInitializationMode()
+    fmu.doStep(0.5, STEP)
+    assert fmu.getFloat64([TIME]) == [0.5 + STEP]
+    with pytest.raises(Exception, match="status 3"):
+        fmu.setFloat64([TIME], [0.0])
+
+
+def test_states_are_kept_and_written_down(bushing: Any):
+    fmu, variables, _ = bushing
+    force = [variables["journal.fy"].valueReference]
+    fmu.setFloat64([variables["journal.y"].valueReference], [-0.32e-3])
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    kept = fmu.getFMUState()
+    fmu.doStep(0.0, STEP)
+    once = fmu.getFloat64(force)
+    assert once[0] > 0.0
+    written = fmu.serializeFMUState(kept)
+    fmu.setFMUState(kept)
+    fmu.doStep(0.0, STEP)
+    assert fmu.getFloat64(force) == once
+    fmu.setFMUState(fmu.deserializeFMUState(written))
+    fmu.doStep(0.0, STEP)
+    assert fmu.getFloat64(force) == once
+
+
+def test_binaries_lie_where_fmi_3_looks():
+    told = places_3(
+        tuple(TARGETS[n] for n in ("linux-x86_64-v2", "linux-aarch64", "windows-x86_64", "macos-arm64"))
+    )
+    assert list(told) == ["x86_64-linux", "aarch64-linux", "x86_64-windows", "aarch64-darwin"]
+
+
+def test_terminals_name_the_arrays(made: Made, tmp_path: Path):
+    folder = Path(extract(str(made("bushing")), str(tmp_path)))
+    root = fromstring((folder / "terminalsAndIcons" / "terminalsAndIcons.xml").read_bytes())
+    members = {m.get("variableName") for m in root.iter("TerminalMemberVariable")}
+    variables = {v.name for v in read_model_description(str(folder)).modelVariables}
+    assert "journal.mode.x" in members
+    assert members <= variables
+
+
+def test_pythonfmus_fmus_are_of_fmi_2(capsys: pytest.CaptureFixture[str]):
+    assert main(["build", "housing", "--fmi", "3"]) == FAILED
+    assert "add --native" in capsys.readouterr().err
