@@ -15,7 +15,8 @@ from touchdown.fmus.native.in_c import recipe_in_c
 from touchdown.fmus.native.targets import NativeError, chosen
 from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
-from touchdown.fmus.variants.modes import ALL, RIGID, refusal
+from touchdown.fmus.variants.modes import ALL, RIGID, refusal, told_of
+from touchdown.fmus.variants.modes import MODES as MOST
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
@@ -74,7 +75,7 @@ def built_one_by_one(
     try:
         given = names() if fmus is None else several(fmus)
         counts = None if modes is None else tuple(modes)
-        recipes = [_for_modes(_recipe(os.fspath(fmu), native), counts, native) for fmu in given]
+        recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
         make = (
             _native(recipes, targets, counts, FACES[fmi])
             if native
@@ -91,21 +92,27 @@ def _in_python(recipe: Recipe, folder: Path, linked: bool) -> Path:
     return builder.build(recipe, folder, interpreter() if linked else None)
 
 
-def _for_modes(recipe: Recipe, modes: tuple[int, ...] | None, native: bool) -> Recipe:
-    """The recipe for the largest of some numbers of modes. Raises TouchdownError where it cannot be."""
+def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: bool) -> list[Recipe]:
+    """The recipes for the largest of some numbers of modes; bearings fit all rotors among them.
+
+    Raises TouchdownError where a rotor does not have so many.
+    """
     if modes is None:
-        return recipe
+        return recipes
     if not modes or any(count < RIGID and count != ALL for count in modes):
         raise TouchdownError(f"modes = {list(modes)}: give {RIGID} (rigid) or more, or {ALL} for all")
     if len(modes) > 1 and not native:
         raise TouchdownError(
             f"modes = {list(modes)}: an FMU in Python takes any number of modes; give the one to start with"
         )
-    changed = recipe.with_modes(ALL if ALL in modes else max(modes))
-    problem = refusal(changed.model, {}) if changed.model.tabulated and not native else ""
-    if problem:
-        raise TouchdownError(f"{recipe.name}: {problem}")
-    return changed
+    count = ALL if ALL in modes else max(modes)
+    rotors = [recipe for recipe in recipes if recipe.model.tabulated]
+    for rotor in rotors:
+        problem = refusal(rotor.with_modes(count, MOST).model, {})
+        if problem:
+            raise TouchdownError(f"{rotor.name}: {problem}")
+    told = told_of(count, [rotor.model for rotor in rotors])
+    return [recipe.with_modes(count, told) for recipe in recipes]
 
 
 def _native(
