@@ -137,13 +137,13 @@ def _with_run(scene: Scene, package: Package) -> Scene:
 # -- values ------------------------------------------------------------------------------------------------
 
 
-def _settings(package: Package) -> dict[str, dict[str, float]]:
-    """By component: what the bindings set, in the units of its variables.
+def _settings(package: Package) -> dict[str, dict[str, float | str]]:
+    """By component: what the bindings set, in the units of its variables; of enumerations also words.
 
     A system's bindings are above those of what is in it. Start values of inputs that another component
     feeds are left out: initialisation hands them over.
     """
-    settings: dict[str, dict[str, float]] = {name: {} for name in package.flat.parts}
+    settings: dict[str, dict[str, float | str]] = {name: {} for name in package.flat.parts}
     fed = {(link.end, link.input) for link in package.flat.links}
     for bound in package.flat.bound:
         if (bound.component, bound.variable) not in fed:
@@ -153,7 +153,14 @@ def _settings(package: Package) -> dict[str, dict[str, float]]:
             definitions = (bound.value.units or {}, package.said.units, side.units)
             start, end = _unit(bound.value.unit, definitions), _unit(unit, (side.units, package.said.units))
             scale = _along(start, bound.legs, end, package, what)
-            settings[bound.component][bound.variable] = scaled(bound.value.number, scale)
+            given = bound.value.given
+            if isinstance(given, str) and scale is not None:
+                raise TouchdownError(
+                    f"{what} = {given!r} is a word, which has no unit and cannot be scaled"
+                )
+            settings[bound.component][bound.variable] = (
+                given if isinstance(given, str) else scaled(given, scale)
+            )
     return settings
 
 
