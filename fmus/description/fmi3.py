@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from touchdown.fmus.description.arrays import TIME, Array, arrays
+from touchdown.fmus.description.arrays import Array, arrays, time_reference
 from touchdown.fmus.description.making import Making, add_surroundings, identity
 from touchdown.fmus.description.units import add_units
 from touchdown.fmus.description.variables import SET, causality, choices_of, items, roles, values, written
@@ -31,7 +31,7 @@ def describe(model: Model, identifier: str, log_categories: Mapping[str, str], m
     add_surroundings(root, log_categories)
     found = arrays(model)
     variables = SubElement(root, "ModelVariables")
-    SubElement(variables, "Float64", _TIME)
+    SubElement(variables, "Float64", {**_TIME, "valueReference": str(time_reference(model))})
     for array in found:
         variables.append(_variable(array))
     _add_structure(root, model, found)
@@ -40,7 +40,6 @@ def describe(model: Model, identifier: str, log_categories: Mapping[str, str], m
 
 _TIME = {
     "name": "time",
-    "valueReference": str(TIME),
     "description": "simulated time",
     "causality": "independent",
     "variability": "continuous",

@@ -65,7 +65,9 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
     description = face.describe(model, recipe.identifier, making)
     entries = {
         "modelDescription.xml": _HEAD + tostring(description),
-        "documentation/index.html": page(recipe, needs=_needs(model, native, held)).encode(),
+        "documentation/index.html": page(
+            recipe, needs=_needs(model, native, held), exposed=face.documented(model)
+        ).encode(),
         **terminals.entries(model, face.variables(model)),
         **({"model.png": icon(model)} if face is FMI_2 else {}),
     }

@@ -40,7 +40,7 @@ int64_t advance(double *words, double *scratch, double time, double step)
 """
 
 
-TAKEN = ("fmi2.c", "fmi3.c", "fmu.c", "model.c", "numba.c")  # names of the other sources
+TAKEN = ("fmi2.c", "fmi3.c", "model.c", "numba.c")  # names of the other sources
 
 
 class InC:

@@ -41,7 +41,7 @@ def told_of(count: int, rotors: Iterable[Model] = ()) -> int:
     """How many elastic modes and residual vectors seats have to tell of with `count` modes per plane.
 
     That is two less, and a vector for each seat that has one: of two seats where no rotor is given, else as
-    many as the rotors have. Raises ModelError where one of them does not start with so many.
+    many as the rotors have. Raises ModelError, which names it, where one does not start with so many.
     """
     if count in (ALL, RIGID):
         return 0
@@ -51,7 +51,10 @@ def told_of(count: int, rotors: Iterable[Model] = ()) -> int:
 def _in_use(rotor: Model) -> int:
     """The last elastic mode that a seat of a rotor carries, as it starts."""
     instance = Instance(rotor)
-    instance.start(0.0)
+    try:
+        instance.start(0.0)
+    except ModelError as error:
+        raise ModelError(f"{rotor.name}: {error}") from None
     found = ((_MASS.search(slot.variable.name), slot) for slot in instance.slots)
     return max((int(m[1]) for m, slot in found if m and instance.reals[slot.index]), default=0)
 

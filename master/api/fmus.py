@@ -15,8 +15,7 @@ from touchdown.fmus.native.in_c import recipe_in_c
 from touchdown.fmus.native.targets import NativeError, chosen
 from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
-from touchdown.fmus.variants.modes import ALL, RIGID, refusal, told_of
-from touchdown.fmus.variants.modes import MODES as MOST
+from touchdown.fmus.variants.modes import ALL, RIGID, told_of
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
@@ -25,6 +24,7 @@ from touchdown.master.components.library.sources import locate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
+from touchdown.modelkit.model import ModelError
 
 
 def build(
@@ -41,8 +41,8 @@ def build(
 
     Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine; native:
     for hosts without Python anywhere, of the machines `targets` (none: this one's kind). modes: per plane,
-    the two rigid ones included (0: all): rotors start with so many, and no seat tells of more; native
-    rotors hold constants for each of them and start with the most. fmi: 2, or 3 for FMI 3.0, native only.
+    the two rigid ones included (0: all): rotors start with so many, and seats tell of what they then have;
+    native rotors hold constants for each of them and start with the most. fmi: 2, or 3, native only.
     Raises TouchdownError for an unknown name, modes that a rotor does not have, where the folder cannot be
     written, and where a compiler is missing.
 
@@ -107,11 +107,10 @@ def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: boo
         )
     count = ALL if ALL in modes else max(modes)
     rotors = [recipe for recipe in recipes if recipe.model.tabulated]
-    for rotor in rotors:
-        problem = refusal(rotor.with_modes(count, MOST).model, {})
-        if problem:
-            raise TouchdownError(f"{rotor.name}: {problem}")
-    told = told_of(count, [rotor.model for rotor in rotors])
+    try:
+        told = told_of(count, [rotor.model for rotor in rotors])
+    except ModelError as error:
+        raise TouchdownError(str(error)) from None
     return [recipe.with_modes(count, told) for recipe in recipes]
 
 

@@ -46,21 +46,10 @@ SUPPLIED = "supplied"  # J, energy that a component brings in
 MOUNTED = "housing"  # a bearing's port on what it is mounted in
 REACH = "contact.reach"  # s, of a touchdown bearing: time until its journal touches, going straight on
 
-SEVERAL = ("mode", "ball", "node")  # groups that are counted: mode[2].x, and mode.x[2] of FMI 3.0
-
 POSITION = ("x", "y")
 GAINS = ("inv_m", "inv_I", "k_over_m", "c_over_m")  # what a bearing carries a body by
 FORCE = ("fx", "fy")
 NEEDED = POSITION + FORCE  # no port works without them
-
-
-def element(array: str, index: tuple[int, ...]) -> str:
-    """Name of an element of an array of FMI 3.0: x[2], x[1,2], mode[2].x of mode.x; of a scalar: ()."""
-    counted = f"[{','.join(map(str, index))}]" if index else ""
-    group, _, member = array.rpartition(".")
-    if group.rpartition(".")[2] in SEVERAL:
-        return f"{group}{counted}.{member}"
-    return f"{array}{counted}"
 
 
 def reported(variable: str) -> bool:

@@ -14,10 +14,10 @@ from xml.parsers.expat import ExpatError
 from fmpy import platform as fmi_platform
 from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
 
+from touchdown.fmus.description.arrays import element
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
 from touchdown.master.components.component import Kind, Variable
-from touchdown.master.components.contract import element
 from touchdown.master.components.screening.binary import refuse_damaged
 from touchdown.master.components.screening.description import (
     KINDS_3,
@@ -101,7 +101,7 @@ def _check_script(path: Path, folder: Path) -> None:
 
 
 def variables_of(description: Any) -> dict[str, Variable]:
-    """Variables by name. An array of FMI 3.0 is one scalar for each element (`contract.element`)."""
+    """Variables by name. An array of FMI 3.0 is one scalar for each element (`element`)."""
     third = description.fmiVersion.startswith("3.")
     return {
         scalar.name: scalar

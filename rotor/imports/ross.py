@@ -262,7 +262,8 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
             continue
         k, ky, c, cy = (_coefficient(part, name, speed) for name in ("kxx", "kyy", "cxx", "cyy"))
         supports.append(Support(part.node() + 1, k, None if ky == k else ky, c, None if cy == c else cy))
-        if np.size(part.values["kxx"]) > 1 and speed is not None:
+        several = any(np.size(part.values.get(name, 0.0)) > 1 for name in ("kxx", "kyy", "cxx", "cyy"))
+        if several and speed is not None:
             given_at = _speeds(part)
             nearest = np.clip(abs(speed), given_at[0], given_at[-1])
             if nearest != abs(speed):

@@ -1,7 +1,5 @@
 /* FMI 2.0 for co-simulation. */
-#include "fmu.h"
-
-#include <string.h>
+#include "instance.h"
 
 enum { MODEL_EXCHANGE, CO_SIMULATION };
 enum { LAST_SUCCESSFUL_TIME = 2, TERMINATED = 3 }; /* of what fmi2Get...Status is asked for */
@@ -15,7 +13,7 @@ typedef struct {
     void *environment;
 } Callbacks;
 
-void fmu_say(const Fmu *f, Status status, const char *category, const char *text)
+static void say(const Fmu *f, Status status, const char *category, const char *text)
 {
     Logger *logger = (Logger *)f->host.logger;
     /* finished: loggers of hosts in other languages do not fill in what a format leaves open */
@@ -37,15 +35,18 @@ API const char *fmi2GetVersion(void)
 API Fmu *fmi2Instantiate(const char *name, int type, const char *guid, const char *resources,
                          const Callbacks *callbacks, int visible, int logging)
 {
-    (void)resources, (void)visible, (void)logging;
-    Host host = {0};
-    if (callbacks) host = (Host){(void (*)(void))callbacks->logger, callbacks->environment};
-    return fmu_create(name, guid, host, type == CO_SIMULATION ? NULL : SAY_NO_MODEL_EXCHANGE);
+    (void)resources, (void)visible;
+    Host host = {NULL, NULL, logging};
+    if (callbacks) {
+        host.logger = (void (*)(void))callbacks->logger;
+        host.environment = callbacks->environment;
+    }
+    return create(name, guid, host, type == CO_SIMULATION ? NULL : SAY_NO_MODEL_EXCHANGE);
 }
 
 API void fmi2FreeInstance(Fmu *f)
 {
-    fmu_free(f);
+    release(f);
 }
 
 API Status fmi2SetDebugLogging(Fmu *f, int on, size_t count, const char *const categories[])
@@ -58,33 +59,34 @@ API Status fmi2SetupExperiment(Fmu *f, int tolerance_given, double tolerance, do
                                int stop_given, double stop_time)
 {
     (void)tolerance_given, (void)tolerance, (void)stop_given, (void)stop_time;
-    return fmu_set_up(f, start_time);
+    return set_up(f, start_time);
 }
 
 API Status fmi2EnterInitializationMode(Fmu *f)
 {
-    return fmu_enter(f);
+    return enter(f);
 }
 
 API Status fmi2ExitInitializationMode(Fmu *f)
 {
-    return fmu_leave(f);
+    return leave(f);
 }
 
 API Status fmi2Terminate(Fmu *f)
 {
-    return fmu_end(f);
+    return finish(f);
 }
 
 API Status fmi2Reset(Fmu *f)
 {
-    return fmu_reset(f);
+    return reset(f);
 }
 
 API Status fmi2DoStep(Fmu *f, double time, double step, int no_set_state_before)
 {
     (void)no_set_state_before;
-    return fmu_step(f, time, step);
+    Status status = step_by(f, time, step);
+    return status == DISCARD ? stop(f, status) : status;
 }
 
 API Status fmi2CancelStep(Fmu *f)
@@ -96,41 +98,41 @@ API Status fmi2CancelStep(Fmu *f)
 
 API Status fmi2SetReal(Fmu *f, const Reference vr[], size_t count, const double values[])
 {
-    int needed = REAL | fmu_settable(f);
-    if (!fmu_allowed(vr, count, needed)) return fmu_refuse(f, SAY_SET_LATE, vr, count, needed, "real");
+    int needed = REAL | settable(f);
+    if (!allowed(vr, count, needed)) return refuse(f, SAY_SET_LATE, vr, count, needed, "real");
     for (size_t i = 0; i < count; i++) f->words[vr[i]] = values[i];
-    return fmu_changed(f, vr, count);
+    return changed(f, vr, count);
 }
 
 API Status fmi2GetReal(Fmu *f, const Reference vr[], size_t count, double values[])
 {
-    if (fmu_readable(f, vr, count, REAL, "real")) return ERROR;
+    if (readable(f, vr, count, REAL, "real")) return ERROR;
     for (size_t i = 0; i < count; i++) values[i] = f->words[vr[i]];
     return OK;
 }
 
 API Status fmi2SetInteger(Fmu *f, const Reference vr[], size_t count, const int values[])
 {
-    int needed = INTEGER | fmu_settable(f);
-    if (!fmu_allowed(vr, count, needed)) return fmu_refuse(f, SAY_SET_LATE, vr, count, needed, "integer");
+    int needed = INTEGER | settable(f);
+    if (!allowed(vr, count, needed)) return refuse(f, SAY_SET_LATE, vr, count, needed, "integer");
     for (size_t i = 0; i < count; i++) {
         int64_t value = values[i];
         memcpy(f->words + vr[i], &value, sizeof value);
     }
-    return fmu_changed(f, vr, count);
+    return changed(f, vr, count);
 }
 
 API Status fmi2GetInteger(Fmu *f, const Reference vr[], size_t count, int values[])
 {
-    if (fmu_readable(f, vr, count, INTEGER, "integer")) return ERROR;
-    for (size_t i = 0; i < count; i++) values[i] = (int)fmu_whole(f->words + vr[i]);
+    if (readable(f, vr, count, INTEGER, "integer")) return ERROR;
+    for (size_t i = 0; i < count; i++) values[i] = (int)whole(f->words + vr[i]);
     return OK;
 }
 
 /* There are no booleans and no strings. */
 static Status none(Fmu *f, const char *format, const Reference *vr, size_t count, const char *kind)
 {
-    return count ? fmu_refuse(f, format, vr, count, 0, kind) : OK;
+    return count ? refuse(f, format, vr, count, 0, kind) : OK;
 }
 
 API Status fmi2GetBoolean(Fmu *f, const Reference vr[], size_t count, int values[])
@@ -182,32 +184,32 @@ API Status fmi2GetRealOutputDerivatives(Fmu *f, const Reference vr[], size_t cou
 
 API Status fmi2GetFMUstate(Fmu *f, Saved **state)
 {
-    return fmu_get_state(f, state);
+    return get_state(f, state);
 }
 
 API Status fmi2SetFMUstate(Fmu *f, const Saved *state)
 {
-    return fmu_set_state(f, state);
+    return set_state(f, state);
 }
 
 API Status fmi2FreeFMUstate(Fmu *f, Saved **state)
 {
-    return fmu_free_state(f, state);
+    return free_state(f, state);
 }
 
 API Status fmi2SerializedFMUstateSize(Fmu *f, const Saved *state, size_t *size)
 {
-    return fmu_serialised_size(f, state, size);
+    return serialised_size(f, state, size);
 }
 
 API Status fmi2SerializeFMUstate(Fmu *f, const Saved *state, char bytes[], size_t size)
 {
-    return fmu_serialise(f, state, bytes, size);
+    return serialise(f, state, bytes, size);
 }
 
 API Status fmi2DeSerializeFMUstate(Fmu *f, const char bytes[], size_t size, Saved **state)
 {
-    return fmu_deserialise(f, bytes, size, state);
+    return deserialise(f, bytes, size, state);
 }
 
 /* -- status -------------------------------------------------------------------------------------- */

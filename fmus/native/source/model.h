@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 enum { REAL = 1, INTEGER = 2, PARAMETER = 4, INPUT = 8, OUTPUT = 16 }; /* a kind and a causality */
-enum { TUNABLE = 32 };                                                   /* of a parameter */
+enum { TUNABLE = 32, INDEPENDENT = 64 }; /* a parameter that may be set between steps; the time */
 
 typedef struct {
     const char *name, *unit; /* the unit with a space before it, or empty */
@@ -18,7 +18,7 @@ typedef struct {
 } Slot;
 
 typedef struct { /* where an array's elements lie: how many, and words from one to the next */
-    uint16_t count, stride;
+    uint32_t count, stride;
 } Extent;
 
 typedef struct { /* a word that is not zero */

@@ -154,9 +154,9 @@ def _settings(package: Package) -> dict[str, dict[str, float | str]]:
             start, end = _unit(bound.value.unit, definitions), _unit(unit, (side.units, package.said.units))
             scale = _along(start, bound.legs, end, package, what)
             given = bound.value.given
-            if isinstance(given, str) and scale is not None:
+            if isinstance(given, str) and not side.variable(bound.variable, what).choices:
                 raise TouchdownError(
-                    f"{what} = {given!r} is a word, which has no unit and cannot be scaled"
+                    f"{what} = {given!r} is an enumeration's word, and the variable is none"
                 )
             settings[bound.component][bound.variable] = (
                 given if isinstance(given, str) else scaled(given, scale)

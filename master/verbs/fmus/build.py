@@ -57,8 +57,9 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--modes",
         metavar="N",
-        help="modes per plane that rotors start with, the two rigid ones included, and that seats have "
-        "connectors for (2: none); native rotors hold constants for several, N,N,... (default: 2,5,10)",
+        help="modes per plane that rotors start with, the two rigid ones included; seats have connectors "
+        "for what they then carry (2: none); native rotors hold constants for several, N,N,... "
+        "(default: 2,5,10)",
     )
 
 

@@ -1,5 +1,8 @@
-/* An instance of a model, behind whatever version of FMI. Words of refusal are those of touchdown.fmus.slave. */
-#include "fmu.h"
+/* An instance of a model, behind whatever version of FMI: its faces fmi2.c and fmi3.c include this file.
+   All is static, so that no name in here meets one of a model in C. Words of refusal are those of
+   touchdown.fmus.slave. */
+#include "model.h"
+#include "texts.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -10,10 +13,51 @@
 #include <cpuid.h>
 #endif
 
+#ifdef _WIN32
+#define API __declspec(dllexport)
+#else
+#define API __attribute__((visibility("default")))
+#endif
+#define PRINTS __attribute__((format(printf, 2, 3)))
+
+typedef enum { OK, WARNING, DISCARD, ERROR, FATAL } Status; /* as either version counts them */
+typedef unsigned int Reference;
+
+typedef struct { /* where an instance is; the times are start, end of the last step, and end of all, s */
+    enum { NEW, INITIALISING, STEPPING, ENDED } phase;
+    int failed;
+    double start, end, stop; /* stop: what the host announced, or infinity */
+} Life;
+
+typedef struct { /* whose log it is: a face's own logger, or NULL */
+    void (*logger)(void);
+    void *environment;
+    int logging; /* of more than errors */
+} Host;
+
+typedef struct {
+    Life life;
+    int stale;    /* outputs do not yet follow from what was set */
+    int outdated; /* constants belong to other parameters */
+    char *said, *why; /* what was noted last, and what it failed of */
+    char *name;
+    Host host;
+    double *words, *scratch, *settled; /* memory, scratch, the parameters that constants belong to */
+    double *before; /* of a face that takes steps back: what it was before the last one */
+} Fmu;
+
+typedef struct {
+    size_t size; /* of what follows */
+    char bytes[];
+} Saved;
+
+/* Of a face: hand a finished text to the host's log. */
+static void say(const Fmu *f, Status status, const char *category, const char *text);
+
 /* -- failure ------------------------------------------------------------------------------------- */
 
 /* Note what is wrong, for `fail` or for nobody. */
-Status fmu_explain(Fmu *f, const char *format, ...)
+static PRINTS Status explain(Fmu *f, const char *format, ...)
 {
     va_list values, again;
     va_start(values, format);
@@ -33,7 +77,7 @@ static Status tell(Fmu *f, Status status)
 {
     const char *text = f->said ? f->said : SAY_NO_MEMORY;
     const char *category = status == DISCARD ? "logStatusDiscard" : "logStatusError";
-    fmu_say(f, status, category, text);
+    say(f, status, category, text);
     return status;
 }
 
@@ -48,7 +92,7 @@ static Status stop(Fmu *f, Status status)
     return status;
 }
 
-Status fmu_fail(Fmu *f)
+static Status fail(Fmu *f)
 {
     return stop(f, ERROR);
 }
@@ -56,9 +100,11 @@ Status fmu_fail(Fmu *f)
 /* Answer that it failed before. */
 static Status stop_again(Fmu *f)
 {
-    fmu_explain(f, SAY_STOPPED, f->why ? f->why : SAY_FAILED_STATE);
+    explain(f, SAY_STOPPED, f->why ? f->why : SAY_FAILED_STATE);
     return tell(f, ERROR);
 }
+
+#define FAIL(f, ...) (explain(f, __VA_ARGS__), fail(f))
 
 /* A number to be printed; some libraries print the sign of what is no number. */
 static double plain(double value)
@@ -78,7 +124,7 @@ static void clear(double *words, uint32_t from, uint32_t to)
     memset(words + from, 0, (to - from) * sizeof(double));
 }
 
-int64_t fmu_whole(const double *word)
+static int64_t whole(const double *word)
 {
     int64_t value;
     memcpy(&value, word, sizeof value);
@@ -87,7 +133,7 @@ int64_t fmu_whole(const double *word)
 
 static double number(const double *words, const Slot *s)
 {
-    return s->access & REAL ? words[s->index] : (double)fmu_whole(words + s->index);
+    return s->access & REAL ? words[s->index] : (double)whole(words + s->index);
 }
 
 static Status check_bounds(Fmu *f, int causality)
@@ -95,16 +141,17 @@ static Status check_bounds(Fmu *f, int causality)
     for (const Slot *s = MODEL.slots; s < MODEL.slots + MODEL.slot_count; s++) {
         if (!(s->access & causality)) continue;
         double v = number(f->words, s);
-        if (!isfinite(v)) return fmu_explain(f, SAY_NOT_FINITE, s->name, plain(v));
-        if (!(v > s->above)) return fmu_explain(f, SAY_NOT_ABOVE, s->name, v, s->unit, s->above, s->unit);
-        if (v < s->minimum) return fmu_explain(f, SAY_TOO_SMALL, s->name, v, s->unit, s->minimum, s->unit);
-        if (v > s->maximum) return fmu_explain(f, SAY_TOO_LARGE, s->name, v, s->unit, s->maximum, s->unit);
+        if (!isfinite(v)) return explain(f, SAY_NOT_FINITE, s->name, plain(v));
+        if (!(v > s->above)) return explain(f, SAY_NOT_ABOVE, s->name, v, s->unit, s->above, s->unit);
+        if (v < s->minimum) return explain(f, SAY_TOO_SMALL, s->name, v, s->unit, s->minimum, s->unit);
+        if (v > s->maximum) return explain(f, SAY_TOO_LARGE, s->name, v, s->unit, s->maximum, s->unit);
     }
     return OK;
 }
 
 static const char *name_of(Reference vr)
 {
+    if (vr == MODEL.time) return "time";
     for (const Slot *s = MODEL.slots; s < MODEL.slots + MODEL.slot_count; s++)
         if (s->index == vr) return s->name;
     return NULL;
@@ -117,8 +164,8 @@ static Status refuse_choice(Fmu *f)
     size_t length = 0;
     for (uint32_t k = 0; k < MODEL.key_count && length < sizeof chosen; k++)
         length += (size_t)snprintf(chosen + length, sizeof chosen - length, "%s%s = %lld", k ? ", " : "",
-                                   name_of(MODEL.keys[k]), (long long)fmu_whole(f->words + MODEL.keys[k]));
-    return fmu_explain(f, SAY_NOT_HELD, chosen, MODEL.held);
+                                   name_of(MODEL.keys[k]), (long long)whole(f->words + MODEL.keys[k]));
+    return explain(f, SAY_NOT_HELD, chosen, MODEL.held);
 }
 
 /* Put the constants in that do not come from a kernel but from tables. Where there is none for these
@@ -129,7 +176,7 @@ static int look_up(Fmu *f)
     clear(f->words, MODEL.derived, MODEL.told);
     for (const Table *t = MODEL.tables; t < MODEL.tables + MODEL.table_count; t++) {
         uint32_t k = 0;
-        while (k < MODEL.key_count && fmu_whole(f->words + MODEL.keys[k]) == t->values[k]) k++;
+        while (k < MODEL.key_count && whole(f->words + MODEL.keys[k]) == t->values[k]) k++;
         if (k < MODEL.key_count) continue;
         put(f->words, t->words, t->count);
         return 1;
@@ -145,11 +192,11 @@ static Status derive(Fmu *f)
     if (check_bounds(f, PARAMETER)) return ERROR;
     int held = look_up(f);
     int64_t problem = settle(f->words);
-    if (problem < 0 || problem > MODEL.problem_count) return fmu_explain(f, SAY_GAVE_UP, f->life.end);
+    if (problem < 0 || problem > MODEL.problem_count) return explain(f, SAY_GAVE_UP, f->life.end);
     if (problem) {
         const Problem *p = &MODEL.problems[problem - 1];
         const double *told = f->words + MODEL.told;
-        return fmu_explain(f, p->format, told[p->told[0]], told[p->told[1]], told[p->told[2]], told[p->told[3]]);
+        return explain(f, p->format, told[p->told[0]], told[p->told[1]], told[p->told[2]], told[p->told[3]]);
     }
     if (!held) return refuse_choice(f);
     memcpy(f->settled, f->words + MODEL.parameters, (MODEL.inputs - MODEL.parameters) * sizeof(double));
@@ -162,7 +209,7 @@ static Status derive_again(Fmu *f)
 {
     const size_t size = MODEL.derived * sizeof(double);
     double *kept = malloc(size);
-    if (!kept) return fmu_explain(f, SAY_NO_MEMORY);
+    if (!kept) return explain(f, SAY_NO_MEMORY);
     memcpy(kept, f->words, size);
     Status status = derive(f);
     memcpy(f->words, kept, size);
@@ -178,7 +225,7 @@ static Status refresh(Fmu *f)
     put(f->words, MODEL.begun, MODEL.begun_count);
     f->words[MODEL.time] = f->life.start;
     f->words[MODEL.evaluations] = 0.0; /* a whole number, whose zero is the same */
-    if (start(f->words)) return fmu_explain(f, SAY_GAVE_UP, f->life.start);
+    if (start(f->words)) return explain(f, SAY_GAVE_UP, f->life.start);
     f->stale = 0;
     return OK;
 }
@@ -189,18 +236,19 @@ static void begin(Fmu *f)
 {
     memset(f->words, 0, MODEL.words * sizeof(double));
     put(f->words, MODEL.defaults, MODEL.default_count);
-    f->life = (Life){.phase = NEW};
+    f->life = (Life){.phase = NEW, .stop = INFINITY};
     free(f->why);
     f->why = NULL;
     f->stale = f->outdated = 1;
 }
 
-void fmu_free(Fmu *f)
+static void release(Fmu *f)
 {
     if (!f) return;
     free(f->words);
     free(f->scratch);
     free(f->settled);
+    free(f->before);
     free(f->said);
     free(f->why);
     free(f->name);
@@ -230,7 +278,7 @@ static const char *unusable(const char *identity)
     return NULL;
 }
 
-Fmu *fmu_create(const char *name, const char *identity, Host host, const char *problem)
+static Fmu *create(const char *name, const char *identity, Host host, const char *problem)
 {
     Fmu *f = calloc(1, sizeof *f);
     if (!f) return NULL;
@@ -244,16 +292,16 @@ Fmu *fmu_create(const char *name, const char *identity, Host host, const char *p
     if (f->name && name) memcpy(f->name, name, length);
     if (!problem) problem = unusable(identity);
     if (problem) {
-        fmu_explain(f, "%s", problem);
+        explain(f, "%s", problem);
         tell(f, ERROR);
-        fmu_free(f);
+        release(f);
         return NULL;
     }
     begin(f);
     return f;
 }
 
-Status fmu_set_up(Fmu *f, double start_time)
+static Status set_up(Fmu *f, double start_time)
 {
     if (f->life.phase != NEW) return FAIL(f, SAY_SETUP_LATE);
     if (!isfinite(start_time)) return FAIL(f, SAY_NO_START, plain(start_time));
@@ -262,30 +310,30 @@ Status fmu_set_up(Fmu *f, double start_time)
     return OK;
 }
 
-Status fmu_enter(Fmu *f)
+static Status enter(Fmu *f)
 {
     if (f->life.phase != NEW) return FAIL(f, SAY_ENTERED_TWICE);
     f->life.phase = INITIALISING;
     return OK;
 }
 
-Status fmu_leave(Fmu *f)
+static Status leave(Fmu *f)
 {
     if (f->life.phase != INITIALISING) return FAIL(f, SAY_NOT_ENTERED);
     if (f->life.failed) return stop_again(f);
-    if (refresh(f)) return fmu_fail(f);
+    if (refresh(f)) return fail(f);
     f->life.phase = STEPPING;
     f->life.end = f->life.start;
     return OK;
 }
 
-Status fmu_end(Fmu *f)
+static Status finish(Fmu *f)
 {
     f->life.phase = ENDED;
     return OK;
 }
 
-Status fmu_reset(Fmu *f)
+static Status reset(Fmu *f)
 {
     begin(f);
     return OK;
@@ -299,26 +347,28 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
     if (status == BAD_INPUT)
         for (const Slot *s = MODEL.slots; s < MODEL.slots + MODEL.slot_count; s++)
             if (s->access & INPUT && !isfinite(f->words[s->index]))
-                return fmu_explain(f, SAY_BAD_INPUT, s->name, plain(f->words[s->index]), time);
-    if (status == BAD_INPUT || status == BAD_LOAD) return fmu_explain(f, SAY_BAD_LOAD, time);
-    if (status == RAISED) return fmu_explain(f, SAY_GAVE_UP, time);
+                return explain(f, SAY_BAD_INPUT, s->name, plain(f->words[s->index]), time);
+    if (status == BAD_INPUT || status == BAD_LOAD) return explain(f, SAY_BAD_LOAD, time);
+    if (status == RAISED) return explain(f, SAY_GAVE_UP, time);
     if (status == TOO_MANY_STEPS)
-        fmu_explain(f, SAY_TOO_MANY_STEPS, MOST_STEPS, step, time);
+        explain(f, SAY_TOO_MANY_STEPS, MOST_STEPS, step, time);
     else
-        fmu_explain(f, SAY_UNRESOLVED, time, step);
+        explain(f, SAY_UNRESOLVED, time, step);
     return DISCARD;
 }
 
-Status fmu_step(Fmu *f, double time, double step)
+/* A macro step. Where it is to be discarded that is noted, not told, and the memory is half a step on. */
+static Status step_by(Fmu *f, double time, double step)
 {
     Life *life = &f->life;
     if (life->failed) return stop_again(f);
     if (life->phase != STEPPING) return FAIL(f, life->phase == ENDED ? SAY_ENDED : SAY_NOT_STARTED);
     if (fabs(time - life->end) > LATE * step) return FAIL(f, SAY_APART, time, step, life->end);
     if (!(step > 0.0) || !isfinite(step) || !isfinite(time)) return FAIL(f, SAY_NO_STEP, plain(time), plain(step));
-    if (f->outdated && derive_again(f)) return fmu_fail(f);
+    if (time + step > life->stop + LATE * step) return FAIL(f, SAY_PAST_STOP, time, step, life->stop);
+    if (f->outdated && derive_again(f)) return fail(f);
     int64_t status = advance(f->words, f->scratch, time, step);
-    if (status) return stop(f, explain_step(f, status, time, step));
+    if (status) return explain_step(f, status, time, step) == DISCARD ? DISCARD : fail(f);
     life->end = time + step;
     return OK;
 }
@@ -326,12 +376,12 @@ Status fmu_step(Fmu *f, double time, double step)
 /* -- values -------------------------------------------------------------------------------------- */
 
 /* Whether each of the variables is of the kind in `needed`, and of one of its causalities. */
-int fmu_allowed(const Reference *vr, size_t count, int needed)
+static int allowed(const Reference *vr, size_t count, int needed)
 {
     for (size_t i = 0; i < count; i++) {
         int access = vr[i] < MODEL.hidden ? MODEL.access[vr[i]] : 0;
         if (!(access & needed & (REAL | INTEGER))) return 0;
-        if (!(access & needed & (PARAMETER | INPUT | OUTPUT | TUNABLE))) return 0;
+        if (!(access & needed & (PARAMETER | INPUT | OUTPUT | TUNABLE | INDEPENDENT))) return 0;
     }
     return 1;
 }
@@ -342,6 +392,19 @@ static int by_number(const void *one, const void *other)
     return (a > b) - (a < b);
 }
 
+/* The name of a variable as hosts know it: an array's without the index of its first element. */
+static void write_name(char *to, size_t room, Reference vr)
+{
+    const char *name = vr < MODEL.hidden && MODEL.access[vr] ? name_of(vr) : NULL;
+    const char *index = name && MODEL.extents && MODEL.extents[vr].stride ? strrchr(name, '[') : NULL;
+    if (!name)
+        snprintf(to, room, SAY_UNKNOWN, vr);
+    else if (!index)
+        snprintf(to, room, "%s", name);
+    else
+        snprintf(to, room, "%.*s%s", (int)(index - name), name, strchr(index, ']') + 1);
+}
+
 /* Names of the variables that are not `allowed`, in order, each once; NULL without memory. */
 static char *others(const Reference *vr, size_t count, int needed)
 {
@@ -350,11 +413,9 @@ static char *others(const Reference *vr, size_t count, int needed)
     char *names = calloc(1, 1);
     if (sorted) memcpy(sorted, vr, count * sizeof *sorted), qsort(sorted, count, sizeof *sorted, by_number);
     for (size_t i = 0; sorted && names && i < count; i++) {
-        if (fmu_allowed(sorted + i, 1, needed) || (i && sorted[i] == sorted[i - 1])) continue;
-        char unknown[64], *longer;
-        const char *name = name_of(sorted[i]);
-        snprintf(unknown, sizeof unknown, SAY_UNKNOWN, sorted[i]);
-        if (!name) name = unknown;
+        if (allowed(sorted + i, 1, needed) || (i && sorted[i] == sorted[i - 1])) continue;
+        char name[256], *longer;
+        write_name(name, sizeof name, sorted[i]);
         if ((longer = realloc(names, length + strlen(name) + 2))) {
             names = longer;
             length += (size_t)sprintf(names + length - 1, "%s%s", length > 1 ? ", " : "", name);
@@ -364,7 +425,7 @@ static char *others(const Reference *vr, size_t count, int needed)
     return names;
 }
 
-Status fmu_refuse(Fmu *f, const char *format, const Reference *vr, size_t count, int needed, const char *kind)
+static Status refuse(Fmu *f, const char *format, const Reference *vr, size_t count, int needed, const char *kind)
 {
     char *names = others(vr, count, needed);
     Status status = FAIL(f, format, names ? names : "", kind);
@@ -373,13 +434,13 @@ Status fmu_refuse(Fmu *f, const char *format, const Reference *vr, size_t count,
 }
 
 /* What may be set now. */
-int fmu_settable(const Fmu *f)
+static int settable(const Fmu *f)
 {
     return f->life.phase < STEPPING ? PARAMETER | INPUT : TUNABLE | INPUT;
 }
 
 /* Note that values were set. */
-Status fmu_changed(Fmu *f, const Reference *vr, size_t count)
+static Status changed(Fmu *f, const Reference *vr, size_t count)
 {
     f->stale = 1;
     if (f->life.phase >= STEPPING)
@@ -389,13 +450,13 @@ Status fmu_changed(Fmu *f, const Reference *vr, size_t count)
 
 /* See that the variables of these kinds can be read and have values: outputs have none before initialisation
    is entered, and until it is complete they are made to follow from what was set. */
-Status fmu_readable(Fmu *f, const Reference *vr, size_t count, int type, const char *kind)
+static Status readable(Fmu *f, const Reference *vr, size_t count, int type, const char *kind)
 {
-    const int given = type | PARAMETER | INPUT, all = given | OUTPUT;
-    if (!fmu_allowed(vr, count, all)) return fmu_refuse(f, SAY_UNREADABLE, vr, count, all, kind);
-    if (f->life.phase >= STEPPING || fmu_allowed(vr, count, given)) return OK;
-    if (f->life.phase == NEW) return fmu_refuse(f, SAY_READ_EARLY, vr, count, given, kind);
-    return f->stale && refresh(f) ? fmu_fail(f) : OK;
+    const int given = type | PARAMETER | INPUT | INDEPENDENT, all = given | OUTPUT;
+    if (!allowed(vr, count, all)) return refuse(f, SAY_UNREADABLE, vr, count, all, kind);
+    if (f->life.phase >= STEPPING || allowed(vr, count, given)) return OK;
+    if (f->life.phase == NEW) return refuse(f, SAY_READ_EARLY, vr, count, given, kind);
+    return f->stale && refresh(f) ? fail(f) : OK;
 }
 
 /* -- state --------------------------------------------------------------------------------------- */
@@ -406,7 +467,7 @@ static size_t state_size(void)
     return strlen(MODEL.guid) + sizeof(Life) + MODEL.derived * sizeof(double);
 }
 
-Status fmu_free_state(Fmu *f, Saved **state)
+static Status free_state(Fmu *f, Saved **state)
 {
     (void)f;
     if (state) {
@@ -426,7 +487,7 @@ static int room(Saved **state, size_t size)
     return 1;
 }
 
-Status fmu_get_state(Fmu *f, Saved **state)
+static Status get_state(Fmu *f, Saved **state)
 {
     const size_t identity = strlen(MODEL.guid);
     if (!room(state, state_size())) return FAIL(f, SAY_NO_MEMORY);
@@ -437,7 +498,7 @@ Status fmu_get_state(Fmu *f, Saved **state)
     return OK;
 }
 
-Status fmu_set_state(Fmu *f, const Saved *state)
+static Status set_state(Fmu *f, const Saved *state)
 {
     const size_t identity = strlen(MODEL.guid);
     if (!state || state->size != state_size() || memcmp(state->bytes, MODEL.guid, identity))
@@ -463,14 +524,14 @@ static uint64_t checksum(const char bytes[], size_t size)
     return sum;
 }
 
-Status fmu_serialised_size(Fmu *f, const Saved *state, size_t *size)
+static Status serialised_size(Fmu *f, const Saved *state, size_t *size)
 {
     if (!state) return FAIL(f, SAY_FOREIGN_STATE);
     *size = state->size + sizeof(uint64_t);
     return OK;
 }
 
-Status fmu_serialise(Fmu *f, const Saved *state, char bytes[], size_t size)
+static Status serialise(Fmu *f, const Saved *state, char bytes[], size_t size)
 {
     if (!state) return FAIL(f, SAY_FOREIGN_STATE);
     if (size < state->size + sizeof(uint64_t)) return FAIL(f, SAY_NO_ROOM);
@@ -480,13 +541,14 @@ Status fmu_serialise(Fmu *f, const Saved *state, char bytes[], size_t size)
     return OK;
 }
 
-Status fmu_deserialise(Fmu *f, const char bytes[], size_t size, Saved **state)
+static Status deserialise(Fmu *f, const char bytes[], size_t size, Saved **state)
 {
     const size_t own = state_size();
     if (!bytes || size != own + sizeof(uint64_t) || memcmp(bytes, MODEL.guid, strlen(MODEL.guid)))
         return FAIL(f, SAY_FOREIGN_STATE);
     const uint64_t sum = checksum(bytes, own);
     if (memcmp(bytes + own, &sum, sizeof sum)) return FAIL(f, SAY_FOREIGN_STATE);
+    *state = NULL; /* the host's variable may hold anything */
     if (!room(state, own)) return FAIL(f, SAY_NO_MEMORY);
     memcpy((*state)->bytes, bytes, own);
     return OK;
