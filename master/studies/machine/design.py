@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from touchdown.bearings.catalogue import Bearing
 from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.scene.plausible import FAST, MOST_BORE_SPEED, RPM
 from touchdown.master.studies.rotor.report import pulling
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
@@ -19,13 +20,10 @@ from touchdown.rotor.modal.modes import RIGID, basis
 from touchdown.rotor.statics import at_rest
 
 GRAVITY = 9.81  # m/s2
-RPM = 2.0 * math.pi / 60.0
 LEVITATION = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
 LEVITATION_DAMPING = 0.3  # ratio
 FORCE = 6.0  # limit of a magnetic bearing's force over the static load
-FAST = 1.5  # times the speed of the rule; above, it is said
 BELOW_BENDING = 0.7  # speed over the first bending frequency
-MOST_BORE_SPEED = 1e3  # m rpm, bore times speed
 CONTACT = 6e10  # N/m^(10/9) per m of width, journal in ring
 HOUSING_SHARE = 0.15  # housing over what it carries
 LEAST_HOUSING = 2.0  # kg

@@ -214,5 +214,11 @@ def _run_task(task: Task) -> Member:
         (folder / RECORDING).unlink(missing_ok=True)
     seconds = time.perf_counter() - begun
     return Member(
-        task.number, task.settings, result.summary, result.stopped_because, result.ended, seconds=seconds
+        task.number,
+        task.settings,
+        result.summary,
+        result.stopped_because,
+        result.ended,
+        seconds=seconds,
+        warnings=tuple(result.warnings),
     )
