@@ -57,3 +57,17 @@ def to_si(value: object, unit: str | None, name: str) -> float:
         raise TouchdownError(
             f"{name} is an integer of more than 308 digits; write a smaller number"
         ) from None
+
+
+def with_unit(value: object, unit: str | None) -> str:
+    """A setting as it was given, for people: with its unit, a speed also in rpm; text may have one in it.
+
+    >>> with_unit(20000, "rad/s"), with_unit("0.3 mm", "m"), with_unit("0.15", "1")
+    ('20000 rad/s (190986 rpm)', '0.3 mm', '0.15')
+    """
+    try:
+        number = float(str(value))
+    except ValueError:
+        return str(value)
+    in_rpm = f" ({number * units.per_display(unit, 'rpm'):.6g} rpm)" if unit == "rad/s" else ""
+    return f"{number:g}" + (f" {unit}" if unit not in (None, "", "1") else "") + in_rpm

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
-from touchdown.master.common.units import plain
-from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.common.units import plain, with_unit
+from touchdown.master.scene.run_spec import UNITS, RunSpec, with_changes
 from touchdown.master.scene.tables import switch, whole
 from touchdown.master.scene.titles import retitled
 from touchdown.master.scene.wires import BondSpec, Wire
@@ -185,6 +185,25 @@ class Scene:
             raise TouchdownError(
                 f"scene {self.name} has no component {name}; {one_of(name, [*self.components, 'run'])}"
             ) from None
+
+    def changes(self, unit_of: Callable[[str, str], str | None]) -> list[str]:
+        """What the user set in components beside the scene, for people.
+
+        unit_of(component, variable): its SI unit.
+        """
+        return [
+            f"{name}.{key} = {with_unit(value, unit_of(name, key) if key in spec.set else None)}"
+            for name, spec in self.components.items()
+            for key, value in spec.set_beside.items()
+        ]
+
+    def run_changes(self) -> list[str]:
+        """What the user set in [run] beside the scene, for people."""
+        values = self.resolved()["run"]
+        assert isinstance(values, dict)
+        given = {key: values[key] for key in self.own}
+        told = {k: ", ".join(v) if isinstance(v, (tuple, list)) else v for k, v in given.items()}
+        return [f"run.{key} = {with_unit(value, UNITS.get(key))}" for key, value in told.items()]
 
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""

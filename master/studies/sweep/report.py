@@ -44,7 +44,8 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
     """How many members have each verdict, the most frequent first."""
     lines = []
     for key in verdict_keys(members):
-        counts = Counter(str(m.summary[key]) for m in members if m.summary.get(key) is not None)
+        words = (str(m.summary[key]) for m in members if m.summary.get(key) is not None)
+        counts = Counter(said.partition(":")[0] for said in words)  # near misses, whatever they miss by
         lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
     return lines
 

@@ -10,7 +10,7 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import define
+from touchdown.master.studies.sweep.definition import define, differences
 from touchdown.master.studies.sweep.design import Design, designed
 from touchdown.master.studies.sweep.listing import read_points
 from touchdown.master.studies.sweep.variation import parse, parse_all
@@ -171,3 +171,15 @@ def test_names_that_mean_several_settings() -> None:
     twice = Design.grid({"bearing_*.clearance": ["0.2 mm"], "bearing_A.clearance": ["0.3 mm"]})
     with pytest.raises(TouchdownError, match=r"bearing_A\.clearance varies twice"):
         define(scene, twice, in_process=True)
+
+
+def test_how_a_value_came_to_be_makes_no_other_sweep() -> None:
+    """A duration that is the scene's own may be given or not; another one is another sweep."""
+    scene = load_scene("disk-caged-simplified")
+    design = Design.grid({"rotor.mass": [1.0, 2.0]})
+    plain = define(scene, design, in_process=True)
+    same = scene.set({"run.duration": scene.run.duration})
+    assert differences(plain, define(same, design, in_process=True)) == []
+    other = scene.set({"run.duration": 2.0 * scene.run.duration})
+    (said,) = differences(plain, define(other, design, in_process=True))
+    assert said.startswith("run.duration is")
