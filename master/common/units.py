@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from numbers import Integral, Real
 
 from touchdown.master.common.errors import TouchdownError
@@ -52,11 +53,24 @@ def to_si(value: object, unit: str | None, name: str) -> float:
     try:
         return units.to_si(value, unit, name)
     except units.UnitError as error:
-        raise TouchdownError(str(error)) from None
+        raise TouchdownError(f"{error}{_units_taken(value, unit)}") from None
     except OverflowError:  # an integer beyond what a real number can be
         raise TouchdownError(
             f"{name} is an integer of more than 308 digits; write a smaller number"
         ) from None
+
+
+def _units_taken(value: object, unit: str | None) -> str:
+    """How a quantity in `unit` may be written, where its `value` has another."""
+    match = units.NUMBER.match(str(value).strip())
+    written = str(value).strip()[match.end() :].strip() if match else ""
+    taken = units.units_of(unit) if unit else []
+    if not written or len(taken) < 2 or written in taken:
+        return ""
+    others = {si for _, si in units.SCALES.values()} | units.SCALES.keys()
+    near = [] if written in others else get_close_matches(written, taken, n=2)
+    hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
+    return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
 
 
 def with_unit(value: object, unit: str | None) -> str:

@@ -30,10 +30,15 @@ def reopened(folder: Path) -> Result:
     summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
     told = _values(folder, ENDING, "an earlier version left it; run the scene again")
     scene = _values(folder, SCENE, "run the scene again")
+    if not (folder / RECORDING).is_file():
+        raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
     try:
         ending, warnings = read_ending(told)
+        ran = restored(scene)
+        if ran.components.keys() != ending.components.keys():
+            raise ValueError(f"{SCENE} has other components than {ENDING}")
         return Result(
-            restored(scene),
+            ran,
             Recording(folder / RECORDING),
             folder,
             summary,
@@ -42,7 +47,9 @@ def reopened(folder: Path) -> Result:
             summary.get("stopped_because", ""),
             warnings,
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except TouchdownError as error:
+        raise TouchdownError(f"{folder}: {error}") from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise TouchdownError(
             f"{folder} is not as a run leaves it ({type(error).__name__}: {error}); run the scene again"
         ) from None
