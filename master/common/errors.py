@@ -21,9 +21,10 @@ class TouchdownError(Exception):
 
 
 def one_of(name: str, known: Iterable[str]) -> str:
-    """The tail of a message about an unknown name: the nearest ones, or all there are."""
+    """The tail of a message about an unknown name: those it begins, the nearest, or all there are."""
     known = sorted(known)
-    near = get_close_matches(name, known, n=3, cutoff=0.5)
+    begun = [other for other in known if name and other.startswith(name)]
+    near = begun[:3] or get_close_matches(name, known, n=3, cutoff=0.5)
     if near:
         return f"did you mean {' or '.join(near)}"
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -11,6 +12,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.modelkit import units
 
 Scale = tuple[float, float]  # factor and offset
+IN_HERTZ = ("bandwidth",)  # variables in rad/s that are no speeds
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -73,15 +75,26 @@ def _units_taken(value: object, unit: str | None) -> str:
     return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
 
 
-def with_unit(value: object, unit: str | None) -> str:
-    """A setting as it was given, for people: with its unit, a speed also in rpm; text may have one in it.
+def spoken(name: str, value: float) -> tuple[float, str]:
+    """A variable in rad/s as people speak of it: a speed in rpm, what a control follows in Hz.
 
-    >>> with_unit(20000, "rad/s"), with_unit("0.3 mm", "m"), with_unit("0.15", "1")
+    >>> spoken("rotor.speed", 10.0 * math.pi), spoken("amb.bandwidth", 10.0 * math.pi)
+    ((300.0, 'rpm'), (5.0, 'Hz'))
+    """
+    turns = value / (2.0 * math.pi)
+    return (turns, "Hz") if name.endswith(IN_HERTZ) else (60.0 * turns, "rpm")
+
+
+def with_unit(value: object, unit: str | None, name: str = "") -> str:
+    """The setting `name` as it was given, for people, with its unit; text may have one in it.
+
+    >>> with_unit(20000, "rad/s", "rotor.speed"), with_unit("0.3 mm", "m"), with_unit("0.15", "1")
     ('20000 rad/s (190986 rpm)', '0.3 mm', '0.15')
     """
     try:
         number = float(str(value))
     except ValueError:
         return str(value)
-    in_rpm = f" ({number * units.per_display(unit, 'rpm'):.6g} rpm)" if unit == "rad/s" else ""
-    return f"{number:g}" + (f" {unit}" if unit not in (None, "", "1") else "") + in_rpm
+    turns, per = spoken(name, number)
+    beside = f" ({turns:.6g} {per})" if unit == "rad/s" and number else ""
+    return f"{number:g}" + (f" {unit}" if unit not in (None, "", "1") else "") + beside

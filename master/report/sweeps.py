@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import with_unit
+from touchdown.master.common.units import spoken, with_unit
 from touchdown.master.report.facts.labels import NODE, label
 from touchdown.master.report.facts.numbers import NONE, digits, quantity, share
 from touchdown.master.report.facts.subject import FIRST_CONTACT, number
@@ -190,8 +190,15 @@ def _column(column: Column, given: Sequence[object]) -> list[str]:
     numbers = [value for one in distinct if (value := number(one)) is not None]
     if not numbers:
         return [name, str(len(distinct)), str(distinct[0]), str(distinct[-1])]
-    ends = (quantity(end, column.unit or "1") for end in (min(numbers), max(numbers)))
-    return [name, str(len(distinct)), *ends]
+    return [name, str(len(distinct)), *(_setting(column, end) for end in (min(numbers), max(numbers)))]
+
+
+def _setting(column: Column, value: float) -> str:
+    """A value of a setting, a speed as it is spoken of."""
+    if column.unit == "rad/s":
+        turns, per = spoken(column.name, value)
+        return f"{digits(turns, 5)} {per}"
+    return quantity(value, column.unit or "1")
 
 
 def _maps(sweep: Sweep) -> list[Block]:
@@ -276,10 +283,10 @@ def _drops(sweep: Sweep) -> list[Block]:
 
 
 def _rows(sweep: Sweep, members: Sequence[Member], figures: Sequence[str]) -> Iterator[list[str]]:
-    units = [column.unit for column in sweep.definition.columns]
+    columns = sweep.definition.columns
     for member in members:
-        given = zip(member.settings.values(), units, strict=True)
-        settings = (with_unit(value, unit) for value, unit in given)
+        given = zip(member.settings.values(), columns, strict=True)
+        settings = (with_unit(value, column.unit, column.name) for value, column in given)
         yield [str(member.number), *settings, *(_shown(member.summary.get(key)) for key in figures)]
 
 

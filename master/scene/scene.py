@@ -192,7 +192,7 @@ class Scene:
         unit_of(component, variable): its SI unit.
         """
         return [
-            f"{name}.{key} = {with_unit(value, unit_of(name, key) if key in spec.set else None)}"
+            f"{name}.{key} = {with_unit(value, unit_of(name, key) if key in spec.set else None, key)}"
             for name, spec in self.components.items()
             for key, value in spec.set_beside.items()
         ]

@@ -20,16 +20,21 @@ SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a wh
 
 def evidence(summary: Mapping[str, object]) -> list[str]:
     """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
-    contacts = [time for key, time in summary.items() if key.startswith(CONTACT)]
-    if contacts and not any(isinstance(time, float) for time in contacts):
+    if not _touched(summary):
         return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
+
+
+def _touched(summary: Mapping[str, object]) -> bool:
+    """Whether any bearing was, as far as bearings tell."""
+    contacts = [time for key, time in summary.items() if key.startswith(CONTACT)]
+    return not contacts or any(isinstance(time, float) for time in contacts)
 
 
 def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
-    if verdicts and unbalanced(system):
+    if verdicts and _touched(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
 
 

@@ -71,11 +71,17 @@ class Design:
     def notes(self) -> list[str]:
         """What the user is to know of it, one line each."""
         told = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
+        for s, bearing in zip(self.touchdown, self.bearings, strict=True):
+            if abs(s.load) > (limit := bearing.capacity().static):
+                told.append(
+                    f"{s.component} bears {1e-3 * abs(s.load):.3g} kN at rest, more than the static rating "
+                    f"of {bearing.designation}, C0 = {1e-3 * limit:.3g} kN"
+                )
         usual = sensible_speed(self.bending, self.bearings)
         if self.speed > FAST * usual:
             told.append(
-                f"speed = {self.speed / RPM:.5g} rpm is more than such a machine runs "
-                f"({usual / RPM:.5g} rpm by the rule); a number without a unit is in rad/s"
+                f"speed = {self.speed / RPM:.0f} rpm is more than such a machine runs "
+                f"({usual / RPM:.0f} rpm by the rule); a number without a unit is in rad/s"
             )
         return told
 

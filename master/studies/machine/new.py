@@ -77,7 +77,7 @@ def machine(wanted: Wanted, title: str) -> Machine:
     if wanted.mass is None:
         raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
     design = _rigid(wanted, wanted.mass, title, places)
-    return Machine(places.files | {SCENE_FILE: scene_text(design)})
+    return Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
 
 
 def write(made: Machine, folder: Path, force: bool) -> Path:
@@ -210,9 +210,15 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
         around = shaft.elements[max(node - 2, 0) : node]
-        thickest = max(element.widest for element in around)
+        thickest, thinnest = (pick(element.widest for element in around) for pick in (max, min))
         room = bearing.bore - 2.0 * design.clearance
-        if thickest > room + ROUNDING:
+        if thinnest > bearing.bore + ROUNDING:
+            notes.append(
+                f"{bearing.designation} cannot be mounted at {support.station}: its bore is "
+                f"{1e3 * bearing.bore:g} mm, the rotor {1e3 * thinnest:g} mm thick there; choose a wider "
+                "one (`touchdown catalogue`), or turn the shaft down"
+            )
+        elif thickest > room + ROUNDING:
             notes.append(
                 f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
                 f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"

@@ -87,6 +87,10 @@ def sweep(
         raise TouchdownError(f"a sweep needs at least one job, not {running.jobs}")
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     asked = define(scene, design, running.in_process)
+    if running.cluster:  # before there is anything of the sweep in its folder
+        from touchdown.master.common.processes.cluster import reach
+
+        reach(running.cluster)
     with claimed(folder):
         lines = _opened(folder, asked, running)
         tasks = _Tasks(asked, scene, folder, running, [])

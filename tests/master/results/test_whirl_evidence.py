@@ -19,13 +19,25 @@ from orbits import (
     turns,
 )
 
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.results.ending import Ending
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
-from touchdown.master.results.whirl.evidence import evidence
+from touchdown.master.results.whirl.evidence import evidence, hint
 
 SLIDING = math.atan(FRICTION)
 STANDS_OFF = replace(circle(-60.0, centre=0.4 - 0.2j), bore=0.4 - 0.2j)
 HIGHEST = math.sqrt(4.0 * 9.81 / CLEARANCE)  # rad/s at the bottom, of a pendulum that just reaches the top
+
+
+class Unbalanced(Ending):
+    """A rotor in a bearing, as far as a hint asks for it."""
+
+    def __init__(self) -> None:
+        super().__init__({}, [Attachment("bearing", "journal", "rotor", "A")], [])
+
+    def __contains__(self, name: str) -> bool:
+        return name == "rotor.unbalance_angle"
 
 
 def phases(made: Made, factor: complex = 1.0) -> list[float | None]:
@@ -140,6 +152,8 @@ def test_a_run_that_ends_before_contact_says_so() -> None:
         assert [line.partition(":")[0] for line in evidence(none | untouched)] == [
             "no bearing has been touched"
         ]
+        assert not list(hint("mine", Unbalanced(), none | untouched))
+        assert list(hint("mine", Unbalanced(), untouched))
     one = {"first_contact_time_s_bearing_A": None, "first_contact_time_s_bearing_B": 0.0079}
     assert evidence(one | untouched) == [
         "whirl_A: no whirl: the contact did not swing either way by 10 deg; it went 0.00 of a turn one way "

@@ -13,6 +13,7 @@ from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.sweep.definition import define, differences
 from touchdown.master.studies.sweep.design import Design, designed
 from touchdown.master.studies.sweep.listing import read_points
+from touchdown.master.studies.sweep.sweep import Running, sweep
 from touchdown.master.studies.sweep.variation import parse, parse_all
 
 ANGLE = "bearing.balls.first_angle"
@@ -183,3 +184,12 @@ def test_how_a_value_came_to_be_makes_no_other_sweep() -> None:
     other = scene.set({"run.duration": 2.0 * scene.run.duration})
     (said,) = differences(plain, define(other, design, in_process=True))
     assert said.startswith("run.duration is")
+
+
+def test_a_cluster_that_does_not_answer_leaves_nothing(tmp_path: Path) -> None:
+    """Else the next command in the folder would be another sweep."""
+    pytest.importorskip("distributed")
+    design = Design.grid({"rotor.mass": [1.0, 2.0]})
+    with pytest.raises(TouchdownError, match="no Dask scheduler answers at nowhere"):
+        sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster="nowhere", in_process=True))
+    assert not (tmp_path / "out").exists()
