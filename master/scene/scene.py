@@ -7,10 +7,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import cast
 
 from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
 from touchdown.master.common.units import plain, with_unit
 from touchdown.master.scene.run_spec import UNITS, RunSpec, with_changes
+from touchdown.master.scene.schemes import Scheme
 from touchdown.master.scene.tables import switch, whole
 from touchdown.master.scene.titles import retitled
 from touchdown.master.scene.wires import BondSpec, Wire
@@ -199,11 +201,8 @@ class Scene:
 
     def run_changes(self) -> list[str]:
         """What the user set in [run] beside the scene, for people."""
-        values = self.resolved()["run"]
-        assert isinstance(values, dict)
-        given = {key: values[key] for key in self.own}
-        told = {k: ", ".join(v) if isinstance(v, (tuple, list)) else v for k, v in given.items()}
-        return [f"run.{key} = {with_unit(value, UNITS.get(key))}" for key, value in told.items()]
+        given = {key: getattr(self.run, key) for key in self.own}
+        return [f"run.{key} = {with_unit(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
 
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""
@@ -214,6 +213,13 @@ class Scene:
 
 def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:
     return names if name in names else (*names, name)
+
+
+def _as_written(value: object) -> object:
+    """A value of [run] as its file has it."""
+    if isinstance(value, Scheme):
+        return value.name
+    return ", ".join(cast(tuple[str, ...], value)) if isinstance(value, tuple) else value
 
 
 def is_file(fmu: str) -> bool:
