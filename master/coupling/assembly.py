@@ -26,6 +26,7 @@ from touchdown.master.scene.schemes import Scheme
 from touchdown.modelkit.model import ModelError
 from touchdown.modelkit.variables import Causality
 
+PLAIN = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -84,9 +85,8 @@ def _seat(
 
     def values(name: str) -> dict[str, float]:
         """Parameters in SI, where they are set or the component says its own."""
-        own = {
-            n: v.start for n, v in components[name].variables.items() if v.causality is Causality.PARAMETER
-        }
+        variables = components[name].variables.items()
+        own = {n: v.start for n, v in variables if v.causality is Causality.PARAMETER and v.unit in PLAIN}
         return {n: settings.get((name, n), start) for n, start in own.items() if start is not None}
 
     chosen = scene.components[a.bearing].preset

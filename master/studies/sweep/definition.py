@@ -29,6 +29,7 @@ from touchdown.master.studies.sweep.design import Design, numbers_of
 FILE = "sweep.json"
 UNSAID = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
 TOLD = ("about", "values", "changes", "run_changes")  # of a definition: the same
+NEEDED = ("name", "title", "run", "components")  # of a scene, by what reads a sweep
 OF_COMPONENT = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
 SAID = 3  # differences that are told
 
@@ -236,6 +237,8 @@ def read_definition(folder: Path) -> Definition:
     try:
         given = json.loads(path.read_text(encoding="utf-8"))
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
+        if absent := [key for key in NEEDED if key not in given["scene"]]:
+            raise KeyError(absent[0])
         lists = {key: tuple(given[key]) for key in ("part", "changes", "run_changes")}
         return Definition(**{**given, **lists, "columns": tuple(columns)})
     except FileNotFoundError:

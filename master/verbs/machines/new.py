@@ -33,7 +33,11 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--amb", metavar="STATION,...", help="where magnetic bearings do (default: its levitated_at)"
     )
-    verb.add_argument("--speed", help="at the start (default: 0.7 of the first bending frequency)")
+    verb.add_argument(
+        "--speed",
+        help="at the start (default: the lower of 0.7 of the first bending frequency and 1,000,000 mm rpm "
+        "over the bore)",
+    )
     verb.add_argument("--clearance", default="0.25 mm", help='radial (default: "0.25 mm")')
     verb.add_argument("--mass", help="of a rigid rotor, instead of --rotor")
     verb.add_argument(

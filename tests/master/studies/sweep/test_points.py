@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import define, differences
+from touchdown.master.studies.sweep.definition import define, differences, read_definition
 from touchdown.master.studies.sweep.design import Design, designed
 from touchdown.master.studies.sweep.listing import read_points
 from touchdown.master.studies.sweep.sweep import Running, sweep
@@ -193,3 +194,17 @@ def test_a_cluster_that_does_not_answer_leaves_nothing(tmp_path: Path) -> None:
     with pytest.raises(TouchdownError, match="no Dask scheduler answers at nowhere"):
         sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster="nowhere", in_process=True))
     assert not (tmp_path / "out").exists()
+
+
+def test_a_definition_without_what_reads_a_sweep_is_damaged(tmp_path: Path) -> None:
+    """Here its scene's title, which reports and tables print."""
+    asked = define(load_scene(SCENE), Design.grid({"rotor.mass": [1.0, 2.0]}), in_process=True)
+    asked.write(tmp_path)
+    assert read_definition(tmp_path).columns == asked.columns
+    replace(asked, scene={"name": SCENE}).write(tmp_path)
+    with pytest.raises(
+        TouchdownError, match=r"sweep\.json cannot be read; it is of another version, or dam"
+    ):
+        read_definition(tmp_path)
+    with pytest.raises(TouchdownError, match="write K/N with N above 0"):
+        Design.grid({"rotor.mass": [1.0, 2.0]}).shard(1, 0)

@@ -124,7 +124,8 @@ def test_a_run_that_fails_has_no_verdict_and_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scene: Scene
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 100.0 < phase < 200.0, failing=(2.0, 98.0))
-    study = study_verdict(scene, Plan(), tmp_path)
+    study = study_verdict(scene.set({"rotor.speed": 9000}), Plan(), tmp_path)
+    assert [remark.partition(" rpm")[0] for remark in study.remarks] == ["rotor.speed = 85944"]
     (circle,) = study.circles
     assert circle.failed == {2.0: "it broke", 98.0: "it broke"}
     assert len(windows(circle.verdicts)) == 1
