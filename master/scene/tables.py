@@ -6,6 +6,7 @@ Every function raises TouchdownError with `where` the mistake stands and what to
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
@@ -97,6 +98,15 @@ def mistake_in(path: Path, error: Exception) -> str:
         return f"{error}{unquoted(error, path.read_text(encoding='utf-8-sig'))}"
     except (OSError, ValueError):
         return str(error)
+
+
+def is_scene(path: Path) -> bool:
+    """Whether a TOML file is a scene's."""
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return "components" in data or "extends" in data
 
 
 def is_rotor(table: Mapping[str, Any]) -> bool:

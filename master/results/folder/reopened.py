@@ -21,11 +21,18 @@ def reopened(folder: Path) -> Result:
 
     Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
     """
+    if folder.is_file():
+        raise TouchdownError(f"{folder} is a file; give the folder that it lies in, {folder.parent}")
     if not folder.is_dir():
         raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
     if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
         raise TouchdownError(
             f"{folder} is a machine's folder; `touchdown run {folder}` first, and give the folder it names"
+        )
+    runs = sorted(path.parent for path in folder.glob(f"*/{SUMMARY}"))
+    if runs and not (folder / SUMMARY).exists():
+        raise TouchdownError(
+            f"{folder} is no run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
         )
     summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
     told = _values(folder, ENDING, "an earlier version left it; run the scene again")

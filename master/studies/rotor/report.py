@@ -12,7 +12,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
-from touchdown.master.scene.tables import mistake_in
+from touchdown.master.scene.tables import is_scene, mistake_in
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find, shipped
@@ -89,7 +89,12 @@ def find_rotor(name: str) -> Shaft:
     try:
         return find(name)
     except ModelError as error:
-        raise TouchdownError(mistake_in(Path(name), error)) from None
+        path = Path(name)
+        if is_scene(path):
+            raise TouchdownError(
+                f"{path} is a scene, no rotor's file; `touchdown scenes {path}` says which its rotor is"
+            ) from None
+        raise TouchdownError(mistake_in(path, error)) from None
     except LookupError:
         if os.path.isfile(name):
             raise TouchdownError(

@@ -33,6 +33,12 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         (("import-rotor", SPINDLE), "is a rotor's file already; `touchdown rotor` describes it"),
         (("rotor", PUMP), f"is no rotor's file; `touchdown import-rotor {PUMP}` makes one of a table"),
         (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import-rotor {PUMP}` makes one"),
+        (
+            ("new", "m", "--rotor", "mine.toml", "--bearings", "7004"),
+            "mine.toml is a scene, no rotor's f",
+        ),
+        (("report", "."), "is no run's folder, it holds 1 of them; give one, such as left"),
+        (("report", "left/summary.json"), "is a file; give the folder that it lies in, left"),
         (("report", "left"), "left/result.h5 is missing; run the scene again"),
         (("run", SCENE, "--swap", "bearing=7006"), "take it by --set COMPONENT.preset=7006"),
     ],
@@ -46,6 +52,7 @@ def test_a_mix_up_is_named_with_the_right_command(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("left").mkdir()
+    Path("mine.toml").write_text(f'extends = "{SCENE}"')
     for name in ("summary", "ending", "scene"):
         Path("left", f"{name}.json").write_text("{}")
     assert said in command(*arguments).line
