@@ -152,7 +152,7 @@ class Rotor(Shaft):
         file cannot hold, and where it cannot be written.
         """
         text, path = self._text(), Path(path)
-        if not force and path.exists() and not holds(path, text):
+        if not force and os.path.exists(path) and not holds(path, text):
             raise TouchdownError(
                 f"{path} is there already; choose another file, or --force (in Python, force=True)"
             )

@@ -101,12 +101,12 @@ def locate(name: str) -> Path:
 
 def _mistaken(path: Path) -> str:
     """What a path is that is no scene's, and what it is for; "" where nothing is known of it."""
-    if path.suffix.lower() in TABLES and path.is_file():
+    if path.suffix.lower() in TABLES and os.path.isfile(path):
         return (
             f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
             "`touchdown new` a machine with that"
         )
-    if (path / LEFT).is_file():
+    if os.path.isfile(path / LEFT):
         return f"{path} is what a run left; give {path / LEFT}, the scene as it was run"
     return ""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +22,9 @@ def reopened(folder: Path) -> Result:
 
     Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
     """
-    if folder.is_file():
+    if os.path.isfile(folder):
         raise TouchdownError(f"{folder} is a file; give the folder that it lies in, {folder.parent}")
-    if not folder.is_dir():
+    if not os.path.isdir(folder):
         raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
     if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
         raise TouchdownError(

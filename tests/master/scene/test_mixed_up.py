@@ -39,6 +39,8 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         ),
         (("report", "."), "is no run's folder, it holds 1 of them; give one, such as left"),
         (("report", "left/summary.json"), "is a file; give the folder that it lies in, left"),
+        (("run", 300 * "x"), "unknown scene xxx"),
+        (("report", 300 * "x"), "there is no folder xxx"),
         (("report", "left"), "left/result.h5 is missing; run the scene again"),
         (("run", SCENE, "--swap", "bearing=7006"), "take it by --set COMPONENT.preset=7006"),
     ],
