@@ -174,3 +174,8 @@ def find_preset(name: str, *folders: Path) -> str:
 def preset(found: str) -> dict[str, float]:
     """Values in SI by parameter name; a component takes those it has. Raises CatalogueError."""
     return catalogue.bearing(found).settings()
+
+
+def bore_of(found: str) -> float:
+    """Bore (m) of the bearing that `preset` takes. Raises CatalogueError."""
+    return catalogue.bearing(found).bore

@@ -14,7 +14,7 @@ import numpy as np
 
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
+from touchdown.master.common.files import holds, writing_to
 from touchdown.master.studies.rotor.importing import import_rotor
 from touchdown.master.studies.rotor.report import (
     MODES,
@@ -145,12 +145,17 @@ class Rotor(Shaft):
         """Pictures: `plot.modes()`, `.campbell()`, `.critical()`, `.rest()`; each returns its axes."""
         return RotorPlot(lambda: described(self, SPEED, MODES))
 
-    def save(self, path: PathLike) -> Path:
-        """Write it as a rotor file (.toml); returns the path.
+    def save(self, path: PathLike, force: bool = True) -> Path:
+        """Write it as a rotor file (.toml); returns the path. A file that is there is replaced.
 
-        Raises TouchdownError for what such a file cannot hold, and where it cannot be written.
+        force=False: not one that holds something else. Raises TouchdownError for that, for what such a
+        file cannot hold, and where it cannot be written.
         """
         text, path = self._text(), Path(path)
+        if not force and os.path.exists(path) and not holds(path, text):
+            raise TouchdownError(
+                f"{path} is there already; choose another file, or --force (in Python, force=True)"
+            )
         with writing_to(path.parent):
             path.write_text(text, encoding="utf-8")
         return path

@@ -58,7 +58,7 @@ def run_scene(
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
-            warnings = [*system.left_out, *_warnings(outcome)]
+            warnings = [*system.remarks, *_warnings(outcome)]
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:

@@ -50,6 +50,7 @@ from touchdown.master.scene.scene import ComponentSpec, Scene, checked_preset
 from touchdown.master.scene.tables import (
     entries,
     flat,
+    is_rotor,
     pairs,
     reference,
     references,
@@ -57,11 +58,14 @@ from touchdown.master.scene.tables import (
     refuse_unusable,
     switch,
     table,
+    unquoted,
     whole,
 )
 from touchdown.master.scene.wires import bonds, wires
 
 SCENE_FILE = "scene.toml"  # of a folder that is a machine
+LEFT = "scene.json"  # what a run leaves
+TABLES = (".csv", ".tsv", ".txt")
 LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
@@ -87,12 +91,24 @@ def locate(name: str) -> Path:
         return Path(name)
     if name not in shipped() and os.path.isfile(Path(name) / SCENE_FILE):
         return Path(name) / SCENE_FILE
-    try:
+    if name in shipped():
         return shipped()[name]
-    except KeyError:
-        raise TouchdownError(
-            f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
-        ) from None
+    raise TouchdownError(
+        _mistaken(Path(name))
+        or f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
+    )
+
+
+def _mistaken(path: Path) -> str:
+    """What a path is that is no scene's, and what it is for; "" where nothing is known of it."""
+    if path.suffix.lower() in TABLES and os.path.isfile(path):
+        return (
+            f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
+            "`touchdown new` a machine with that"
+        )
+    if os.path.isfile(path / LEFT):
+        return f"{path} is what a run left; give {path / LEFT}, the scene as it was run"
+    return ""
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
@@ -193,6 +209,11 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
     Their [set] are a list, that of the first file first.
     """
     data = _toml(path, "scene")
+    if is_rotor(data):
+        raise TouchdownError(
+            f"{path} is a rotor's file, no scene; `touchdown rotor {path}` describes it, and `touchdown "
+            f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it"
+        )
     data["set"] = [_shared(data, f"scene {path}")]
     if "extends" not in data:
         return data
@@ -224,11 +245,15 @@ def _toml(path: Path, what: str) -> dict[str, Any]:
     if len(content) > LARGEST:
         raise TouchdownError(f"{where} is larger than {LARGEST / 1e6:.0f} MB; it must be something else")
     try:
-        data = tomllib.loads(content.decode("utf-8-sig"))  # some editors begin files with a mark
+        text = content.decode("utf-8-sig")  # some editors begin files with a mark
+    except ValueError as error:
+        raise TouchdownError(f"{where} is not valid TOML: {error}") from None
+    try:
+        data = tomllib.loads(text)
     except RecursionError:
         raise TouchdownError(f"{where} is not valid TOML: its values lie too deep in each other") from None
-    except ValueError as error:  # of TOML's syntax, of UTF-8, of an integer with thousands of digits
-        raise TouchdownError(f"{where} is not valid TOML: {error}") from None
+    except ValueError as error:  # of TOML's syntax, of an integer with thousands of digits
+        raise TouchdownError(f"{where} is not valid TOML: {error}{unquoted(error, text)}") from None
     refuse_unusable(data, where)
     return data
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import cast
 
 from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
-from touchdown.master.common.units import plain
-from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.common.units import plain, with_unit
+from touchdown.master.scene.run_spec import UNITS, RunSpec, with_changes
+from touchdown.master.scene.schemes import Scheme
 from touchdown.master.scene.tables import switch, whole
 from touchdown.master.scene.titles import retitled
 from touchdown.master.scene.wires import BondSpec, Wire
@@ -186,6 +188,22 @@ class Scene:
                 f"scene {self.name} has no component {name}; {one_of(name, [*self.components, 'run'])}"
             ) from None
 
+    def changes(self, unit_of: Callable[[str, str], str | None]) -> list[str]:
+        """What the user set in components beside the scene, for people.
+
+        unit_of(component, variable): its SI unit.
+        """
+        return [
+            f"{name}.{key} = {with_unit(value, unit_of(name, key) if key in spec.set else None, key)}"
+            for name, spec in self.components.items()
+            for key, value in spec.set_beside.items()
+        ]
+
+    def run_changes(self) -> list[str]:
+        """What the user set in [run] beside the scene, for people."""
+        given = {key: getattr(self.run, key) for key in self.own}
+        return [f"run.{key} = {with_unit(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
+
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""
         values = asdict(self)
@@ -195,6 +213,13 @@ class Scene:
 
 def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:
     return names if name in names else (*names, name)
+
+
+def _as_written(value: object) -> object:
+    """A value of [run] as its file has it."""
+    if isinstance(value, Scheme):
+        return value.name
+    return ", ".join(cast(tuple[str, ...], value)) if isinstance(value, tuple) else value
 
 
 def is_file(fmu: str) -> bool:

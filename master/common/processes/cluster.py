@@ -37,6 +37,12 @@ def run_on_cluster(
         return told_as_they_end(_outcomes(client, work, tasks), len(tasks), done, heard)
 
 
+def reach(address: str) -> None:
+    """See that a Dask scheduler answers at `address`. Raises TouchdownError where none does."""
+    with _connected(address):
+        pass
+
+
 @contextmanager
 def _connected(address: str) -> Generator[Any]:
     """A client of the scheduler; what it was given and has not done is cancelled at the end."""

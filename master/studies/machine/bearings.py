@@ -8,7 +8,7 @@ from pathlib import Path
 
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
-from touchdown.master.common.errors import TouchdownError, with_remedy
+from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
 
 SHOWN = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
 MICRO = ("play",)  # in um
@@ -29,6 +29,10 @@ def find_bearing(name: str, folder: Path) -> Bearing:
     try:
         return catalogue.bearing(catalogue.reference(name, folder))
     except CatalogueError as error:
+        if error.known and ":" not in name:
+            raise TouchdownError(
+                f"there is no bearing {name}; {one_of(name, error.known)}; `touchdown catalogue` lists them"
+            ) from None
         raise TouchdownError(with_remedy(error, name, error.known)) from None
 
 

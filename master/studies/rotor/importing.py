@@ -8,7 +8,7 @@ from typing import Any
 from touchdown.master.common.errors import TouchdownError
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file import written
+from touchdown.rotor.file import load, written
 from touchdown.rotor.imports import from_ross, placed, read
 from touchdown.rotor.imports.places import Places
 
@@ -32,5 +32,19 @@ def import_rotor(
         shaft = placed(found, at, amb, sensors)
         written(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
     except ModelError as error:
-        raise TouchdownError(str(error)) from None
+        raise TouchdownError(_already(source) or str(error)) from None
     return shaft
+
+
+def _already(source: Any) -> str:
+    """That a file is a rotor's of the project's own, where it is; "" of another."""
+    if not isinstance(source, (str, os.PathLike)) or not os.fspath(source).endswith(".toml"):
+        return ""
+    try:
+        load(os.fspath(source))
+    except ModelError:
+        return ""
+    return (
+        f"{os.fspath(source)} is a rotor's file already; `touchdown rotor` describes it, `touchdown new "
+        "FOLDER --rotor` makes a machine with it"
+    )

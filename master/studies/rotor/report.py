@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
+from touchdown.master.scene.tables import is_scene, mistake_in
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find, shipped
@@ -87,8 +89,18 @@ def find_rotor(name: str) -> Shaft:
     try:
         return find(name)
     except ModelError as error:
-        raise TouchdownError(str(error)) from None
+        path = Path(name)
+        if is_scene(path):
+            raise TouchdownError(
+                f"{path} is a scene, no rotor's file; `touchdown scenes {path}` says which its rotor is"
+            ) from None
+        raise TouchdownError(mistake_in(path, error)) from None
     except LookupError:
+        if os.path.isfile(name):
+            raise TouchdownError(
+                f"{name} is no rotor's file; `touchdown import-rotor {name}` makes one of a table of "
+                "sections or of ROSS's files"
+            ) from None
         known = shipped()
         raise TouchdownError(
             f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"

@@ -27,7 +27,9 @@ from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep.design import Design, numbers_of
 
 FILE = "sweep.json"
-UNSAID = ("name", "title", "about", "folder")  # of a scene: they change no number
+UNSAID = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
+TOLD = ("about", "values", "changes", "run_changes")  # of a definition: the same
+NEEDED = ("name", "title", "run", "components")  # of a scene, by what reads a sweep
 OF_COMPONENT = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
 SAID = 3  # differences that are told
 
@@ -55,6 +57,8 @@ class Definition:
     points: Sequence[Sequence[object]]  # as they were given, by column
     values: Sequence[Sequence[object]]  # the same in SI, or as words
     part: tuple[int, int]  # (2, 8): it runs every eighth point from the second on
+    changes: tuple[str, ...]  # what was set in components beside the scene, for people
+    run_changes: tuple[str, ...]  # the same, in [run]
 
     @property
     def numbers(self) -> range:
@@ -96,6 +100,7 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
             for name, settings in zip(design.names, targets, strict=True)
         ]
         values = _values(first, system, columns, design)
+        changes = scene.changes(lambda component, key: system.components[component].variable(key).unit)
     plain = json.loads(json.dumps(scene.resolved(), default=str))
     return Definition(
         version=VERSION,
@@ -108,6 +113,8 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
         points=design.points,
         values=values,
         part=design.part,
+        changes=tuple(changes),
+        run_changes=tuple(scene.run_changes()),
     )
 
 
@@ -230,7 +237,10 @@ def read_definition(folder: Path) -> Definition:
     try:
         given = json.loads(path.read_text(encoding="utf-8"))
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
-        return Definition(**{**given, "columns": tuple(columns), "part": tuple(given["part"])})
+        if absent := [key for key in NEEDED if key not in given["scene"]]:
+            raise KeyError(absent[0])
+        lists = {key: tuple(given[key]) for key in ("part", "changes", "run_changes")}
+        return Definition(**{**given, **lists, "columns": tuple(columns)})
     except FileNotFoundError:
         raise TouchdownError(f"there is no sweep in {folder}: it has no {FILE}") from None
     except OSError as error:
@@ -264,7 +274,8 @@ def _compared(definition: Definition) -> dict[str, Any]:
     """All of it that changes a number, as JSON has it."""
     plain = cast(dict[str, Any], json.loads(json.dumps(asdict(definition), default=str)))
     scene, columns = plain.pop("scene"), plain.pop("columns")
-    del plain["about"], plain["values"]
+    for told in TOLD:
+        del plain[told]
     points, part = plain.pop("points"), plain.pop("part")
     for component in scene["components"].values():
         del component["own"]  # where a value was given changes no number

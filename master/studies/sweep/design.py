@@ -108,7 +108,8 @@ class Design:
     def shard(self, number: int, of: int) -> Design:
         """Every point whose turn it is when `of` take turns, for the one of that `number`, from 1."""
         if not 1 <= number <= of:
-            raise TouchdownError(f"shard {number} of {of}: write 1 to {of}, such as 3/8")
+            numbers = f"1/{of} to {of}/{of}" if of > 0 else "K/N with N above 0"
+            raise TouchdownError(f"shard {number} of {of}: write {numbers}, such as 3/8")
         if number > len(self.points):
             raise TouchdownError(f"shard {number} of {of} has no point: there are {len(self.points)}")
         return replace(self, part=(number, of))

@@ -32,6 +32,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
             metavar="NAME=PLACE,...",
             help=f"{meaning}; a PLACE is a node, from 1, or a distance from node 1 such as 120 mm",
         )
+    verb.add_argument("--force", action="store_true", help="replace a file that is there")
     verb.add_argument("--speed", help="at which ROSS's bearings are taken, where they hang on the speed")
 
 
@@ -51,7 +52,7 @@ def execute(options: argparse.Namespace) -> int:
     )
     path = options.output or Path(f"{options.file.stem}-rotor.toml")
     make_writable(path.parent)
-    rotor.save(path)
+    rotor.save(path, options.force)
     print(rotor)
     print(rotor.about)
     print(f"written to {path}; what it is like: touchdown rotor {path}")

@@ -124,7 +124,8 @@ def test_a_run_that_fails_has_no_verdict_and_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scene: Scene
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 100.0 < phase < 200.0, failing=(2.0, 98.0))
-    study = study_verdict(scene, Plan(), tmp_path)
+    study = study_verdict(scene.set({"rotor.speed": 9000}), Plan(), tmp_path)
+    assert [remark.partition(" rpm")[0] for remark in study.remarks] == ["rotor.speed = 85944"]
     (circle,) = study.circles
     assert circle.failed == {2.0: "it broke", 98.0: "it broke"}
     assert len(windows(circle.verdicts)) == 1
@@ -260,7 +261,10 @@ def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], 
     assert "macro step 100 us: 3 runs" in shown
     assert "no window whirls" in shown
     assert "share of phases that whirl: 0.0% (95% interval 0.0% to 70.8%)" in shown
-    assert "phase 0 deg, the scene's own, with macro step 100 us: no whirl, and no edge anywhere" in shown
+    assert (
+        "phase 0 deg, the scene's own, with macro step 100 us: no whirl, and no edge between the phases run"
+        in shown
+    )
     summaries = sorted(tmp_path.glob("100us/*/summary.json"))
     assert [path.parent.name for path in summaries] == ["000.000", "120.000", "240.000"]
     forces = {json.loads(path.read_text())["peak_contact_force_N"] for path in summaries}
