@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -41,7 +40,7 @@ def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float 
     check_nodes(shaft, nodes)
     if len(nodes) > shaft.coordinates:
         raise ModelError(
-            f"{shaft.title} has {shaft.coordinates} modes, too few to tell how it rests on {len(nodes)} nodes"
+            f"{shaft.title} has {shaft.coordinates} modes, too few to lie on {len(nodes)} nodes"
         )
     for node, spring in supports:
         if not spring > 0.0:

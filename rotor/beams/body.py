@@ -25,7 +25,7 @@ from touchdown.rotor.beams.element import Element, ring_area
 
 @dataclass(frozen=True)
 class Matrices:
-    """Symmetric, of n coordinates: mass M, stiffness K, gyroscopic ("polar") G; and where they move nodes."""
+    """Of n coordinates: mass M, stiffness K, gyroscopic ("polar") G, all symmetric; and how nodes move."""
 
     mass: np.ndarray  # (n, n)
     stiffness: np.ndarray  # (n, n)
@@ -155,7 +155,9 @@ class Beams:
     def diametral_inertia(self) -> float:
         """About a diameter through the centre of mass (kg m2)."""
         arms = self._middles - self.centre_of_mass
-        of_elements = (e.diametral_inertia + e.mass * at**2 for e, at in zip(self.elements, arms, strict=True))
+        of_elements = (
+            e.diametral_inertia + e.mass * at**2 for e, at in zip(self.elements, arms, strict=True)
+        )
         z = self.positions - self.centre_of_mass
         of_points = (p.diametral_inertia + p.mass * z[p.node - 1] ** 2 for p in self.points)
         return float(sum(of_elements) + sum(of_points))

@@ -38,7 +38,7 @@ class Superelement:
     mass_matrix: np.ndarray  # (n, n)
     stiffness_matrix: np.ndarray  # (n, n)
     polar_matrix: np.ndarray  # (n, n)
-    shapes: np.ndarray | None = None  # (2N, n): deflection and slope by node; None: the coordinates are these
+    shapes: np.ndarray | None = None  # (2N, n), deflection and slope by node; None: p is these
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -120,28 +120,36 @@ def check(body: Superelement) -> None:
         ("K", body.stiffness_matrix),
         ("G", body.polar_matrix),
     ):
-        if what := asymmetry(matrix):
-            raise ModelError(f"{name} is not symmetric in a plane: {what}")
+        if place := asymmetry(matrix):
+            i, j = place
+            raise ModelError(
+                f"{name} is not symmetric in a plane: row {i + 1}, column {j + 1} holds {matrix[i, j]:g}, "
+                f"row {j + 1}, column {i + 1} holds {matrix[j, i]:g}"
+            )
     _check_mass(body.mass_matrix)
     _check_rigid(body)
     _check_inertia(body)
     _check_stiffness(body)
 
 
-def asymmetry(matrix: np.ndarray, sign: float = 1.0) -> str:
-    """Which entry of a square matrix (n, n) is not `sign` times its mirror image most of all; "" if none."""
-    size = float(np.max(np.abs(matrix), initial=0.0))
-    scale = np.sqrt(np.abs(np.diag(matrix)))
-    least = np.maximum(np.outer(scale, scale), ROUNDING * size)
-    apart = np.abs(matrix - sign * matrix.T)
-    if size == 0.0 or np.all(apart <= ROUNDING * least):
-        return ""
-    row, column = np.unravel_index(np.argmax(apart / least), matrix.shape)
-    there, mirrored = matrix[row, column], matrix[column, row]
-    return (
-        f"row {row + 1}, column {column + 1} holds {there:g}, row {column + 1}, column {row + 1} "
-        f"holds {mirrored:g}"
-    )
+def asymmetry(matrix: np.ndarray, sign: float = 1.0) -> tuple[int, int] | None:
+    """Row and column, from 0, where a matrix (n, n) is least of all `sign` times its mirror image."""
+    return furthest(matrix, sign * matrix.T, np.diag(matrix))
+
+
+def furthest(one: np.ndarray, other: np.ndarray, diagonal: np.ndarray) -> tuple[int, int] | None:
+    """Row and column, from 0, where two matrices (n, n) are furthest apart; None where they are equal.
+
+    They are to within `ROUNDING` of what the entries of a `diagonal` (n,) beside them lead to expect.
+    """
+    size = np.sqrt(np.abs(diagonal))
+    expected = np.outer(size, size)
+    largest = max(np.max(np.abs(one), initial=0.0), np.max(np.abs(other), initial=0.0))
+    apart = np.abs(one - other) / np.maximum(expected, ROUNDING * largest or 1.0)
+    if np.all(apart <= ROUNDING):
+        return None
+    row, column = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    return int(row), int(column)
 
 
 def _check_sizes(body: Superelement) -> None:
@@ -181,8 +189,8 @@ def _check_mass(mass: np.ndarray) -> None:
     if not np.all(size > 0.0):
         row = int(np.argmin(size)) + 1
         raise ModelError(
-            f"M has no mass in row {row} ({size[row - 1]:g}); export a consistent mass matrix, not a lumped "
-            "one, or condense that coordinate"
+            f"M has no mass in row {row} ({size[row - 1]:g}); export a consistent mass matrix, not a "
+            "lumped one, or condense that coordinate"
         )
     scale = 1.0 / np.sqrt(size)
     lowest = linalg.eigvalsh(mass * np.outer(scale, scale))[0]
@@ -221,9 +229,16 @@ def _check_inertia(body: Superelement) -> None:
         )
     if polar == 0.0:
         raise ModelError("G has no polar inertia, and without one no rotor spins")
+    if polar > 2.0 * diametral * (1.0 + FIT):
+        raise ModelError(
+            f"G has a polar inertia of {polar:.4g} kg.m2, which no body has beside a diametral one of "
+            f"{diametral:.4g} kg.m2; G is per spin speed, in rad/s"
+        )
     lowest, highest = linalg.eigvalsh(body.polar_matrix)[[0, -1]]
     if lowest < -ROUNDING * highest:
-        raise ModelError(f"G gives some section a negative polar inertia (its lowest value is {lowest:.3g})")
+        raise ModelError(
+            f"G gives some section a negative polar inertia (its lowest value is {lowest:.3g})"
+        )
 
 
 def _check_stiffness(body: Superelement) -> None:

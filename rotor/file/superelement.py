@@ -2,18 +2,18 @@
 
     [superelement]
     positions = "0 0.05 0.1 0.15"    # m, of the nodes
-    mass = \"\"\"                       # row, column, value; symmetric, so those below the diagonal are enough
+    mass = \"\"\"                       # row, column, value; those on the diagonal and below it
     1 1 0.58
     2 1 0.0041
     ...\"\"\"
     stiffness, gyroscopic            # likewise
     shapes                           # row, column, value
 
-Rows and columns of mass, stiffness and gyroscopic (the polar matrix, of inertias about the axis) count from
-1; they are the deflection (m) and the slope dx/dz of node after node. With `shapes` they are coordinates of
-other kind, modes for example, and a row of shapes, for the deflection and the slope of node after node, says
-what each of them moves. The rotor is free: with the first two coordinates held it has no rigid motion left.
-Without mass the coordinates are mass-normalised.
+Rows and columns of mass, stiffness and gyroscopic (the polar matrix, of inertias about the axis) count
+from 1; they are the deflection (m) and the slope dx/dz of node after node. With `shapes` they are other
+coordinates, modes for example, and the rows of shapes, deflection and slope of node after node, say how
+each of them moves the nodes. The rotor is free: with the first two coordinates held it has no rigid motion
+left. Without mass the coordinates are mass-normalised.
 """
 
 from __future__ import annotations
@@ -87,7 +87,9 @@ def _filled(t: Table, name: str, entries: np.ndarray, size: tuple[int, int]) -> 
     matrix = np.zeros(size)
     rows, columns = (entries[:, i].astype(int) - 1 for i in (0, 1))
     if np.any(rows >= size[0]) or np.any(columns >= size[1]):
-        raise t.error(name, f"has an entry beyond the {size[0]} rows and {size[1]} columns that it has room for")
+        raise t.error(
+            name, f"has an entry beyond the {size[0]} rows and {size[1]} columns that it has room for"
+        )
     matrix[rows, columns] = entries[:, 2]
     return matrix
 
