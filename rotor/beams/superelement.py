@@ -64,8 +64,8 @@ class Superelement:
     @property
     def kind(self) -> str:
         """What it is, in words."""
-        what = "matrices" if self.shapes is None else "modal data"
-        return f"{what} of {self.coordinates} coordinates per plane"
+        n = self.coordinates
+        return f"matrices of {n} coordinates per plane" if self.shapes is None else f"{n} modes per plane"
 
     @property
     def coordinates(self) -> int:

@@ -158,7 +158,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         title=shaft.title,
         mass=shaft.mass,
         inertia=None,
-        modes=min(MOST_KEPT, 2 * shaft.nodes),
+        modes=min(MOST_KEPT, shaft.coordinates),
         bending=bending,
         speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
         clearance=_checked_clearance(wanted.clearance, kinds),
@@ -215,7 +215,7 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
         around = shaft.elements[max(node - 2, 0) : node]
-        thickest = max(element.widest for element in around)
+        thickest = max((element.widest for element in around), default=0.0)
         room = bearing.bore - 2.0 * design.clearance
         if thickest > room + ROUNDING:
             notes.append(

@@ -18,7 +18,12 @@ EXAMPLES = (
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("file", type=Path, help="saved by ROSS (.toml, .json), or a table of sections (.csv)")
+    verb.add_argument(
+        "file",
+        type=Path,
+        help="saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), "
+        "or a folder of matrices (.mtx)",
+    )
     add_output(verb, "FILE-rotor.toml in this folder", "rotor file")
     for option, meaning in (
         ("--at", "stations that touchdown bearings hold"),
@@ -70,5 +75,9 @@ def _places(given: list[str], option: str) -> dict[str, str]:
 
 
 VERB = Verb(
-    "import-rotor", "import a rotor from ROSS or from a table of its sections", EXAMPLES, declare, execute
+    "import-rotor",
+    "import a rotor from ROSS, a table of its sections, matrices or modal data",
+    EXAMPLES,
+    declare,
+    execute,
 )
