@@ -246,21 +246,16 @@ def _check_stiffness(body: Superelement) -> None:
     K, M = body.stiffness_matrix, body.mass_matrix
     square = linalg.eigh(K, M, eigvals_only=True)
     bending, noise = square[2], NOISE * square[-1]
+    if square[0] < -ROUNDING * abs(bending) - noise:
+        raise ModelError("K is not positive: some motion would have less energy than none")
     rigid = body.matrices().rigid
     for motion, what in zip(rigid.T, ("moved sideways", "tilted"), strict=True):
         own = (motion @ K @ motion) / (motion @ M @ motion)
         if abs(own) > ROUNDING * max(bending, 0.0) + noise:
-            stays = f"swings at {hertz(own):.4g} Hz" if own > 0.0 else "runs away"
-            raise ModelError(f"K holds the rotor: {what} as a whole it {stays}; {FREE}")
-    if square[0] < -ROUNDING * abs(bending) - noise:
-        raise ModelError("K is not positive: some motion would have less energy than none")
+            swings = math.sqrt(abs(own)) / (2.0 * math.pi)
+            raise ModelError(f"K holds the rotor: {what} as a whole it swings at {swings:.4g} Hz; {FREE}")
     if bending <= noise:
         raise ModelError(
             "K leaves a third motion free in a plane (a hinge, or a part that is not fastened), or its "
             "numbers are too far apart to calculate with"
         )
-
-
-def hertz(square: float) -> float:
-    """Frequency of a squared angular frequency (1/s2)."""
-    return math.sqrt(square) / (2.0 * math.pi)

@@ -30,6 +30,7 @@ class Rows:
     y: np.ndarray  # (2N,), of the y-z plane, whose slope is less the rotation
     other: np.ndarray  # along the axis and about it
     names: tuple[str, ...]  # (n,)
+    nodes: tuple[str, ...]  # (N,), as they were called
 
 
 def rows(given: Given, n: int) -> Rows:
@@ -58,6 +59,7 @@ def rows(given: Given, n: int) -> Rows:
         y=np.array(planes[1]),
         other=np.setdiff1d(np.arange(n), np.ravel(planes)),
         names=tuple(names[row] for row in range(n)),
+        nodes=tuple(nodes[i] for i in np.argsort(positions).tolist()),
     )
 
 

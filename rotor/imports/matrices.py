@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from textwrap import shorten
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,7 @@ LENGTHS = {"m": 1.0, "mm": 1e-3}  # m
 ALONG = "motion along the axis or about it, which a rotor here does not have"
 UNDAMPED = 1e-3  # of the first bending frequency: damping of a rigid motion below it is none
 TOLD = 5  # damping ratios
+MOST_LISTED = 200  # characters of nodes' names
 
 
 def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
@@ -49,6 +51,7 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     if M.ndim != 2 or M.shape[0] != M.shape[1]:
         raise given.error(f"M is {' by '.join(map(str, M.shape))}; it must be square")
     planes = Planes(given, rows(given, len(M)), _unit(given))
+    planes.check_mass(M)
     positions = planes.metre * planes.rows.positions
     body = Superelement(
         positions - positions[0],
@@ -60,7 +63,11 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         check(body)
     except ModelError as error:
         raise given.error(str(error)) from None
-    shaft = Shaft(title, superelement=body, about="Imported from mass, stiffness and gyroscopic matrices.")
+    about = "Imported from mass, stiffness and gyroscopic matrices."
+    if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
+        listed = shorten(", ".join(planes.rows.nodes), MOST_LISTED, placeholder=" ...")
+        about += f"\nIts nodes from 1 on are those called {listed}"
+    shaft = Shaft(title, superelement=body, about=about)
     if not given.has("C"):
         return shaft
     return _damped(given, shaft, planes.alike("C", given.numbers("C", M.shape)))
@@ -91,12 +98,22 @@ class Planes:
                 what += " (what is gyroscopic in it belongs into G, per spin speed in rad/s)"
             raise self._refusal(what, matrix, place, place[::-1])
         self._check_alone(name, matrix, size)
-        self._check_empty(f"{name} couples the planes", matrix, size, self.rows.x, self.rows.y)
+        crossed = f"{name} couples the planes, which only G may (are the dofs in the order of the rows?)"
+        self._check_empty(crossed, matrix, size, self.rows.x, self.rows.y)
         x, y = self._part(matrix, "xx"), self._part(matrix, "yy")
         if place := furthest(x, y, np.diag(x)):
             places = (self._place("xx", place), self._place("yy", place))
             raise self._refusal(f"{name} is not the same in both planes", matrix, *places)
         return self._in_si(0.5 * (x + y))
+
+    def check_mass(self, M: np.ndarray) -> None:
+        """Each deflection and each rotation has a mass of its own."""
+        for row in (*self.rows.x, *self.rows.y):
+            if M[row, row] <= 0.0:
+                raise self.given.error(
+                    f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
+                    "consistent mass matrix, not a lumped one, or condense what has no mass"
+                )
 
     def polar(self, matrix: np.ndarray) -> np.ndarray:
         """The polar matrix of one plane (2N, 2N): what G has from the y-z plane on the x-z plane."""
