@@ -31,7 +31,7 @@ FREE = (
 class Superelement:
     """A body by its matrices (`rotor.beams.body`), in SI; equal to one of the same numbers.
 
-    With the first two coordinates held it has no rigid motion. `check` says whether it is a rotor.
+    With the first two coordinates held it has no rigid motion. `checked` says whether it is a rotor.
     """
 
     positions: np.ndarray  # (N,), m from node 1
@@ -112,8 +112,11 @@ class Superelement:
         return Matrices(self.mass_matrix, self.stiffness_matrix, self.polar_matrix, shapes, rigid)
 
 
-def check(body: Superelement) -> None:
-    """Raises ModelError, in a few words, where a superelement's numbers are not those of a free rotor."""
+def checked(body: Superelement) -> Superelement:
+    """`body` with matrices that are symmetric to the bit.
+
+    Raises ModelError, in a few words, where its numbers are not those of a free rotor.
+    """
     _check_sizes(body)
     for name, matrix in (
         ("M", body.mass_matrix),
@@ -130,6 +133,8 @@ def check(body: Superelement) -> None:
     _check_rigid(body)
     _check_inertia(body)
     _check_stiffness(body)
+    M, K, G = (0.5 * (A + A.T) for A in (body.mass_matrix, body.stiffness_matrix, body.polar_matrix))
+    return Superelement(body.positions, M, K, G, body.shapes)
 
 
 def asymmetry(matrix: np.ndarray, sign: float = 1.0) -> tuple[int, int] | None:

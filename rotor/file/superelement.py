@@ -23,7 +23,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.superelement import MOST_COORDINATES, Superelement, check
+from touchdown.rotor.beams.superelement import MOST_COORDINATES, Superelement, checked
 from touchdown.rotor.file.table import RotorFileError, Table
 
 FIELDS = ("positions", "mass", "stiffness", "gyroscopic", "shapes")
@@ -48,10 +48,9 @@ def superelement_of(t: Table) -> Superelement:
         None if shapes is None else _filled(t, "shapes", shapes, (own, n)),
     )
     try:
-        check(body)
+        return checked(body)
     except ModelError as error:
         raise RotorFileError(f"{t.file}: superelement: {error}") from None
-    return body
 
 
 def _numbers(t: Table, name: str) -> np.ndarray:

@@ -29,7 +29,7 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.beams.superelement import Superelement, check, furthest
+from touchdown.rotor.beams.superelement import Superelement, checked, furthest
 from touchdown.rotor.imports.dofs import Rows, rows
 from touchdown.rotor.imports.given import Given
 from touchdown.rotor.imports.mistakes import ImportedRotorError
@@ -60,7 +60,7 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         planes.polar(given.numbers("G", M.shape)),
     )
     try:
-        check(body)
+        body = checked(body)
     except ModelError as error:
         raise given.error(str(error)) from None
     about = "Imported from mass, stiffness and gyroscopic matrices."

@@ -23,7 +23,7 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.beams.superelement import Superelement, check
+from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.imports.given import Given
 from touchdown.rotor.modal.modes import RIGID
 
@@ -59,7 +59,7 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         shapes,
     )
     try:
-        check(body)
+        body = checked(body)
     except ModelError as error:
         raise given.error(str(error)) from None
     about = (

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+import re
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from places import ROOT
 
 import touchdown
+from touchdown.master.cli import main
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import find
 from touchdown.rotor.imports import ImportedRotorError, of_arrays, read
@@ -18,7 +22,6 @@ from touchdown.rotor.modal.modes import basis
 
 Arrays = dict[str, Any]
 MODES = 7
-RESIDUAL = {"rotor.residual": 0}
 
 
 def exported(shaft: Shaft, modes: int = MODES) -> Arrays:
@@ -84,13 +87,16 @@ def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
 
 
 def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility() -> None:
-    """As far as 12 ms, just after the first contacts; with it, the seats are softer than modes know."""
+    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know.
+
+    Modes that are given beyond the five that the scene keeps make up for that.
+    """
     shaft = find("rotor_I")
-    rotor = imported(shaft, 5)
     soft = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
-    stiff = soft.set(RESIDUAL)
-    scenes = (soft, stiff, stiff.swap(rotor=rotor))
-    own, without, found = (touchdown.run(scene) for scene in scenes)
+    stiff = soft.set({"rotor.residual": 0})
+    five, twenty = imported(shaft, 5), imported(shaft, 20)
+    scenes = (soft, soft.swap(rotor=twenty), stiff, stiff.swap(rotor=five))
+    own, more, without, found = (touchdown.run(scene) for scene in scenes)
     for place in ("A.x", "A.y", "B.x", "B.y"):
         name = f"rotor.{place}"
         apart = np.abs(found.data[name].values - without.data[name].values)
@@ -98,8 +104,9 @@ def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility()
     for end in "AB":
         peak = f"peak_contact_force_N_bearing_{end}"
         assert found.summary[peak] == pytest.approx(without.summary[peak], rel=1e-5)
+        assert found.summary[peak] > 1.01 * own.summary[peak]  # found: 2.9 and 4.1 %
         assert found.summary[peak] == pytest.approx(own.summary[peak], rel=0.1)
-        assert found.summary[peak] != pytest.approx(own.summary[peak], rel=1e-3)
+        assert more.summary[peak] == pytest.approx(own.summary[peak], rel=0.01)  # found: 0.4 %
 
 
 def given(**values: Any) -> Callable[[Arrays], None]:
@@ -155,3 +162,25 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
 def test_two_modes_are_no_flexible_rotor() -> None:
     with pytest.raises(ImportedRotorError, match="2 modes hold no bending mode"):
         of_arrays(exported(find("rotor_I"), 2), "modes.npz", "modes")
+
+
+def test_the_page_exports_modes_of_the_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What docs/rotors.md says, as it stands there."""
+    page = (ROOT / "docs" / "rotors.md").read_text(encoding="utf-8")
+    (script,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    exec(script, {})
+    commands = [line for line in page.splitlines() if line.startswith("touchdown import-rotor")]
+    told = [line for line in commands if "matrices" in line or "modes" in line]
+    assert len(told) == 2
+    for line in told:
+        assert main(shlex.split(line)[1:]) == 0
+    spindle = find(str(ROOT / "examples" / "spindle_rotor.toml"))
+    for name in ("fe", "modes"):
+        found = find(f"runs/{name}.toml")
+        assert basis(found, 8).omega == pytest.approx(basis(spindle, 8).omega, rel=1e-9)
+        own = basis(spindle, 8).gyroscopic
+        assert basis(found, 8).gyroscopic == pytest.approx(own, abs=1e-9 * np.max(own))
+        assert found.levitated_at == spindle.levitated_at

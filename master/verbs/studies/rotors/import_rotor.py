@@ -12,6 +12,7 @@ from touchdown.master.verbs.verb import Verb
 EXAMPLES = (
     "touchdown import-rotor examples/pump_sections.csv -o runs/pump.toml",
     'touchdown import-rotor examples/pump_sections.csv --at "A=50 mm,B=17" --amb amb_A=7,amb_B=15',
+    "touchdown import-rotor examples/spindle_matrices -o runs/fe.toml --at A=2,B=16 --amb amb_A=4,amb_B=14",
     'touchdown import-rotor saved-by-ross.toml -o my-rotor.toml --speed "6000 rpm"',
 )
 
