@@ -8,13 +8,15 @@ spin Omega counter-clockwise. With alpha = dOmega/dt, (3.24) reads
 
 in coordinates p (n,), of which q = shapes p (2N,) holds (z, slope) node by node, and e is a unit
 translation. The coordinates of beams are those of the nodes: p = q.
+
+All that is asked of a body is what `Beams` has but for its elements and points; the other kind of it is
+`rotor.beams.superelement`. Inertias are those of the undeformed rotor.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -30,51 +32,8 @@ class Matrices:
     mass: np.ndarray  # (n, n)
     stiffness: np.ndarray  # (n, n)
     polar: np.ndarray  # (n, n)
-    shapes: np.ndarray | sparse.sparray  # (2N, n)
+    shapes: np.ndarray | sparse.csr_array  # (2N, n)
     rigid: np.ndarray  # (n, 2): a translation by 1 m; a tilt of 1 about the centre of mass
-
-
-class Body(Protocol):
-    """A free rotor in one plane. Inertias are those of the undeformed rotor."""
-
-    @property
-    def kind(self) -> str:
-        """What it is, in words."""
-        ...
-
-    @property
-    def positions(self) -> np.ndarray:
-        """Of the nodes, from node 1 (N,), in m."""
-        ...
-
-    @property
-    def coordinates(self) -> int:
-        """How many describe its motion (n)."""
-        ...
-
-    @property
-    def mass(self) -> float:
-        """kg."""
-        ...
-
-    @property
-    def centre_of_mass(self) -> float:
-        """Its distance from node 1 (m)."""
-        ...
-
-    @property
-    def polar_inertia(self) -> float:
-        """About the axis (kg m2)."""
-        ...
-
-    @property
-    def diametral_inertia(self) -> float:
-        """About a diameter through the centre of mass (kg m2)."""
-        ...
-
-    def matrices(self) -> Matrices:
-        """Assembled anew."""
-        ...
 
 
 def rigid_motion(positions: np.ndarray, centre: float) -> np.ndarray:
@@ -178,4 +137,4 @@ class Beams:
             mass[y + 1, y + 1] += point.diametral_inertia
             polar[y + 1, y + 1] += point.polar_inertia
         rigid = rigid_motion(self.positions, self.centre_of_mass)
-        return Matrices(mass, stiffness, polar, sparse.eye_array(size, format="csr"), rigid)
+        return Matrices(mass, stiffness, polar, sparse.csr_array(sparse.eye_array(size)), rigid)

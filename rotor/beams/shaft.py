@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.body import Beams, Body
+from touchdown.rotor.beams.body import Beams
 from touchdown.rotor.beams.body import PointMass as PointMass
 from touchdown.rotor.beams.body import disc as disc
 from touchdown.rotor.beams.element import Element
@@ -79,7 +79,7 @@ class Shaft:
     superelement: Superelement | None = None  # in place of elements and points
 
     @cached_property
-    def body(self) -> Body:
+    def body(self) -> Beams | Superelement:
         """What it is made of."""
         return self.superelement or Beams(self.elements, self.points)
 

@@ -105,9 +105,8 @@ class Superelement:
 
     def matrices(self) -> Matrices:
         """As they are given."""
-        shapes = self.shapes
-        if shapes is None:
-            shapes = sparse.eye_array(self.coordinates, format="csr")
+        unit = sparse.csr_array(sparse.eye_array(self.coordinates))
+        shapes = unit if self.shapes is None else self.shapes
         rigid = self._rigid - np.outer(self._rigid[:, 0], [0.0, self.centre_of_mass])
         return Matrices(self.mass_matrix, self.stiffness_matrix, self.polar_matrix, shapes, rigid)
 

@@ -86,9 +86,7 @@ def _filled(t: Table, name: str, entries: np.ndarray, size: tuple[int, int]) -> 
     matrix = np.zeros(size)
     rows, columns = (entries[:, i].astype(int) - 1 for i in (0, 1))
     if np.any(rows >= size[0]) or np.any(columns >= size[1]):
-        raise t.error(
-            name, f"has an entry beyond the {size[0]} rows and {size[1]} columns that it has room for"
-        )
+        raise t.error(name, f"has an entry beyond its {size[0]} rows and {size[1]} columns")
     matrix[rows, columns] = entries[:, 2]
     return matrix
 

@@ -80,7 +80,7 @@ def _market(path: Path) -> np.ndarray:
     from scipy import io, sparse
 
     try:
-        found = io.mmread(path)
+        found: Any = io.mmread(path)
     except (OSError, ValueError, OverflowError, MemoryError) as error:
         raise ImportedRotorError(
             f"{path}: cannot be read: {error}; it must be Matrix Market text"

@@ -96,7 +96,7 @@ class Planes:
             what = f"{name} is not symmetric"
             if name == "C":
                 what += " (what is gyroscopic in it belongs into G, per spin speed in rad/s)"
-            raise self._refusal(what, matrix, place, place[::-1])
+            raise self._refusal(what, matrix, *_mirrored(place))
         self._check_alone(name, matrix, size)
         crossed = f"{name} couples the planes, which only G may (are the dofs in the order of the rows?)"
         self._check_empty(crossed, matrix, size, self.rows.x, self.rows.y)
@@ -119,13 +119,13 @@ class Planes:
         """The polar matrix of one plane (2N, 2N): what G has from the y-z plane on the x-z plane."""
         size = np.full(len(matrix), np.max(np.abs(matrix), initial=0.0))
         if place := furthest(matrix, -matrix.T, size):
-            raise self._refusal("G is not skew-symmetric", matrix, place, place[::-1])
+            raise self._refusal("G is not skew-symmetric", matrix, *_mirrored(place))
         self._check_alone("G", matrix, size)
         for plane in (self.rows.x, self.rows.y):
             self._check_empty("G couples a plane to itself", matrix, size, plane, plane)
         polar = self._part(matrix, "xy")
         if place := furthest(polar, polar.T, size[: len(polar)]):
-            places = (self._place("xy", place), self._place("xy", place[::-1]))
+            places = (self._place("xy", one) for one in _mirrored(place))
             raise self._refusal("G is not the same in both planes", matrix, *places)
         return self._in_si(0.5 * (polar + polar.T))
 
@@ -165,6 +165,12 @@ class Planes:
         names = self.rows.names
         told = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
         return self.given.error(f"{what}: {', '.join(told)}")
+
+
+def _mirrored(place: tuple[int, int]) -> tuple[tuple[int, int], tuple[int, int]]:
+    """A place of a matrix, and that on the other side of its diagonal."""
+    row, column = place
+    return place, (column, row)
 
 
 def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
