@@ -18,12 +18,15 @@ from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.body import Matrices, rigid_motion
 
 MOST_COORDINATES = 1000  # its matrices are full
-ROUNDING = 1e-6  # of others' matrices, and of squared frequencies over that of the first bending mode
+ROUNDING = 1e-6  # of others' matrices
+STILL = 1e-2  # of the first bending frequency; a mode below is a rigid one that digits or soft ropes hold
 NOISE = 1e-13  # of the highest squared frequency, which the lowest are calculated beside
 FIT = 1e-3  # of the largest motion of a node: by which shapes may miss that of a rigid body
+LENGTHS = (1e-3, 1e2)  # m, of rotors; beyond, units are mistaken
+HERTZ = (0.1, 1e6)  # of their first bending mode
 FREE = (
-    "export the rotor free, without bearings and supports, its coordinates and matrices in the same units "
-    "and the dofs in their order"
+    "export the rotor free, without bearings and supports, its coordinates and matrices in the same units, "
+    "with all digits, and the dofs in their order"
 )
 
 
@@ -160,6 +163,8 @@ def _check_sizes(body: Superelement) -> None:
     z, n = body.positions, body.coordinates
     if z.ndim != 1 or len(z) < 2 or z[0] != 0.0 or not np.all(np.diff(z) > 0.0):
         raise ModelError("the positions must be those of two nodes or more, ascending from 0")
+    if not LENGTHS[0] <= z[-1] <= LENGTHS[1]:
+        raise ModelError(f"the nodes are on {z[-1]:.4g} m, which is out of proportion; look at the units")
     if n > MOST_COORDINATES:
         raise ModelError(
             f"{n} coordinates per plane are too many, at most {MOST_COORDINATES} are possible; condense "
@@ -250,16 +255,21 @@ def _check_stiffness(body: Superelement) -> None:
     K, M = body.stiffness_matrix, body.mass_matrix
     square = linalg.eigh(K, M, eigvals_only=True)
     bending, noise = square[2], NOISE * square[-1]
-    if square[0] < -ROUNDING * abs(bending) - noise:
+    if square[0] < -(STILL**2) * abs(bending) - noise:
         raise ModelError("K is not positive: some motion would have less energy than none")
     rigid = body.matrices().rigid
     for motion, what in zip(rigid.T, ("moved sideways", "tilted"), strict=True):
         own = (motion @ K @ motion) / (motion @ M @ motion)
-        if abs(own) > ROUNDING * max(bending, 0.0) + noise:
+        if abs(own) > STILL**2 * max(bending, 0.0) + noise:
             swings = math.sqrt(abs(own)) / (2.0 * math.pi)
             raise ModelError(f"K holds the rotor: {what} as a whole it swings at {swings:.4g} Hz; {FREE}")
     if bending <= noise:
         raise ModelError(
             "K leaves a third motion free in a plane (a hinge, or a part that is not fastened), or its "
             "numbers are too far apart to calculate with"
+        )
+    first = math.sqrt(bending) / (2.0 * math.pi)
+    if not HERTZ[0] <= first <= HERTZ[1]:
+        raise ModelError(
+            f"the first bending mode has {first:.4g} Hz, out of proportion; look at the units of M and K"
         )

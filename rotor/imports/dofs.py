@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from touchdown.rotor.beams.superelement import by
 from touchdown.rotor.imports.given import Given
 
 AXES = "XYZ"
@@ -39,7 +40,7 @@ def rows(given: Given, n: int) -> Rows:
     count = len(positions)
     nodes = [str(i + 1) for i in range(count)]
     if given.has("nodes"):
-        nodes = [str(node) for node in np.ravel(np.asarray(given.data["nodes"]))]
+        nodes = given.names("nodes").ravel().tolist()
     if len(nodes) != count or len(set(nodes)) < count:
         raise given.error(f"nodes must be {count} different numbers or names, those of the coordinates")
     places = _places(given, nodes, n)
@@ -90,13 +91,13 @@ def _places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int
     """The row of each degree of freedom (0 to 5) of each node (from 0)."""
     if not given.has("dofs"):
         raise given.error('dofs is missing: node and degree of freedom of each row, such as ("1", "UX")')
-    dofs = np.asarray(given.data["dofs"]).astype(str)
+    dofs = given.names("dofs")
     if dofs.ndim == 1:
         dofs = np.array([[node, dof] for node in nodes for dof in dofs])
     if dofs.shape != (n, 2):
         raise given.error(
-            f"dofs name {len(dofs)} rows, and M has {n}; give node and degree of freedom of each row, or "
-            "the degrees of freedom of a node where all have the same"
+            f"dofs are {by(dofs.shape)}, and M has {n} rows; give node and degree of freedom of each row, "
+            "or the degrees of freedom of a node where all have the same"
         )
     number = {node: i for i, node in enumerate(nodes)}
     places: dict[tuple[int, int], int] = {}

@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
+from scipy import sparse
 
 from touchdown.rotor.beams.superelement import by
 from touchdown.rotor.imports.mistakes import ImportedRotorError
@@ -36,6 +37,15 @@ class Given:
         """Whether it is there."""
         return self.data.get(name) is not None
 
+    def names(self, name: str) -> np.ndarray:
+        """Texts, or whole numbers as texts, at least one row of them. Raises ImportedRotorError."""
+        values = np.atleast_1d(np.asarray(self.data[name]))
+        if values.dtype.kind == "f" and np.all(values == np.round(values)):
+            values = values.astype(int)
+        if values.dtype.kind not in "iuUS":
+            raise self.error(f"{name} must be an array of texts or whole numbers")
+        return values.astype(str)
+
     def numbers(self, name: str, *sizes: tuple[int, ...]) -> np.ndarray:
         """Finite real numbers as one of `sizes`, any where none is given.
 
@@ -44,7 +54,8 @@ class Given:
         if not self.has(name):
             raise self.error(f"{name} is missing")
         try:
-            values = np.asarray(self.data[name])
+            values = self.data[name]
+            values = np.asarray(values.toarray() if sparse.issparse(values) else values)
             if values.dtype.kind not in "iuf":
                 raise TypeError
             values = values.astype(float)

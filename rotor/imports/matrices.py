@@ -29,7 +29,7 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.beams.superelement import Superelement, checked, furthest
+from touchdown.rotor.beams.superelement import Superelement, by, checked, furthest
 from touchdown.rotor.imports.dofs import Rows, rows
 from touchdown.rotor.imports.given import Given
 from touchdown.rotor.imports.mistakes import ImportedRotorError
@@ -49,7 +49,7 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     given.only(*FIELDS)
     M = given.numbers("M")
     if M.ndim != 2 or M.shape[0] != M.shape[1]:
-        raise given.error(f"M is {' by '.join(map(str, M.shape))}; it must be square")
+        raise given.error(f"M is {by(M.shape)}; it must be square")
     planes = Planes(given, rows(given, len(M)), _unit(given))
     planes.check_mass(M)
     positions = planes.metre * planes.rows.positions

@@ -23,7 +23,7 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.beams.superelement import Superelement, checked
+from touchdown.rotor.beams.superelement import STILL, Superelement, checked
 from touchdown.rotor.imports.given import Given
 from touchdown.rotor.modal.modes import RIGID
 
@@ -31,7 +31,6 @@ FIELDS = (
     *("positions", "frequencies", "deflections", "slopes"),
     *("modal_masses", "gyroscopic", "polar_inertias"),
 )
-STILL = 1e-3  # of the first bending frequency; a mode below is a rigid one
 
 
 def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:

@@ -127,6 +127,18 @@ def test_six_modes_of_matrices_of_ross(name: str) -> None:
         assert found[: len(theirs)] == pytest.approx(theirs, rel=1e-6)  # found: 6e-11
 
 
+def test_matrices_may_be_sparse_dofs_floats_and_digits_few() -> None:
+    """What NumPy and SciPy make of text files; single precision moves the first modes by its digits."""
+    shaft = find("rotor_I")
+    data = exported(shaft)
+    own = basis(shaft, 6).omega[2:]
+    data["dofs"] = np.array([[node + 1.0, dof + 1.0] for node in range(shaft.nodes) for dof in range(6)])
+    found = of_arrays(data | {name: sparse.csr_array(data[name]) for name in "MKG"}, "sparse", "sparse")
+    assert basis(found, 6).omega[2:] == pytest.approx(own, rel=1e-9)
+    rounded = of_arrays(data | {name: data[name].astype(np.float32) for name in "MKG"}, "single", "single")
+    assert basis(rounded, 6).omega[2:] == pytest.approx(own, rel=1e-3)
+
+
 def test_damping_of_the_free_rotor_becomes_a_ratio() -> None:
     shaft = find("rotor_I")
     data = exported(shaft)
@@ -220,7 +232,11 @@ MISTAKES = [
     (given(M=np.ones((3, 4))), "M is 3 by 4; it must be square"),
     (given(K=np.ones((3, 3))), "K is 3 by 3; it must be"),
     (given(K=[["a"]]), "K must be an array of real numbers"),
-    (given(dofs=["UX", "UY"]), "dofs name"),
+    (given(dofs=["UX", "UY"]), "dofs are 40 by 2, and M has 120 rows"),
+    (given(dofs="UX"), "dofs are 20 by 2, and M has 120 rows"),
+    (given(dofs=[{}]), "dofs must be an array of texts or whole numbers"),
+    (given(units="mm"), "out of proportion; look at the units"),
+    (times("K", 1e-12), "the first bending mode has"),
     (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "PHI"]), "PHI is none; they are 1 to 6"),
     (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "UX"]), "UX of node 1 is there twice"),
     (given(dofs=["UY", "UX", "UZ", "ROTX", "ROTY", "ROTZ"]), "are the dofs in the order of the rows?"),
@@ -231,7 +247,8 @@ MISTAKES = [
     (changed("G", 3, 4, 5.0), "G is not skew-symmetric: 5 between ROTX of node 1 and ROTY of node 1"),
     (changed("coordinates", 3, 0, 0.01), "away from a line along Z"),
     (changed("coordinates", 3, 2, 7.0), "two nodes are at 7 along Z"),
-    (times("coordinates", 1000.0), "K holds the rotor: tilted as a whole it swings at"),
+    (times("coordinates", 1000.0), "309.7 m, which is out of proportion"),
+    (times("coordinates", 10.0), "K holds the rotor: tilted as a whole it swings at"),
     (times("G", -1.0), "G has a polar inertia of -"),
     (times("G", 942.0), "G is per spin speed, in rad/s"),
     (times("G", 0.0), "G has no polar inertia"),

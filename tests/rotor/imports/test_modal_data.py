@@ -141,7 +141,7 @@ MISTAKES = [
     (given(frequencies=np.arange(20.0, 20.0 + MODES)), "the lowest are 20, 21, 22 Hz; a free rotor has"),
     (bending_only, "a free rotor has two rigid modes of 0 Hz in a plane"),
     (times("slopes", -1.0), "slopes with the sign of dx/dz"),
-    (times("positions", 1e3), "is a tilt of the rigid rotor"),
+    (times("positions", 10.0), "is a tilt of the rigid rotor"),
     (times("positions", -1.0), "the positions must be those of two nodes or more, ascending"),
     (times("gyroscopic", -1.0), "its sign is the other one"),
 ]
