@@ -3,9 +3,10 @@
     python benchmarks/ross_rotors.py [-o FOLDER]
 
 needs ROSS (`pip install ross-rotordynamics "plotly<6"`). Each example is saved by `rotor.save` and imported
-by one command. ROSS's own matrices are solved here without its axial and torsional coordinates, undamped;
-`run_modal` and `run_ucs` (critical speeds over the stiffness of the bearings) are solved as they are. With
--o it leaves saved files and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
+by one command, and besides by the matrices M, K and G of the free rotor alone. ROSS's own matrices are
+solved here without its axial and torsional coordinates, undamped; `run_modal` and `run_ucs` (critical
+speeds over the stiffness of the bearings) are solved as they are. With -o it leaves saved files, matrices
+and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
 """
 
 from __future__ import annotations
@@ -65,7 +66,10 @@ def main() -> None:
     print(
         f"ROSS {ross.__version__}; largest relative deviation of {MODES // 2} modes, backward and forward"
     )
-    print(f"{'example':28}{'rpm':>7}{'free':>10}{'on bearings':>13}{'run_modal':>11}{'run_ucs':>10}")
+    print(
+        f"{'example':28}{'rpm':>7}{'free':>10}{'matrices':>10}{'on bearings':>13}{'run_modal':>11}"
+        f"{'run_ucs':>10}"
+    )
     with TemporaryDirectory() as temporary:
         told = {name: compared(name, folder or Path(temporary)) for name in EXAMPLES}
     if folder:
@@ -88,17 +92,35 @@ def compared(name: str, folder: Path) -> dict[str, dict[str, list[float]]]:
         rotor = imported(saved, rpm)
         theirs = {"free": bending(ross_modes(free, speed), rotor), "held": ross_modes(held, speed)}
         ours = {"free": bending(our_modes(rotor, speed, ()), rotor)}
+        alone = bending(our_modes(from_matrices(free, folder / f"{name}.npz"), speed, ()), rotor)
         if "cross-coupled" not in rotor.about:
             ours["held"] = our_modes(rotor, speed, rotor.supports)
         apart = {kind: f"{np.max(np.abs(ours[kind] / theirs[kind] - 1.0)):.1e}" for kind in ours}
-        cells = (apart["free"], apart.get("held", "-"), run_modal(held, rotor, speed))
+        taken = f"{np.max(np.abs(alone / theirs['free'] - 1.0)):.1e}"
+        cells = (apart["free"], taken, apart.get("held", "-"), run_modal(held, rotor, speed))
         for kind in ours:
             told[kind][f"{rpm:g}"] = theirs[kind].tolist()
-        print(f"{name:28}{rpm:7.0f}{cells[0]:>10}{cells[1]:>13}{cells[2]:>11}", end="\n" if rpm else "")
+        print(
+            f"{name:28}{rpm:7.0f}{cells[0]:>10}{cells[1]:>10}{cells[2]:>13}{cells[3]:>11}",
+            end="\n" if rpm else "",
+        )
         if not rpm:
             told["critical"], line = critical(original, rotor)
             print(line)
     return told
+
+
+def from_matrices(free: ross.Rotor, path: Path) -> touchdown.Rotor:
+    """A rotor of ROSS's matrices, by way of the archive at `path`."""
+    np.savez_compressed(
+        path,
+        M=free.M(0.0),
+        K=free.K(0.0),
+        G=free.G(),
+        coordinates=np.array(free.nodes_pos, dtype=float),
+        dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"],
+    )
+    return touchdown.Rotor.imported(path)
 
 
 def critical(original: ross.Rotor, rotor: touchdown.Rotor) -> tuple[dict[str, list[float]], str]:

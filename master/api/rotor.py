@@ -90,8 +90,9 @@ class Rotor(Shaft):
         sensors: Places | None = None,
         speed: float | None = None,
     ) -> Rotor:
-        """A rotor of others': the path of a file that ROSS saved (.toml, .json) or of a table of sections
-        (.csv), or a `ross.Rotor`; its `about` says what is left out or otherwise.
+        """A rotor of others': the path of a file that ROSS saved (.toml, .json), of a table of sections
+        (.csv), of matrices or modal data (.npz, or a folder of Matrix Market files), or a `ross.Rotor`, or
+        such arrays by name. Its `about` says what is left out or otherwise.
 
         at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
         only motion is asked for; each a node (from 1), or text such as "120 mm" from node 1, by name.
@@ -189,8 +190,9 @@ class Rotor(Shaft):
 
     def __repr__(self) -> str:
         stations = ", ".join(f"{station.name} at node {station.node}" for station in self.stations)
+        made_of = f"{len(self.elements)} elements" if self.elements else self.body.kind
         return (
-            f"<Rotor {self.title}: {len(self.elements)} elements, {self.nodes} nodes, {self.mass:.5g} kg, "
+            f"<Rotor {self.title}: {made_of}, {self.nodes} nodes, {self.mass:.5g} kg, "
             f"{self.positions()[-1]:.5g} m, stations: {stations or 'none'}>"
         )
 

@@ -153,7 +153,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         title=shaft.title,
         mass=shaft.mass,
         inertia=None,
-        modes=min(MOST_KEPT, 2 * shaft.nodes),
+        modes=min(MOST_KEPT, shaft.coordinates),
         bending=bending,
         speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
         clearance=_checked_clearance(wanted.clearance, kinds),
@@ -210,7 +210,8 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
         around = shaft.elements[max(node - 2, 0) : node]
-        thickest, thinnest = (pick(element.widest for element in around) for pick in (max, min))
+        widths = [element.widest for element in around] or [0.0]  # a superelement's are not known
+        thickest, thinnest = max(widths), min(widths)
         room = bearing.bore - 2.0 * design.clearance
         if thinnest > bearing.bore + ROUNDING:
             notes.append(

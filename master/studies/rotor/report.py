@@ -132,10 +132,20 @@ def _body(shaft: Shaft) -> list[tuple[str, str]]:
         ("centre of mass", f"{1e3 * shaft.centre_of_mass:.5g} mm from node 1"),
         ("polar inertia", f"{shaft.polar_inertia:.5g} kg.m2"),
         ("diametral inertia", f"{shaft.diametral_inertia:.5g} kg.m2, about the centre of mass"),
-        ("elements", f"{len(shaft.elements)}"),
-        ("nodes", f"{shaft.nodes}"),
-        ("discs and point masses", f"{len(shaft.points)}"),
+        *_made_of(shaft),
         ("damping ratio", f"{shaft.damping_ratio:g}"),
+    ]
+
+
+def _made_of(shaft: Shaft) -> list[tuple[str, str]]:
+    """Elements and what sits on them, or the superelement in their place."""
+    nodes = ("nodes", f"{shaft.nodes}")
+    if not shaft.elements:
+        return [("made of", f"{shaft.body.kind}; no diameters, so no stresses and no outline"), nodes]
+    return [
+        ("elements", f"{len(shaft.elements)}"),
+        nodes,
+        ("discs and point masses", f"{len(shaft.points)}"),
     ]
 
 
@@ -206,7 +216,6 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
              for node in sorted(set(seats(shaft)))]  # fmt: skip
     forces = ", ".join(f"{n} {f:.4g} N" for n, f in zip(names, rest.reactions, strict=True))
     lowest, highest = int(np.argmin(rest.deflection)), int(np.argmax(rest.deflection))
-    worst = int(np.argmax(np.abs(rest.bending)))
     return [
         "  lying on its seats, rigidly held",
         *_two_columns(
@@ -214,12 +223,22 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
                 ("reactions", forces),
                 ("deflection up", f"{1e6 * rest.deflection[lowest]:.3g} µm at node {lowest + 1} to "
                                f"{1e6 * rest.deflection[highest]:.3g} µm at node {highest + 1}"),
-                ("bending stress", f"{1e-6 * rest.bending[worst]:.3g} MPa at node {rest.node[worst]}"),
-                ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
+                *_lying_stresses(rest),
             ]
         ),
         *(f"  {line}" for line in pulling(dict(zip(names, rest.reactions.tolist(), strict=True)))),
     ]  # fmt: skip
+
+
+def _lying_stresses(rest: Rest) -> list[tuple[str, str]]:
+    """The largest, where there are any."""
+    if not len(rest.bending):
+        return []
+    worst = int(np.argmax(np.abs(rest.bending)))
+    return [
+        ("bending stress", f"{1e-6 * rest.bending[worst]:.3g} MPa at node {rest.node[worst]}"),
+        ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
+    ]
 
 
 def pulling(reactions: Mapping[str, float]) -> list[str]:

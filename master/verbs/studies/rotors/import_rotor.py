@@ -12,13 +12,19 @@ from touchdown.master.verbs.verb import Verb
 EXAMPLES = (
     "touchdown import-rotor examples/pump_sections.csv -o runs/pump.toml",
     'touchdown import-rotor examples/pump_sections.csv --at "A=50 mm,B=17" --amb amb_A=7,amb_B=15',
+    "touchdown import-rotor examples/spindle_matrices -o runs/fe.toml --at A=2,B=16 --amb amb_A=4,amb_B=14",
     'touchdown import-rotor saved-by-ross.toml -o my-rotor.toml --speed "6000 rpm"',
 )
 
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("file", type=Path, help="saved by ROSS (.toml, .json), or a table of sections (.csv)")
+    verb.add_argument(
+        "file",
+        type=Path,
+        help="saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), "
+        "or a folder of matrices (.mtx)",
+    )
     add_output(verb, "FILE-rotor.toml in this folder", "rotor file")
     for option, meaning in (
         ("--at", "stations that touchdown bearings hold"),
@@ -71,5 +77,9 @@ def _places(given: list[str], option: str) -> dict[str, str]:
 
 
 VERB = Verb(
-    "import-rotor", "import a rotor from ROSS or from a table of its sections", EXAMPLES, declare, execute
+    "import-rotor",
+    "import a rotor from ROSS, a table of its sections, matrices or modal data",
+    EXAMPLES,
+    declare,
+    execute,
 )
