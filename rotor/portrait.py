@@ -10,10 +10,11 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.modal.campbell import Whirl, supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.campbell import supported_whirl, whirl_frequencies
 from touchdown.rotor.modal.critical import CriticalMap, critical_map
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.modal.modes import RIGID, Basis, basis, fullest
+from touchdown.rotor.modal.whirl import Whirl
 from touchdown.rotor.statics import Rest, at_rest
 
 HERTZ = 0.5 / math.pi
