@@ -140,3 +140,23 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
         return at(speed).root.imag - speed
 
     return at(float(optimize.brentq(ahead, *speeds, xtol=EXACT * speeds[1])))
+
+
+@dataclass(frozen=True)
+class Held:
+    """A rotor in bearings: its modes at a speed, and its lines over the speeds of a Campbell diagram."""
+
+    bearings: tuple[LinearBearing, ...]
+    speed: float  # rad/s, not negative
+    whirl: Whirl  # there
+    lines: Lines
+
+    @property
+    def swinging(self) -> np.ndarray:
+        """Which of the modes at `speed` swing (their places): all but those that hardly do."""
+        return np.flatnonzero(self.whirl.damping_ratios < HEAVY)
+
+
+def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
+    """A rotor at the first of `speeds` (rad/s, not negative), and its `count` lowest lines over the others."""
+    return Held(tuple(rotor.bearings), speeds[0], rotor.whirl(speeds[0]), followed(rotor, speeds[1:], count))

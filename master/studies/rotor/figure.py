@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +15,10 @@ from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from touchdown.master.studies.rotor.held_figure import held_campbell
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft
+from touchdown.rotor.modal.campbell import Held
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
 
@@ -31,17 +35,22 @@ FLATTEST, HIGHEST = 0.2, 0.4  # height over width of a side view
 SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 
-def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
-    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`."""
+def draw_pictures(portrait: Portrait, folder: Path, held: Mapping[str, tuple[Held, str]]) -> list[Path]:
+    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`.
+
+    held: Campbell diagrams in bearings and their titles, by the names of their pictures.
+    """
     pictures = {"campbell": campbell, "modes": modes}
     if portrait.critical:
         pictures["critical"] = critical
     if portrait.rest is not None:
         pictures["rest"] = rest
+    drawn = {name: partial(picture, portrait=portrait) for name, picture in pictures.items()}
+    drawn |= {name: partial(held_campbell, held=one, title=title) for name, (one, title) in held.items()}
     made: list[Path] = []
-    for name, picture in pictures.items():
+    for name, picture in drawn.items():
         figure = sheet()
-        picture(figure, portrait)
+        picture(figure)
         made.append(folder / f"{name}.png")
         figure.savefig(made[-1], dpi=110)
     return made
