@@ -95,6 +95,18 @@ def locate(name: str) -> Path:
         ) from None
 
 
+def is_scene(name: str) -> bool:
+    """Whether a name or path, which could be a rotor's as well, is of a scene, sound or not."""
+    if name.endswith((".ssp", ".json")):
+        return True
+    if not name.endswith(".toml"):
+        return name in shipped() or os.path.isfile(Path(name) / SCENE_FILE)
+    try:
+        return not {"components", "extends"}.isdisjoint(tables(Path(name)))
+    except TouchdownError:
+        return False
+
+
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     """A scene from the tables of its TOML file, as `tables` gives them."""
     known = (

@@ -159,4 +159,6 @@ class Held:
 
 def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
     """A rotor at the first of `speeds` (rad/s, not negative), and its `count` lowest lines over the others."""
-    return Held(tuple(rotor.bearings), speeds[0], rotor.whirl(speeds[0]), followed(rotor, speeds[1:], count))
+    return Held(
+        tuple(rotor.bearings), speeds[0], rotor.whirl(speeds[0]), followed(rotor, speeds[1:], count)
+    )

@@ -124,9 +124,7 @@ class HeldRotor:
     The state is x (n), y (n) and the foundations' (x, y), their rates, and the forces that lag (x, y).
     """
 
-    def __init__(
-        self, basis: Basis, bearings: Sequence[LinearBearing], damping_ratio: float = 0.0
-    ) -> None:
+    def __init__(self, basis: Basis, bearings: Sequence[LinearBearing], damping_ratio: float = 0.0) -> None:
         """damping_ratio: of the elastic modes, as in the rotor's model."""
         n = len(basis.omega)
         standing = [b for b in bearings if b.foundation is not None]

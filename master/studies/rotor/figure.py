@@ -85,8 +85,8 @@ def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
 def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Undamped critical speeds [rpm] over the stiffness of the supports [N/m], for each way it is held.
 
-    Dashed: the shaft's own supports there, with dots for its critical speeds on them; grey: the first of
-    the portrait's speeds.
+    Dashed: the shaft's own supports there, with dots for its critical speeds on them, or dotted lines where
+    the planes differ; grey: the first of the portrait's speeds.
     """
     panels = sized(figure, 9.0, 1.0 + 4.2 * len(portrait.critical)).subplots(
         len(portrait.critical), 1, squeeze=False
@@ -99,9 +99,13 @@ def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
             for value in {support.stiffness, support.stiffness_y or support.stiffness}:
                 label = f"{where}: {value:.3g} N/m"
                 axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
-        if len(found.own):
+        label = "critical speeds on these supports"
+        if any(s.stiffness_y not in (None, s.stiffness) for s in found.marked):  # no place on the scale
+            for number, own in enumerate(found.own):
+                given = label if number == 0 else None
+                axes.axhline(RPM * own, color=ORANGE, lw=1.0, ls=":", label=given)
+        elif len(found.own):
             middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
-            label = "critical speeds on these supports"
             axes.plot(
                 np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
             )

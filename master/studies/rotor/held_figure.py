@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sized
-from touchdown.master.studies.rotor.held_table import PLANAR
+from touchdown.master.studies.rotor.held_table import PLANAR, whirl_name
 from touchdown.rotor.modal.campbell import Held
 from touchdown.rotor.modal.whirl import DAMPED, damping_ratios
 
@@ -38,6 +38,7 @@ def held_campbell(figure: FigureBase, held: Held, title: str) -> list[Axes]:
         panel.plot(speeds, values[:, shown], color=GREY, lw=0.7, zorder=1)
         _marks(panel, held, values, shown)
     axes.plot(speeds, speeds / 60.0, ":", color=BLACK, lw=1.2, label="1x, once per turn")
+    axes.plot([], [], color=GREY, lw=0.8, label=f"{RPM * held.speed:.5g} rpm")
     _critical(axes, held)
     for panel in (axes, damping):
         panel.axvline(RPM * held.speed, color=GREY, lw=0.8, zorder=0)
@@ -54,9 +55,10 @@ def held_campbell(figure: FigureBase, held: Held, title: str) -> list[Axes]:
 
 
 def _shown(held: Held, hertz: np.ndarray) -> np.ndarray:
-    """The lines that are drawn: those that come below `BEYOND` times the highest speed, or the lowest four."""
+    """The lines that are drawn: those that begin below `BEYOND` times the highest speed, or the lowest 4."""
     limit = BEYOND * held.lines.speeds[-1] / (2.0 * math.pi)
-    lowest = np.nanmin(hertz, axis=0)
+    slow = hertz[: max(1, len(hertz) // 4)]  # where whirls of a mode have not parted
+    lowest = np.nanmin(np.where(np.isnan(slow), np.inf, slow), axis=0)
     return np.flatnonzero((lowest < limit) | (np.argsort(np.argsort(lowest)) < 4))
 
 
@@ -70,7 +72,7 @@ def _marks(panel: Axes, held: Held, values: np.ndarray, shown: np.ndarray) -> No
         there = turns[name][::EVERY, shown]
         if there.any():
             x, y = (array[::EVERY, shown][there] for array in (places, values))
-            panel.plot(x, y, marker, color=colour, ms=4, mew=0.0, ls="none", label=f"{name} whirl")
+            panel.plot(x, y, marker, color=colour, ms=4, mew=0.0, ls="none", label=name)
     growing = (damping_ratios(held.lines.roots) < -DAMPED)[:, shown]
     if growing.any():
         x, y = (array[:, shown][growing] for array in (places, values))
@@ -78,17 +80,9 @@ def _marks(panel: Axes, held: Held, values: np.ndarray, shown: np.ndarray) -> No
 
 
 def _critical(axes: Axes, held: Held) -> None:
-    """Circles where a line crosses the spin, with the speed beside those that are not all but damped."""
-    crossings = held.lines.crossings
-    if not crossings:
-        return
-    speeds = np.array([RPM * one.speed for one in crossings])
-    axes.plot(
-        speeds, speeds / 60.0, "o", mfc="none", mec=BLACK, ms=9, mew=1.3, ls="none", label="critical speed"
-    )
-    for number, one in enumerate(crossings):
-        up = 10 if number % 2 else -14
-        axes.annotate(
-            f"{RPM * one.speed:.0f}", (RPM * one.speed, RPM * one.speed / 60.0), xytext=(8, up),
-            textcoords="offset points", fontsize="small",
-        )  # fmt: skip
+    """Circles where a line crosses the spin, in the colour of its whirl; their speeds are in the legend."""
+    for one in held.lines.crossings:
+        speed, name = RPM * one.speed, whirl_name(one.sense)
+        colour = next(colour for known, _, colour in LOOKS if known == name)
+        label = f"critical, {name}:\n{speed:.0f} rpm, {speed / 60.0:.1f} Hz"
+        axes.plot(speed, speed / 60.0, "o", mfc="none", mec=colour, ms=9, mew=1.3, ls="none", label=label)

@@ -1,4 +1,4 @@
-"""The linear bearing that one on the rig is for small motion: what it answers to swings, and a law for it."""
+"""What a bearing on the rig answers to small swings, and the linear law that is nearest to it."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def response(rig: Rig, sensors: bool) -> Response | None:
 
 
 def _by_journal(rig: Rig) -> float:
-    """The share of the static force that is there where the sensors stay and the journal alone has moved."""
+    """The share of the static force that is there when the journal alone has moved, and no sensor."""
     still = rig.stands(AT_REST)
     alone, together = (rig.stands(AMPLITUDE * np.ones(2), sensed) - still for sensed in (False, True))
     whole = float(together @ together)

@@ -11,6 +11,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
+from touchdown.master.scene.file import shipped as scenes
 from touchdown.master.studies.rotor.held_table import held_lines
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
@@ -92,7 +93,7 @@ def find_rotor(name: str) -> Shaft:
     except ModelError as error:
         raise TouchdownError(str(error)) from None
     except LookupError:
-        known = shipped()
+        known = [*shipped(), *scenes()]
         raise TouchdownError(
             f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"
         ) from None

@@ -7,7 +7,6 @@ as one of the project's own. Its housing stands still, and its journal does not 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,7 +96,9 @@ class Rig:
         for _ in range(PERIODS):
             forces = np.empty((count, 2))
             for k in range(count):
-                forces[k] = self._take(about + here[k] * direction, rate[k] * direction, bend[k] * direction, step)
+                forces[k] = self._take(
+                    about + here[k] * direction, rate[k] * direction, bend[k] * direction, step
+                )
             answer = -2.0 / count * (middle @ forces) / amplitude
             apart = np.max(np.abs(answer - last))
             if apart <= ALIKE * np.max(np.abs(answer)) + NO_FORCE / amplitude:

@@ -81,7 +81,9 @@ def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
     supports = tuple(_support(node, [b for b in situation.bearings if b.node == node]) for node in nodes)
     shaft: Shaft = replace(seen.shaft, supports=supports)
     held_by = {b.station for b in situation.bearings}
-    return critical_map(shaft, fullest(shaft, list(nodes)), [s for s in shaft.stations if s.name in held_by])
+    return critical_map(
+        shaft, fullest(shaft, list(nodes)), [s for s in shaft.stations if s.name in held_by]
+    )
 
 
 def _support(node: int, bearings: list[Bearing]) -> Support:

@@ -19,8 +19,8 @@ from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.rotor.linear import Law, Response, fitted, response
-from touchdown.master.studies.rotor.rig import DEEPEST, Place, Pressed, Rig
 from touchdown.master.studies.rotor.report import find_rotor
+from touchdown.master.studies.rotor.rig import DEEPEST, Place, Pressed, Rig
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.campbell import Held, held
 from touchdown.rotor.modal.data import seats
@@ -92,7 +92,10 @@ def situations(seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1
         rigs = {a.bearing: _rig(seen, idle, a) for a in seen.journals}
         floating = {a.bearing: _floating(seen, a, rigs[a.bearing]) for a in seen.journals}
         lying = _lying(seen, idle, rigs, floating, load)
-    made = [_situation(seen, name, found, speeds) for name, found in (("levitated", floating), ("resting", lying))]
+    made = [
+        _situation(seen, name, found, speeds)
+        for name, found in (("levitated", floating), ("resting", lying))
+    ]
     there = [one for one in made if one is not None]
     if not there:
         raise TouchdownError(f"scene {seen.scene.name}: no bearing holds its rotor")
@@ -260,12 +263,12 @@ def _lying(
         else:
             pressing.append(a)
     shares = _shares(seen, pressing, [b for b in lying.values() if isinstance(b, Bearing)])
-    return lying | {a.bearing: _pressed(seen, a, rigs[a.bearing], load * shares[a.bearing]) for a in pressing}
+    return lying | {
+        a.bearing: _pressed(seen, a, rigs[a.bearing], load * shares[a.bearing]) for a in pressing
+    }
 
 
-def _shares(
-    seen: Seen, pressing: Sequence[Attachment], holding: Sequence[Bearing]
-) -> dict[str, float]:
+def _shares(seen: Seen, pressing: Sequence[Attachment], holding: Sequence[Bearing]) -> dict[str, float]:
     """Of the rotor's weight (N), by bearing: what rigid ones carry; those of one place share it."""
     nodes = {a.bearing: seen.shaft.node(a.body_port) for a in pressing}
     supports = dict.fromkeys(nodes.values(), np.inf)
