@@ -41,7 +41,7 @@ def whirl_frequencies(
 
 
 def supported_whirl(basis: Basis, speed: float, supports: Sequence[Support]) -> Whirl:
-    """Modes at spin `speed` (rad/s) on `supports`, which may differ by plane and damp; the rotor does not."""
+    """Modes at spin `speed` (rad/s) on `supports`, which may differ by plane and damp; it does not."""
     return HeldRotor(basis, [LinearBearing.of(s) for s in supports]).whirl(speed)
 
 
@@ -103,7 +103,7 @@ def _lowest(found: Whirl, count: int) -> list[int]:
 
 
 def _likest(last: Whirl, modes: Sequence[int], found: Whirl) -> dict[int, int]:
-    """For each of the `modes` (by its place among them) the mode of `found` that goes on with it, if any."""
+    """For each of the `modes`, by its place among them, the one of `found` that goes on with it, if any."""
     alike = np.abs(np.conj(last.vectors[:, modes]).T @ found.vectors) ** 2
     here, there = last.roots[modes][:, None], found.roots[None, :]
     apart = np.abs(here - there) / np.maximum(np.abs(here), np.abs(there))
@@ -158,7 +158,6 @@ class Held:
 
 
 def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
-    """A rotor at the first of `speeds` (rad/s, not negative), and its `count` lowest lines over the others."""
-    return Held(
-        tuple(rotor.bearings), speeds[0], rotor.whirl(speeds[0]), followed(rotor, speeds[1:], count)
-    )
+    """A rotor at the first of `speeds` (rad/s, not negative), its `count` lowest lines over the others."""
+    first, *others = speeds
+    return Held(tuple(rotor.bearings), first, rotor.whirl(first), followed(rotor, others, count))

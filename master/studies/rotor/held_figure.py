@@ -55,7 +55,7 @@ def held_campbell(figure: FigureBase, held: Held, title: str) -> list[Axes]:
 
 
 def _shown(held: Held, hertz: np.ndarray) -> np.ndarray:
-    """The lines that are drawn: those that begin below `BEYOND` times the highest speed, or the lowest 4."""
+    """The lines that are drawn: those that begin below `BEYOND` times the highest speed, or the lowest."""
     limit = BEYOND * held.lines.speeds[-1] / (2.0 * math.pi)
     slow = hertz[: max(1, len(hertz) // 4)]  # where whirls of a mode have not parted
     lowest = np.nanmin(np.where(np.isnan(slow), np.inf, slow), axis=0)

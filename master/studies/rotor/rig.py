@@ -72,7 +72,7 @@ class Rig:
         component.exit()
 
     def stands(self, off: np.ndarray, sensed: bool = True) -> np.ndarray:
-        """Force (2,) once the journal stands `off` (2,) its place (m); sensed: what senses it goes along."""
+        """Force (2,) once the journal stands `off` (2,) its place (m); sensed: seen by its sensors, too."""
         step = self._step_of(SETTLING / STEPS)
         for _ in range(round(SETTLING / step)):
             self._take(off, AT_REST, AT_REST, step, sensed)
@@ -107,7 +107,8 @@ class Rig:
         if apart <= NEARLY * np.max(np.abs(answer)):
             return answer
         raise TouchdownError(
-            f"{self._component.name}: its force does not follow a swing of {amplitude:g} m at {frequency:g} Hz"
+            f"{self._component.name}: its force does not follow a swing of {amplitude:.3g} m at "
+            f"{frequency:g} Hz, so that it is no linear bearing there"
         )
 
     def pressed(self, load: float) -> Pressed | None:
@@ -137,7 +138,7 @@ class Rig:
         return None
 
     def _met(self, load: float, depth: float) -> tuple[float, float]:
-        """The depth (m) at which the bearing carries `load` once it has come to rest, and the slope (N/m)."""
+        """The depth (m) at which the bearing, come to rest, carries `load`, and the force's slope (N/m)."""
         force = self._listen(self._below(depth))[1]
         other = depth - 0.05 * self._step_of(FINE) * DESCENT
         for _ in range(PRESSES):
@@ -159,7 +160,7 @@ class Rig:
         return self._place.housing - self._place.journal - [0.0, depth]
 
     def _listen(self, off: np.ndarray) -> np.ndarray:
-        """Mean force (2,) after the journal has been brought `off` (2,) its place (m) and has stood there."""
+        """Mean force (2,) once the journal has stood `off` (2,) its place (m) for a while."""
         step = self._step_of(FINE)
         for _ in range(round(SETTLING / step)):
             self._take(off, AT_REST, AT_REST, step)

@@ -81,9 +81,8 @@ def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
     supports = tuple(_support(node, [b for b in situation.bearings if b.node == node]) for node in nodes)
     shaft: Shaft = replace(seen.shaft, supports=supports)
     held_by = {b.station for b in situation.bearings}
-    return critical_map(
-        shaft, fullest(shaft, list(nodes)), [s for s in shaft.stations if s.name in held_by]
-    )
+    places = [s for s in shaft.stations if s.name in held_by]
+    return critical_map(shaft, fullest(shaft, list(nodes)), places)
 
 
 def _support(node: int, bearings: list[Bearing]) -> Support:
@@ -115,7 +114,7 @@ def _floating(b: Bearing) -> Iterator[str]:
     lag = f", behind a lag of {1e6 * b.law.lag:.4g} us ({1.0 / b.law.lag:.5g} rad/s)" if b.law.lag else ""
     yield f"      {_both(b.law.stiffness, 'N/m')}, {_both(b.law.damping, 'N s/m')}{lag}"
     if b.law.misfit > MISFIT:
-        yield f"      such a law is off by up to {100.0 * b.law.misfit:.2g} % of what it answers; modes may differ"
+        yield f"      a law that is off by up to {100.0 * b.law.misfit:.2g} % of what it answers, as are modes"
     if b.law.lag or b.law.misfit > MISFIT:
         yield "      at " + "".join(f"{f:11.0f} Hz" for f in b.response.frequencies)
         yield "      N/m" + "".join(f"{k:13.4g} " for k in b.response.real[:, 0])[1:]
@@ -132,10 +131,11 @@ def _both(matrix: np.ndarray, unit: str) -> str:
 def _pressed(b: Bearing) -> Iterator[str]:
     """One that the rotor lies on."""
     assert b.pressed is not None
-    yield f"    {b.name} at {b.station}, pressed with {b.load:.4g} N, {1e6 * b.pressed.depth:.4g} um down{_on(b)}"
+    depth = f"{1e6 * b.pressed.depth:.4g} um below its middle"
+    yield f"    {b.name} at {b.station}, pressed with {b.load:.4g} N, {depth}{_on(b)}"
     yield (
-        f"      {b.pressed.along:.4g} N/m and {b.pressed.damping:.4g} N s/m vertically, {b.pressed.across:.4g} "
-        "N/m across, in which the journal rolls back to the bottom; friction is left out"
+        f"      {b.pressed.along:.4g} N/m and {b.pressed.damping:.4g} N s/m vertically, "
+        f"{b.pressed.across:.4g} N/m across, where the bore rises; friction is left out"
     )
     if b.foundation is not None:
         yield f"      with what it stands on in series: {b.statically[1, 1]:.4g} N/m vertically"

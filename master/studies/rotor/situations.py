@@ -92,10 +92,8 @@ def situations(seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1
         rigs = {a.bearing: _rig(seen, idle, a) for a in seen.journals}
         floating = {a.bearing: _floating(seen, a, rigs[a.bearing]) for a in seen.journals}
         lying = _lying(seen, idle, rigs, floating, load)
-    made = [
-        _situation(seen, name, found, speeds)
-        for name, found in (("levitated", floating), ("resting", lying))
-    ]
+    both = (("levitated", floating), ("resting", lying))
+    made = [_situation(seen, name, found, speeds) for name, found in both]
     there = [one for one in made if one is not None]
     if not there:
         raise TouchdownError(f"scene {seen.scene.name}: no bearing holds its rotor")
@@ -157,8 +155,8 @@ def _of_elements(scene: Scene, body: str) -> Shaft:
         if fmu.endswith(".toml"):
             raise
         raise TouchdownError(
-            f"{body} of scene {scene.name} is {fmu}, no rotor of beam elements, so that its modes are not known; "
-            "take a scene with a rotor's .toml, or such as rotor1-9000"
+            f"{body} of scene {scene.name} is {fmu}, no rotor of beam elements, so that its modes are not "
+            "known; take a scene with a rotor's .toml, or such as rotor1-9000"
         ) from None
 
 
@@ -263,9 +261,9 @@ def _lying(
         else:
             pressing.append(a)
     shares = _shares(seen, pressing, [b for b in lying.values() if isinstance(b, Bearing)])
-    return lying | {
-        a.bearing: _pressed(seen, a, rigs[a.bearing], load * shares[a.bearing]) for a in pressing
-    }
+    for a in pressing:
+        lying[a.bearing] = _pressed(seen, a, rigs[a.bearing], load * shares[a.bearing])
+    return lying
 
 
 def _shares(seen: Seen, pressing: Sequence[Attachment], holding: Sequence[Bearing]) -> dict[str, float]:

@@ -41,8 +41,8 @@ def declare(verb: argparse.ArgumentParser) -> None:
     add_output(verb, "runs/rotor-ROTOR")
     verb.add_argument(
         "--speed",
-        help='for forward and backward whirl; Campbell diagrams reach twice as far (default: "9000 rpm", of a '
-        "scene its own)",
+        help='for forward and backward whirl; Campbell diagrams reach twice as far (default: "9000 rpm", '
+        "of a scene its own)",
     )
     verb.add_argument(
         "--modes",
@@ -55,7 +55,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="STATION=STIFFNESS",
-        help='a spring there, such as "amb_A=20 MN/m", marked in the map of critical speeds; not of a scene',
+        help='a spring there, such as "amb_A=20 MN/m", which holds the rotor; not for scenes',
     )
     verb.add_argument(
         "--load",
@@ -112,7 +112,7 @@ def _described_in(
 
     if options.support:
         raise TouchdownError(
-            f"--support is for rotors; {name} is a scene, whose bearings are looked at: --set COMPONENT.VARIABLE"
+            f"--support is for rotors; {name} is a scene, whose bearings hold it: --set COMPONENT.VARIABLE"
         )
     load = above_zero(options.load, "1", "--load")
     scene = swapped(find_scene(name), options).set(settings(options))
