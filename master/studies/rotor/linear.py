@@ -50,13 +50,12 @@ def response(rig: Rig, sensors: bool) -> Response | None:
 
     sensors: whether it has any beside the journal.
     """
-    axes = np.eye(2)
-    first = [rig.dynamic_stiffness(FREQUENCIES[0], axis, AMPLITUDE) for axis in axes]
-    if AMPLITUDE * np.max(np.abs(first)) <= NO_FORCE:
-        return None
-    rest = [[rig.dynamic_stiffness(f, axis, AMPLITUDE) for axis in axes] for f in FREQUENCIES[1:]]
+    columns = np.empty((len(FREQUENCIES), 2, 2), complex)  # frequency, motion, force
+    for k in reversed(range(len(FREQUENCIES))):  # a short swing says whether there is a force
+        columns[k] = [rig.dynamic_stiffness(FREQUENCIES[k], axis, AMPLITUDE) for axis in np.eye(2)]
+        if AMPLITUDE * np.max(np.abs(columns[k])) <= NO_FORCE:
+            return None
     share = _by_journal(rig) if sensors else 1.0
-    columns = np.array([first, *rest])  # frequency, motion, force
     return Response(np.array(FREQUENCIES), columns.transpose(0, 2, 1), share)
 
 
