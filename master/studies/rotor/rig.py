@@ -28,7 +28,7 @@ DEEPEST = 0.01  # m that it is lowered at most
 FINE = 20e-6  # s, macro step of that
 SETTLING, LISTENING = 4e-3, 2e-3  # s, until a bearing has come to rest, and over which its force is read
 PRESSES = 25  # at most, until the load is met
-MET = 1e-4  # of the load
+MET = 1e-3  # of the load
 NEAR = 0.02  # of the load, by which a pressed journal is moved on for the slope
 
 
@@ -140,10 +140,13 @@ class Rig:
     def _met(self, load: float, depth: float) -> tuple[float, float]:
         """The depth (m) at which the bearing, come to rest, carries `load`, and the force's slope (N/m)."""
         force = self._listen(self._below(depth))[1]
-        other = depth - 0.05 * self._step_of(FINE) * DESCENT
+        other, slope = depth - 0.25 * self._step_of(FINE) * DESCENT, 0.0
         for _ in range(PRESSES):
             there = self._listen(self._below(other))[1]
-            slope = (there - force) / (other - depth)
+            if (
+                slope == 0.0 or abs(there - force) > NEAR * load
+            ):  # nearer, what is left of rattling would tell
+                slope = (there - force) / (other - depth)
             if not slope > 0.0:
                 break
             depth, force = other, there

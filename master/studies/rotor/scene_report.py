@@ -114,7 +114,7 @@ def _floating(b: Bearing) -> Iterator[str]:
     lag = f", behind a lag of {1e6 * b.law.lag:.4g} us ({1.0 / b.law.lag:.5g} rad/s)" if b.law.lag else ""
     yield f"      {_both(b.law.stiffness, 'N/m')}, {_both(b.law.damping, 'N s/m')}{lag}"
     if b.law.misfit > MISFIT:
-        yield f"      a law that is off by up to {100.0 * b.law.misfit:.2g} % of what it answers, as are modes"
+        yield f"      off by up to {100.0 * b.law.misfit:.2g} % of what it answers, as the modes may be"
     if b.law.lag or b.law.misfit > MISFIT:
         yield "      at " + "".join(f"{f:11.0f} Hz" for f in b.response.frequencies)
         yield "      N/m" + "".join(f"{k:13.4g} " for k in b.response.real[:, 0])[1:]
@@ -135,7 +135,7 @@ def _pressed(b: Bearing) -> Iterator[str]:
     yield f"    {b.name} at {b.station}, pressed with {b.load:.4g} N, {depth}{_on(b)}"
     yield (
         f"      {b.pressed.along:.4g} N/m and {b.pressed.damping:.4g} N s/m vertically, "
-        f"{b.pressed.across:.4g} N/m across, where the bore rises; friction is left out"
+        f"{b.pressed.across:.4g} N/m to the side, where the bore rises; friction left out"
     )
     if b.foundation is not None:
         yield f"      with what it stands on in series: {b.statically[1, 1]:.4g} N/m vertically"
