@@ -128,7 +128,7 @@ class Rotor(Shaft):
 
         >>> rotor = touchdown.Rotor.load("rotor_II")
         >>> rotor.critical_speeds({"amb_A": 20e6, "amb_B": 20e6})[:3].round(1)
-        array([ 561.2,  784.2, 4453.1])
+        array([ 611.1,  733.7, 4456.2])
         """
         shaft = supported(self, supports or {})
         if len({s.node for s in shaft.supports if s.stiffness > 0.0}) < 2:
@@ -145,7 +145,7 @@ class Rotor(Shaft):
         >>> rotor = touchdown.Rotor.load("rotor_II")
         >>> held = rotor.in_bearings(1000.0, {"amb_A": 20e6, "amb_B": 20e6})
         >>> held.frequencies[:4].round(1)  # Hz
-        array([ 87.7,  91. , 110.5, 123.4])
+        array([ 96.6,  97.3, 102.7, 119.2])
         """
         shaft = supported(self, supports or {})
         portrait = described(shaft, speed, MODES)
