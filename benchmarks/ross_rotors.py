@@ -55,7 +55,7 @@ def our_modes(rotor: touchdown.Rotor, speed: float, supports: tuple[Support, ...
 
 
 def ross_roots(free: ross.Rotor, held: ross.Rotor, speed: float) -> np.ndarray:
-    """Complex roots (1/s) of ROSS's matrices, by size: what its bearings add damps and couples, no shaft."""
+    """Complex roots (1/s) of ROSS's matrices, by size, damped by its bearings alone."""
     keep = [6 * node + i for node in range(len(held.nodes)) for i in (0, 1, 3, 4)]
     damping = held.C(speed) - free.C(speed)
     matrices = (held.M(speed), held.K(speed), damping + speed * held.G())
@@ -98,9 +98,8 @@ def main() -> None:
     print(
         f"ROSS {ross.__version__}; largest relative deviation of {MODES // 2} modes, backward and forward"
     )
-    print(
-        f"{'example':28}{'rpm':>7}{'free':>10}{'on bearings':>13}{'damped':>10}{'run_modal':>11}{'run_ucs':>10}"
-    )
+    columns = f"{'free':>10}{'on bearings':>13}{'damped':>10}{'run_modal':>11}{'run_ucs':>10}"
+    print(f"{'example':28}{'rpm':>7}{columns}")
     with TemporaryDirectory() as temporary:
         told = {name: compared(name, folder or Path(temporary)) for name in EXAMPLES}
     if folder:

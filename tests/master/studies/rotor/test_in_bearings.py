@@ -163,7 +163,7 @@ def test_the_text_says_all(found: SceneRotor) -> None:
         "bearing_A gives no force where the rotor starts",
         "resting at 9000 rpm: stable",
         "amb_A is shut down",
-        "friction is left out",
+        "friction left out",
         "critical speeds up to 18000 rpm",
     ):
         assert words in text, words
