@@ -79,11 +79,17 @@ class Rig:
         return self._force.copy()
 
     def dynamic_stiffness(
-        self, frequency: float, direction: np.ndarray, amplitude: float, about: np.ndarray = AT_REST
+        self,
+        frequency: float,
+        direction: np.ndarray,
+        amplitude: float,
+        about: np.ndarray = AT_REST,
+        alike: float = ALIKE,
     ) -> np.ndarray:
         """Force against the motion over it (2,), complex, N/m, in a swing (m) along `direction` (2,).
 
-        frequency: Hz. Raises TouchdownError where the answer does not become periodic.
+        frequency: Hz; alike: of two periods' answers, over their size. Raises TouchdownError where they do
+        not become `NEARLY` alike.
         """
         step = self._step_of(1.0 / (STEPS * frequency))
         count = max(FEWEST, round(1.0 / (frequency * step)))
@@ -101,7 +107,7 @@ class Rig:
                 )
             answer = -2.0 / count * (middle @ forces) / amplitude
             apart = np.max(np.abs(answer - last))
-            if apart <= ALIKE * np.max(np.abs(answer)) + NO_FORCE / amplitude:
+            if apart <= alike * np.max(np.abs(answer)) + NO_FORCE / amplitude:
                 return answer
             last = answer
         if apart <= NEARLY * np.max(np.abs(answer)):
@@ -124,7 +130,7 @@ class Rig:
             ahead, back = (self._listen(down + sign * move * axis) @ axis for sign in (1.0, -1.0))
             stiffness.append(float(back - ahead) / (2.0 * move))
         self._listen(down)
-        swings = [self.dynamic_stiffness(f, up, move, down)[1] for f in FREQUENCIES[2:]]
+        swings = [self.dynamic_stiffness(f, up, move, down, NEARLY)[1] for f in FREQUENCIES[2:]]
         rates = [2.0 * math.pi * f for f in FREQUENCIES[2:]]
         return Pressed(float(depth), *stiffness, float(np.mean(np.imag(swings) / rates)))
 

@@ -24,6 +24,7 @@ from touchdown.master.studies.rotor.situations import Situation
 
 RPM = 30.0 / math.pi
 MIDDLE = np.zeros(2)
+SCENE = touchdown.load("rotor1-9000").set({"rotor.speed": "18000 rpm", "amb_*.damping": 40.0})
 CONTROL = {"stiffness": 3e5, "damping": 200.0, "bandwidth": 8000.0, "shutdown_time": 1e9}
 
 
@@ -41,8 +42,8 @@ def on_rig(
 
 @pytest.fixture(scope="module")
 def found() -> SceneRotor:
-    """Rotor I in its scene."""
-    return described_in(touchdown.load("rotor1-9000"))
+    """Rotor I, softly damped."""
+    return described_in(SCENE)
 
 
 def situation(found: SceneRotor, name: str) -> Situation:
@@ -129,19 +130,17 @@ def test_resting_on_the_touchdown_bearings(found: SceneRotor) -> None:
     assert lowest == pytest.approx(rolling, rel=2e-2)  # the foundations and the tilt: found 4e-3
 
 
-def test_a_run_swings_as_the_eigenvalues_say() -> None:
-    """Pushed off by 1 um while it floats: roots of its swing, by matrix pencil, to 1e-4 (found: 1e-5)."""
-    scene = touchdown.load("rotor1-9000").set({"rotor.speed": "18000 rpm", "amb_*.damping": 40.0})
+def test_a_run_swings_as_the_eigenvalues_say(found: SceneRotor) -> None:
+    """Pushed off by 1 um while it floats: roots of its swing, by matrix pencil (found: 2e-5)."""
     floating = {"amb_*.shutdown_time": 1.0, "rotor.unbalance_scale": 0.0, "rotor.x": 1e-6}
-    steps = {"run.record_every": 1, "run.duration": "0.1 s", "run.macro_step": "10 us"}
-    data = touchdown.run(replace(scene, zero=None).set(floating | steps), in_process=True).data
-    settled = slice(400, None, 40)  # 4 ms until lag and bending are still, then every 0.4 ms
+    steps = {"run.record_every": 1, "run.duration": "0.1 s", "run.macro_step": "20 us"}
+    data = touchdown.run(replace(SCENE, zero=None).set(floating | steps), in_process=True).data
+    settled = slice(200, None, 20)  # 4 ms until lag and bending are still, then every 0.4 ms
     swings = [data[f"rotor.{s}.x"].values + 1j * data[f"rotor.{s}.y"].values for s in ("A", "B")]
     swung = roots_of([swing[settled] for swing in swings], 4e-4, 5)
     swung = swung[np.abs(swung) > 1.0]  # the fifth is where it comes to rest
-    levitated = touchdown.Rotor.in_scene(scene).levitated
-    assert levitated is not None
-    told = np.where(levitated.senses > 0.0, levitated.roots, np.conj(levitated.roots))[:4]
+    levitated = situation(found, "levitated").held.whirl
+    told = np.where(levitated.sense > 0.0, levitated.roots, np.conj(levitated.roots))[:4]
     for root in told:
         assert np.min(np.abs(swung / root - 1.0)) < 1e-4
 
@@ -157,14 +156,14 @@ def roots_of(series: list[np.ndarray], step: float, order: int) -> np.ndarray:
 def test_the_text_says_all(found: SceneRotor) -> None:
     text = scene_text(found)
     for words in (
-        "levitated at 9000 rpm: stable",
+        "levitated at 18000 rpm: stable",
         "amb_A at amb_A, sees the rotor at sensor_A",
-        "2e+05 N/m, 350 N s/m, behind a lag of 79.58 us (12566 rad/s)",
+        "2e+05 N/m, 40 N s/m, behind a lag of 79.58 us (12566 rad/s)",
         "bearing_A gives no force where the rotor starts",
-        "resting at 9000 rpm: stable",
+        "resting at 18000 rpm: stable",
         "amb_A is shut down",
         "friction left out",
-        "critical speeds up to 18000 rpm",
+        "critical speeds up to 36000 rpm",
     ):
         assert words in text, words
     lines = situation(found, "levitated").held.lines
@@ -179,7 +178,7 @@ def test_the_diagram_is_labelled(found: SceneRotor) -> None:
     assert damping.get_ylabel() == "damping ratio [1]"
     assert damping.get_xlabel() == "rotor speed [rpm]"
     labels = [str(line.get_label()) for line in axes.lines]
-    assert {"forward", "backward", "1x, once per turn", "9000 rpm"} <= set(labels)
+    assert {"forward", "backward", "1x, once per turn", "18000 rpm"} <= set(labels)
     for one in held.lines.crossings:
         rpm = RPM * one.speed
         assert any(f"{rpm:.0f} rpm, {rpm / 60.0:.1f} Hz" in label for label in labels)
