@@ -139,7 +139,8 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
     def ahead(speed: float) -> float:
         return at(speed).root.imag - speed
 
-    return at(float(optimize.brentq(ahead, *speeds, xtol=EXACT * speeds[1])))
+    found = optimize.root_scalar(ahead, bracket=speeds.tolist(), xtol=EXACT * speeds[1])
+    return at(float(found.root))
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ def _row(root: complex, sense: float) -> str:
 
 def _falling(held: Held) -> Iterator[str]:
     """What grows without a swing, and at which of the diagram's speeds anything grows."""
-    if not held.whirl.stable and not np.any(held.whirl.roots.real > 0.0):
+    if not held.whirl.stable and not np.any(np.real(held.whirl.roots) > 0.0):
         yield "  it is pushed away from where it stands, without a swing"
     lines = held.lines
     if not lines.stable.all():

@@ -88,14 +88,17 @@ def _least_squares(found: Response, lags: bool) -> Law:
     system, sides = np.array(rows), np.array(right)
     scale = np.linalg.norm(system, axis=0)
     scale[scale == 0.0] = 1.0
-    found_by = np.linalg.lstsq(
-        np.vstack((system.real, system.imag)) / scale, np.concatenate((sides.real, sides.imag))
-    )[0]
+    found_by = np.linalg.lstsq(_split(system) / scale, _split(sides))[0]
     values = found_by / scale
     K, C, lag = values[:4].reshape(2, 2), values[4:8].reshape(2, 2), float(values[8])
     told = (K + 1j * rate[:, None, None] * C) / (1.0 + 1j * rate[:, None, None] * lag)
     misfit = np.max(np.abs(told - found.stiffness)) / np.max(np.abs(found.stiffness))
     return Law(_cleared(K), _cleared(C), lag, float(misfit))
+
+
+def _split(values: np.ndarray) -> np.ndarray:
+    """Real parts, and below them imaginary ones."""
+    return np.concatenate((np.real(values), np.imag(values)))
 
 
 def _cleared(matrix: np.ndarray) -> np.ndarray:

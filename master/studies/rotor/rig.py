@@ -95,7 +95,7 @@ class Rig:
         count = max(FEWEST, round(1.0 / (frequency * step)))
         omega = 2.0 * math.pi / (count * step)
         turn = np.exp(1j * omega * step * np.arange(count + 1))
-        here, rate = amplitude * turn.real, -amplitude * omega * turn.imag
+        here, rate = amplitude * np.real(turn), -amplitude * omega * np.imag(turn)
         bend = 2.0 * (np.diff(here) - step * rate[:-1]) / step**2  # parabolas that end where the swing does
         middle = np.conj(turn[:-1]) * np.exp(-0.5j * omega * step) / np.sinc(1.0 / count)
         last = np.full(2, np.nan + 0j)
@@ -124,15 +124,17 @@ class Rig:
             return None
         depth, slope = self._met(load, depth)
         move, down = NEAR * load / slope, self._below(depth)
-        stiffness: list[float] = []
         side, up = np.eye(2)
-        for axis in (side, up):
-            ahead, back = (self._listen(down + sign * move * axis) @ axis for sign in (1.0, -1.0))
-            stiffness.append(float(back - ahead) / (2.0 * move))
+        across, along = (self._slope(down, move * axis) for axis in (side, up))
         self._listen(down)
         swings = [self.dynamic_stiffness(f, up, move, down, NEARLY)[1] for f in FREQUENCIES[2:]]
         rates = [2.0 * math.pi * f for f in FREQUENCIES[2:]]
-        return Pressed(float(depth), *stiffness, float(np.mean(np.imag(swings) / rates)))
+        return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
+
+    def _slope(self, off: np.ndarray, move: np.ndarray) -> float:
+        """Stiffness (N/m) at rest about `off` (2,), by central differences over `move` (2,), m."""
+        ahead, back = (self._listen(off + sign * move) for sign in (1.0, -1.0))
+        return float((back - ahead) @ move / (2.0 * move @ move))
 
     def _lowered(self, load: float) -> float | None:
         """How deep (m) the journal is once the bearing first carries `load`."""

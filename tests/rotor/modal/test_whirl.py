@@ -10,16 +10,15 @@ import pytest
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import PointMass, Shaft, disc
+from touchdown.rotor.beams.shaft import PointMass, Shaft, Support, disc
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.campbell import HEAVY, Crossing, followed
+from touchdown.rotor.modal.campbell import followed
 from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.whirl import (
     Foundation,
     HeldRotor,
     LinearBearing,
-    Whirl,
     damping_ratios,
     log_decrements,
 )
@@ -124,7 +123,7 @@ def test_cross_coupling_beyond_the_damping_is_unstable(share: float, stable: boo
     cross = share * C * math.sqrt(2.0 * K / WHEEL.mass)
     held = bearings(stiffness=np.array([[K, cross], [-cross, K]]))
     tilt = [replace(b, stiffness=K * ONE, damping=1e3 * ONE) for b in held]  # whose damping is another
-    found = HeldRotor(basis(replace(WHEEL), 2), held).whirl(0.0)
+    found = HeldRotor(RIGID, held).whirl(0.0)
     least = found.roots[np.argmax(found.roots.real)]
     assert (least.real > 0.0) is not stable
     assert found.stable is stable
@@ -145,8 +144,6 @@ def test_critical_speeds_without_damping() -> None:
     shaft = find("rotor_II")
     modes = basis(shaft, 10, [shaft.node("amb_A"), shaft.node("amb_B")])
     held = [LinearBearing(shaft.node(name), 2e7 * ONE, 0.0 * ONE) for name in ("amb_A", "amb_B")]
-    from touchdown.rotor.beams.shaft import Support
-
     expected = critical_speeds(modes, [Support(b.node, 2e7) for b in held])
     lines = followed(HeldRotor(modes, held), np.linspace(0.0, 1000.0, 21), 8)
     forward = [c for c in lines.crossings if c.sense > 0.0]
@@ -168,13 +165,16 @@ def test_lines_keep_to_their_modes() -> None:
 
 
 def test_a_mode_that_stops_swinging_ends_its_line() -> None:
-    lines = followed(HeldRotor(RIGID, bearings(damping=1e4 * ONE)), np.linspace(0.0, 2e4, 41), 4)
+    """A tilt damped beyond its critical damping swings at high speeds only, where it precesses."""
+    arm = LENGTH**2 / 2.0
+    heavy = 1.5 * 2.0 * math.sqrt(K * WHEEL.diametral_inertia / arm)  # a damping ratio of 1.5
+    rotor = HeldRotor(RIGID, bearings(damping=heavy * ONE))
+    lines = followed(rotor, np.linspace(0.0, 2e4, 41), 4)
+    swings = np.isfinite(lines.roots).sum(axis=1)
+    assert swings[0] < swings[-1]
     assert (damping_ratios(lines.roots[np.isfinite(lines.roots)]) < 1.0).all()
-    assert not lines.crossings or isinstance(lines.crossings[0], Crossing)
 
 
 def test_what_cannot_be_a_bearing() -> None:
     with pytest.raises(ModelError, match=r"stiffness of a bearing has the shape \(2,\)"):
         LinearBearing(1, np.ones(2), ONE)
-    assert isinstance(HeldRotor(RIGID, bearings()).whirl(0.0), Whirl)
-    assert 0.0 < HEAVY < 1.0
