@@ -87,6 +87,7 @@ class Whirl:
     roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part positive
     sense: np.ndarray  # (M,), 1 circular whirl counter-clockwise, -1 circular clockwise, 0 in a plane
     aperiodic: np.ndarray  # (A,), real roots of what does not swing, 1/s
+    free: int  # roots next to zero: of what nothing holds, which may drift
     vectors: np.ndarray  # (coordinates, M), complex, by the root of their masses, of unit length
 
     @property
@@ -194,6 +195,7 @@ class HeldRotor:
         """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
         swinging = np.imag(roots) > STILL * np.max(np.abs(roots))
         aperiodic = np.sort(np.real(roots[np.imag(roots) == 0.0]))
+        free = int(np.count_nonzero(np.abs(roots) <= STILL * np.max(np.abs(roots))))
         order = np.flatnonzero(swinging)[np.argsort(np.abs(roots[swinging]))]
         moving = vectors[self.places : 2 * self.places, order]
         x, y = moving[: self.n], moving[self.n : 2 * self.n]
@@ -201,4 +203,4 @@ class HeldRotor:
         size = np.sum(np.abs(x) ** 2 + np.abs(y) ** 2, axis=0)
         sense = np.divide(turning, size, out=np.zeros_like(turning), where=size > 0.0)
         moving = np.sqrt(self.mass)[:, None] * moving
-        return Whirl(roots[order], sense, aperiodic, moving / np.linalg.norm(moving, axis=0))
+        return Whirl(roots[order], sense, aperiodic, free, moving / np.linalg.norm(moving, axis=0))

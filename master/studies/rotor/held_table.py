@@ -19,6 +19,8 @@ HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>1
 def held_lines(held: Held, title: str) -> Iterator[str]:
     """A table of the modes under `title`, and one of the critical speeds."""
     verdict = "stable" if held.whirl.stable else "UNSTABLE"
+    if held.whirl.free:
+        verdict += ", but not held everywhere: it may drift"
     yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
     yield f"  {'mode':<10}{HEAD}"
     for number, k in enumerate(held.swinging[:TOLD], 1):

@@ -24,7 +24,7 @@ NO_FORCE = 1e-9  # N
 AT_REST = np.zeros(2)
 
 DESCENT = 0.01  # m/s, of a journal that is lowered onto its bearing
-DEEPEST = 0.01  # m that it is lowered at most
+DEEPEST = 0.002  # m that it is lowered at most
 FINE = 20e-6  # s, macro step of that
 SETTLING, LISTENING = 4e-3, 2e-3  # s, until a bearing has come to rest, and over which its force is read
 PRESSES = 25  # at most, until the load is met

@@ -31,6 +31,7 @@ class SceneRotor:
     scene: Scene
     portrait: Portrait  # free; its maps of critical speeds mark what the situations' bearings have
     situations: tuple[Situation, ...]
+    unheld: tuple[str, ...]  # a line for each situation that there is not
 
 
 def described_in(
@@ -44,10 +45,10 @@ def described_in(
     seen = seen_in(scene)
     asked = abs(seen.speed if speed is None else speed)
     end = BEYOND * (asked or SPEED)
-    found = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
+    found, unheld = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
     free = described(replace(seen.shaft, supports=()), asked, modes)
     maps = [one for situation in found if (one := _map(seen, situation)) is not None]
-    return SceneRotor(scene, replace(free, critical=tuple(maps)), tuple(found))
+    return SceneRotor(scene, replace(free, critical=tuple(maps)), tuple(found), tuple(unheld))
 
 
 def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, load: float) -> Report:
@@ -70,7 +71,7 @@ def scene_text(found: SceneRotor) -> str:
     lines = [report_text(found.portrait)]
     for situation in found.situations:
         lines += ["", *_situation(situation)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *(f"  {line}" for line in found.unheld)])
 
 
 def _map(seen: Seen, situation: Situation) -> CriticalMap | None:

@@ -23,13 +23,14 @@ from touchdown.master.studies.rotor.report import find_rotor
 from touchdown.master.studies.rotor.rig import DEEPEST, Place, Pressed, Rig
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.campbell import Held, held
-from touchdown.rotor.modal.data import seats
-from touchdown.rotor.modal.modes import Basis, basis
+from touchdown.rotor.modal.data import most_modes, seats
+from touchdown.rotor.modal.modes import RIGID, Basis, basis
 from touchdown.rotor.modal.whirl import Foundation, HeldRotor, LinearBearing
 from touchdown.rotor.statics import at_rest
 
 SHUTDOWN, NEVER = "shutdown_time", 1e9  # a parameter of magnetic bearings; s
 LINES = 12  # followed over the speed
+MOST = 16  # modes per plane
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,10 @@ class Seen:
     foundations: dict[str, Foundation]  # by mount
 
 
-def situations(seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1.0) -> list[Situation]:
-    """Levitated, resting, or both, at the first of `speeds` (rad/s, not negative) and over the others.
+def situations(
+    seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1.0
+) -> tuple[list[Situation], list[str]]:
+    """Levitated and resting, where it is, and why it is not, a line each; at the first of `speeds` (rad/s, not negative) and over the others.
 
     load: of the touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where
     nothing holds the rotor either way.
@@ -93,11 +96,12 @@ def situations(seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1
         floating = {a.bearing: _floating(seen, a, rigs[a.bearing]) for a in seen.journals}
         lying = _lying(seen, idle, rigs, floating, load)
     both = (("levitated", floating), ("resting", lying))
-    made = [_situation(seen, name, found, speeds) for name, found in both]
-    there = [one for one in made if one is not None]
+    made = {name: _situation(seen, name, found, speeds) for name, found in both}
+    there = [one for one in made.values() if one is not None]
     if not there:
         raise TouchdownError(f"scene {seen.scene.name}: no bearing holds its rotor")
-    return there
+    why = {name: "; ".join(f"{b} {told}" for b, told in found.items()) for name, found in both}
+    return there, [f"not {name}: {why[name]}" for name, one in made.items() if one is None]
 
 
 def _situation(
@@ -134,7 +138,7 @@ def seen_in(scene: Scene) -> Seen:
             scene=scene,
             body=body,
             shaft=shaft,
-            basis=basis(shaft, int(value["modes"]), seat_nodes if value["residual"] else ()),
+            basis=_basis(shaft, int(value["modes"]), seat_nodes if value["residual"] else ()),
             damping_ratio=shaft.damping_ratio if own < 0.0 else own,
             gravity=system.value(f"{body}.gravity"),
             speed=system.value(f"{body}.speed"),
@@ -144,6 +148,13 @@ def seen_in(scene: Scene) -> Seen:
             mounts=mounts,
             foundations={m: f for m in mounts.values() if (f := _foundation(system, m)) is not None},
         )
+
+
+def _basis(shaft: Shaft, modes: int, residual_at: tuple[int, ...]) -> Basis:
+    """As the rotor has it; of more than `MOST` modes that many, and the flexibility of the others."""
+    if RIGID <= modes <= MOST:
+        return basis(shaft, modes, residual_at)
+    return basis(shaft, min(MOST, most_modes(shaft)), tuple(dict.fromkeys(s.node for s in shaft.stations)))
 
 
 def _of_elements(scene: Scene, body: str) -> Shaft:
