@@ -86,9 +86,9 @@ class Seen:
 def situations(
     seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1.0
 ) -> tuple[list[Situation], list[str]]:
-    """Levitated and resting, where it is, and why it is not, a line each; at the first of `speeds` (rad/s, not negative) and over the others.
+    """Levitated and resting, where the rotor is, and a line for each of the two that it is not.
 
-    load: of the touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where
+    speeds: rad/s, not negative; the one that modes are told at, then those of the diagram. load: of the touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where
     nothing holds the rotor either way.
     """
     with opened(seen.scene, in_process=True, listening=False) as idle:
