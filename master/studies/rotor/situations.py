@@ -88,8 +88,9 @@ def situations(
 ) -> tuple[list[Situation], list[str]]:
     """Levitated and resting, where the rotor is, and a line for each of the two that it is not.
 
-    speeds: rad/s, not negative; the one that modes are told at, then those of the diagram. load: of the touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where
-    nothing holds the rotor either way.
+    speeds: rad/s, not negative; the one that modes are told at, then those of the diagram. load: of the
+    touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where nothing
+    holds the rotor either way.
     """
     with opened(seen.scene, in_process=True, listening=False) as idle:
         rigs = {a.bearing: _rig(seen, idle, a) for a in seen.journals}
