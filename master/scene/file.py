@@ -51,6 +51,7 @@ from touchdown.master.scene.tables import (
     entries,
     flat,
     is_rotor,
+    is_scene_file,
     pairs,
     reference,
     references,
@@ -109,6 +110,15 @@ def _mistaken(path: Path) -> str:
     if os.path.isfile(path / LEFT):
         return f"{path} is what a run left; give {path / LEFT}, the scene as it was run"
     return ""
+
+
+def is_scene(name: str) -> bool:
+    """Whether a name or path, which could be a rotor's as well, is of a scene, sound or not."""
+    if name.endswith((".ssp", ".json")):
+        return True
+    if not name.endswith(".toml"):
+        return name in shipped() or os.path.isfile(Path(name) / SCENE_FILE)
+    return is_scene_file(Path(name))
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:

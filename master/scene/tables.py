@@ -18,7 +18,7 @@ from touchdown.modelkit.units import NUMBER
 DEEPEST = 32
 LINE = re.compile(r"at line (\d+)")  # of a mistake, as the library says it
 UNQUOTED = re.compile(r"=\s*([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*[A-Za-z%\u00b5\u03bc][^\s,}\]#\"']*)")
-OF_ROTORS = ("element", "disc", "point_mass", "unbalance", "stations", "levitated_at")
+OF_ROTORS = ("element", "superelement", "disc", "point_mass", "unbalance", "stations", "levitated_at")
 
 
 def entries(value: object) -> Mapping[str, Any] | None:
@@ -100,7 +100,7 @@ def mistake_in(path: Path, error: Exception) -> str:
         return str(error)
 
 
-def is_scene(path: Path) -> bool:
+def is_scene_file(path: Path) -> bool:
     """Whether a TOML file is a scene's."""
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8-sig"))

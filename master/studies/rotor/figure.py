@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +15,10 @@ from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from touchdown.master.studies.rotor.held_figure import held_campbell
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft
+from touchdown.rotor.modal.campbell import Held
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
 
@@ -31,17 +35,22 @@ FLATTEST, HIGHEST = 0.2, 0.4  # height over width of a side view
 SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 
-def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
-    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`."""
+def draw_pictures(portrait: Portrait, folder: Path, held: Mapping[str, tuple[Held, str]]) -> list[Path]:
+    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`.
+
+    held: Campbell diagrams in bearings and their titles, by the names of their pictures.
+    """
     pictures = {"campbell": campbell, "modes": modes}
     if portrait.critical:
         pictures["critical"] = critical
     if portrait.rest is not None:
         pictures["rest"] = rest
+    drawn = {name: partial(picture, portrait=portrait) for name, picture in pictures.items()}
+    drawn |= {name: partial(held_campbell, held=one, title=title) for name, (one, title) in held.items()}
     made: list[Path] = []
-    for name, picture in pictures.items():
+    for name, picture in drawn.items():
         figure = sheet()
-        picture(figure, portrait)
+        picture(figure)
         made.append(folder / f"{name}.png")
         figure.savefig(made[-1], dpi=110)
     return made
@@ -76,8 +85,8 @@ def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
 def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Undamped critical speeds [rpm] over the stiffness of the supports [N/m], for each way it is held.
 
-    Dashed: the shaft's own supports there, with dots for its critical speeds on them; grey: the first of
-    the portrait's speeds.
+    Dashed: the shaft's own supports there, with dots for its critical speeds on them, or dotted lines where
+    the planes differ; grey: the first of the portrait's speeds.
     """
     panels = sized(figure, 9.0, 1.0 + 4.2 * len(portrait.critical)).subplots(
         len(portrait.critical), 1, squeeze=False
@@ -90,9 +99,13 @@ def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
             for value in {support.stiffness, support.stiffness_y or support.stiffness}:
                 label = f"{where}: {value:.3g} N/m"
                 axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
-        if len(found.own):
+        label = "critical speeds on these supports"
+        if any(s.stiffness_y not in (None, s.stiffness) for s in found.marked):  # no place on the scale
+            for number, own in enumerate(found.own):
+                given = label if number == 0 else None
+                axes.axhline(RPM * own, color=ORANGE, lw=1.0, ls=":", label=given)
+        elif len(found.own):
             middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
-            label = "critical speeds on these supports"
             axes.plot(
                 np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
             )

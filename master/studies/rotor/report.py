@@ -12,7 +12,9 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
-from touchdown.master.scene.tables import is_scene, mistake_in
+from touchdown.master.scene.file import shipped as scenes
+from touchdown.master.scene.tables import is_scene_file, mistake_in
+from touchdown.master.studies.rotor.held_table import held_lines
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find, shipped
@@ -26,8 +28,6 @@ SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 BEYOND = 2.0  # times the speed asked for: its end
-HELD = 8  # modes told of on supports
-PLANAR = 0.1  # of a circle's turning; below, a whirl is told as planar
 TO_REST = (
     "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
 )
@@ -58,7 +58,11 @@ def report(
     make_writable(folder)
     from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
 
-    return Report(report_text(portrait), draw_pictures(portrait, folder))
+    held = {}
+    if portrait.held is not None:
+        title = f"{portrait.shaft.title} {on_supports(portrait)}"
+        held["campbell_supports"] = portrait.held, title
+    return Report(report_text(portrait), draw_pictures(portrait, folder, held))
 
 
 def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
@@ -90,7 +94,7 @@ def find_rotor(name: str) -> Shaft:
         return find(name)
     except ModelError as error:
         path = Path(name)
-        if is_scene(path):
+        if is_scene_file(path):
             raise TouchdownError(
                 f"{path} is a scene, no rotor's file; `touchdown scenes {path}` says which its rotor is"
             ) from None
@@ -101,7 +105,7 @@ def find_rotor(name: str) -> Shaft:
                 f"{name} is no rotor's file; `touchdown import-rotor {name}` makes one of a table of "
                 "sections or of ROSS's files"
             ) from None
-        known = shipped()
+        known = [*shipped(), *scenes()]
         raise TouchdownError(
             f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"
         ) from None
@@ -182,18 +186,12 @@ def _frequencies(portrait: Portrait) -> list[str]:
 
 def _held(portrait: Portrait) -> list[str]:
     """Modes on the shaft's own supports."""
-    if portrait.held is None:
-        return []
-    lines = [f"  on its {len(portrait.shaft.supports)} supports at {RPM * portrait.speeds[0]:.6g} rpm",
-             f"  {'mode':<12}  {'[Hz]':>12}  {'damping ratio':>14}  {'whirl':>14}"]  # fmt: skip
-    held = portrait.held
-    for k in range(min(HELD, len(held.roots))):
-        sense = (
-            "planar" if abs(held.sense[k]) < PLANAR else "forward" if held.sense[k] > 0.0 else "backward"
-        )
-        damping = round(held.damping_ratios[k], 4) + 0.0  # never -0
-        lines.append(f"  {k + 1:<12}  {held.frequencies[k]:12.2f}  {damping:14.4f}  {sense:>14}")
-    return [*lines, ""]
+    return [] if portrait.held is None else list(held_lines(portrait.held, on_supports(portrait)))
+
+
+def on_supports(portrait: Portrait) -> str:
+    """How the rotor is held by its own supports, in words."""
+    return f"on its {len(portrait.shaft.supports)} supports"
 
 
 def _critical(found: CriticalMap) -> list[str]:

@@ -1,0 +1,206 @@
+"""Modes of a spinning rotor in bearings: linear ones that damp, lag, and may look elsewhere than they act.
+
+In the coordinates of `Basis`, p = x + i y, and with the modal damping that the rotor's model has,
+
+    p'' + (2 zeta omega - i speed G) p' + omega^2 p = shape^T f
+
+where each bearing gives the journal a force f, and what it stands on the opposite one. With u the motion
+it senses, less that of what it stands on,
+
+    lag f' + f = -(stiffness u + damping u')
+
+which without a lag is a spring and a damper, and with one a controller behind an amplifier of the
+bandwidth 1 / lag. What it stands on is the ground, or a mass on springs and dampers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Support
+from touchdown.rotor.modal.modes import Basis
+
+DAMPED = 1e-6  # damping ratio (either sign) below which rounding may be all there is
+STILL = 1e-7  # of the largest root: below, a root that does not swing is a rotor that nothing holds
+
+
+@dataclass(frozen=True)
+class Foundation:
+    """What a bearing stands on: a mass on equal springs and dampers in both directions."""
+
+    mass: float  # kg
+    stiffness: float  # N/m
+    damping: float = 0.0  # N s/m
+
+
+@dataclass(frozen=True)
+class LinearBearing:
+    """A bearing for small motion. Rows are the force's directions (x, y), columns the motion's.
+
+    Raises ModelError for matrices that are not two by two.
+    """
+
+    node: int  # where its force acts, from 1
+    stiffness: np.ndarray  # (2, 2), N/m
+    damping: np.ndarray  # (2, 2), N s/m
+    lag: float = 0.0  # s, of the force behind the motion
+    sensed: int | None = None  # the node whose motion it answers; None: its own
+    foundation: Foundation | None = None  # None: the ground
+
+    def __post_init__(self) -> None:
+        for name in ("stiffness", "damping"):
+            matrix = np.asarray(getattr(self, name), dtype=float)
+            if matrix.shape != (2, 2):
+                raise ModelError(f"{name} of a bearing has the shape {matrix.shape}; it must be (2, 2)")
+            object.__setattr__(self, name, matrix)
+
+    @classmethod
+    def of(cls, support: Support) -> LinearBearing:
+        """Springs and dampers to the ground."""
+        k, c = support.stiffness, support.damping
+        k_y = k if support.stiffness_y is None else support.stiffness_y
+        c_y = c if support.damping_y is None else support.damping_y
+        return cls(support.node, np.diag([k, k_y]), np.diag([c, c_y]))
+
+    @property
+    def statically(self) -> np.ndarray:
+        """Stiffness (2, 2) with what it stands on in series, N/m."""
+        if self.foundation is None:
+            return self.stiffness
+        # force k (u - v) = s v gives v = (k + s)^-1 k u
+        k, s = self.stiffness, self.foundation.stiffness * np.eye(2)
+        return s @ np.linalg.solve(k + s, k)
+
+    def dynamic_stiffness(self, omega: float) -> np.ndarray:
+        """Force against small motion at `omega` (rad/s) over that motion (2, 2), complex, N/m."""
+        return (self.stiffness + 1j * omega * self.damping) / (1.0 + 1j * omega * self.lag)
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """Modes of a spinning rotor, by their size: one of each conjugate pair, M in all."""
+
+    roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part positive
+    sense: np.ndarray  # (M,), 1 circular whirl counter-clockwise, -1 circular clockwise, 0 in a plane
+    aperiodic: np.ndarray  # (A,), real roots of what does not swing, 1/s
+    free: int  # roots next to zero: of what nothing holds, which may drift
+    vectors: np.ndarray  # (coordinates, M), complex, by the root of their masses, of unit length
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Damped whirl frequencies (M,), Hz."""
+        return np.imag(self.roots) / (2.0 * np.pi)
+
+    @property
+    def damping_ratios(self) -> np.ndarray:
+        """Share of critical damping (M,); below 0 a mode grows."""
+        return damping_ratios(self.roots)
+
+    @property
+    def stable(self) -> bool:
+        """Whether nothing grows, by more than what rounding makes of no damping at all."""
+        size = np.max(np.abs(np.concatenate((self.roots, self.aperiodic))), initial=0.0)
+        fallen = np.any(self.aperiodic > STILL * size)
+        return not fallen and bool(np.all(self.damping_ratios > -DAMPED))
+
+
+def damping_ratios(roots: np.ndarray) -> np.ndarray:
+    """Share of critical damping of complex roots (1/s), of any shape; 0 where a root is."""
+    size = np.abs(roots)
+    return np.divide(-np.real(roots), size, out=np.zeros_like(size), where=size > 0.0)
+
+
+def log_decrements(roots: np.ndarray) -> np.ndarray:
+    """Logarithmic decrements of complex roots (1/s), of any shape: ln of a swing over the next one."""
+    return -2.0 * np.pi * np.real(roots) / np.imag(roots)
+
+
+class HeldRotor:
+    """A rotor in bearings, as equations of the first order.
+
+    The state is x (n), y (n) and the foundations' (x, y), their rates, and the forces that lag (x, y).
+    """
+
+    def __init__(self, basis: Basis, bearings: Sequence[LinearBearing], damping_ratio: float = 0.0) -> None:
+        """damping_ratio: of the elastic modes, as in the rotor's model."""
+        n = len(basis.omega)
+        standing = [b for b in bearings if b.foundation is not None]
+        self.n, self.bearings, self.basis = n, bearings, basis
+        self.places = 2 * n + 2 * len(standing)
+        lagging = [b for b in bearings if b.lag > 0.0]
+        self.states = 2 * self.places + 2 * len(lagging)
+        self.K = np.zeros((self.places, self.places))
+        self.C = np.zeros((self.places, self.places))
+        self.mass = np.ones(self.places)
+        for plane in (slice(0, n), slice(n, 2 * n)):
+            self.K[plane, plane] = np.diag(basis.omega**2)
+            self.C[plane, plane] = np.diag(2.0 * damping_ratio * basis.omega)
+        self.forced = np.zeros((self.places, 2 * len(lagging)))  # what the lagging forces push
+        self.asked = np.zeros((2 * len(lagging), 2 * self.places))  # what they follow
+        self.lag = np.repeat([b.lag for b in lagging], 2)
+        seat, force = 2 * n, 0
+        for b in bearings:
+            if b.foundation is not None:
+                at = slice(seat, seat + 2)
+                self.mass[at] = b.foundation.mass
+                self.K[at, at] += b.foundation.stiffness * np.eye(2)
+                self.C[at, at] += b.foundation.damping * np.eye(2)
+            self._add(b, seat, force)
+            seat += 2 if b.foundation is not None else 0
+            force += 2 if b.lag > 0.0 else 0
+
+    def _add(self, b: LinearBearing, seat: int, force: int) -> None:
+        """Force of a bearing: on its node, and back on what it stands on, at the place `seat`."""
+        acts = self._motion(b.node, b, seat)
+        sees = self._motion(b.node if b.sensed is None else b.sensed, b, seat)
+        if b.lag > 0.0:
+            rows = slice(force, force + 2)
+            self.forced[:, rows] = acts.T
+            self.asked[rows, : self.places] = -b.stiffness @ sees
+            self.asked[rows, self.places :] = -b.damping @ sees
+        else:
+            self.K += acts.T @ b.stiffness @ sees
+            self.C += acts.T @ b.damping @ sees
+
+    def _motion(self, node: int, b: LinearBearing, seat: int) -> np.ndarray:
+        """Motion (x, y) of a node against what the bearing stands on, per place (2, places)."""
+        motion = np.zeros((2, self.places))
+        motion[0, : self.n] = motion[1, self.n : 2 * self.n] = self.basis.deflections([node])[0]
+        if b.foundation is not None:
+            motion[:, seat : seat + 2] = -np.eye(2)
+        return motion
+
+    def whirl(self, speed: float) -> Whirl:
+        """Modes at spin `speed` (rad/s, counter-clockwise), by their size."""
+        n, places = self.n, self.places
+        C = self.C.copy()
+        C[:n, n : 2 * n] += speed * self.basis.gyroscopic
+        C[n : 2 * n, :n] -= speed * self.basis.gyroscopic
+        by_mass = 1.0 / self.mass[:, None]
+        A = np.zeros((self.states, self.states))
+        A[:places, places : 2 * places] = np.eye(places)
+        A[places : 2 * places, :places] = -by_mass * self.K
+        A[places : 2 * places, places : 2 * places] = -by_mass * C
+        A[places : 2 * places, 2 * places :] = by_mass * self.forced
+        by_lag = 1.0 / self.lag[:, None] if len(self.lag) else np.zeros((0, 1))
+        A[2 * places :, : 2 * places] = by_lag * self.asked
+        A[2 * places :, 2 * places :] = -by_lag * np.eye(len(self.lag))
+        return self._sorted(*np.linalg.eig(A))
+
+    def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> Whirl:
+        """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
+        swinging = np.imag(roots) > STILL * np.max(np.abs(roots))
+        aperiodic = np.sort(np.real(roots[np.imag(roots) == 0.0]))
+        free = int(np.count_nonzero(np.abs(roots) <= STILL * np.max(np.abs(roots))))
+        order = np.flatnonzero(swinging)[np.argsort(np.abs(roots[swinging]))]
+        moving = vectors[self.places : 2 * self.places, order]
+        x, y = moving[: self.n], moving[self.n : 2 * self.n]
+        turning = -2.0 * np.imag(np.sum(np.conj(x) * y, axis=0))
+        size = np.sum(np.abs(x) ** 2 + np.abs(y) ** 2, axis=0)
+        sense = np.divide(turning, size, out=np.zeros_like(turning), where=size > 0.0)
+        moving = np.sqrt(self.mass)[:, None] * moving
+        return Whirl(roots[order], sense, aperiodic, free, moving / np.linalg.norm(moving, axis=0))
