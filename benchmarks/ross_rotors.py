@@ -5,9 +5,9 @@
 needs ROSS (`pip install ross-rotordynamics "plotly<6"`). Each example is saved by `rotor.save` and imported
 by one command, and besides by the matrices M, K and G of the free rotor alone. ROSS's own matrices are
 solved here without its axial and torsional coordinates, undamped, and with all coefficients of its
-bearings, damping and cross-coupling, as complex roots ("damped"); `run_modal` and `run_ucs` (critical speeds
-over the stiffness of the bearings) are solved as they are. With -o it leaves saved files, matrices and
-ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
+bearings, damping and cross-coupling, as complex roots ("damped"); `run_modal` and `run_ucs` (critical
+speeds over the stiffness of the bearings) are solved as they are. With -o it leaves saved files, matrices
+and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def read(path: Path) -> Scene:
     return _with_run(scene, package)
 
 
-def _component(package: Package, name: str, settings: Mapping[str, float]) -> ComponentSpec:
+def _component(package: Package, name: str, settings: Mapping[str, object]) -> ComponentSpec:
     said = package.said
     given = {_here(said, name, variable): value for variable, value in settings.items()}
     given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
