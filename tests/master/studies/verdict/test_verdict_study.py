@@ -232,7 +232,8 @@ def test_a_shaft_without_any_unbalance_has_nothing_to_turn(tmp_path: Path) -> No
     ("arguments", "named"),
     [
         (["--grid", "0 deg"], "grid = 0 deg must be from 0.1 to 180 deg"),
-        (["--grid", "12"], "grid = 687.549 deg must be from 0.1 to 180 deg"),
+        (["--grid", "12"], 'grid = 687.549 deg must be from 0.1 to 180 deg; write "12 deg"'),
+        (["--grid", "90"], 'must be from 0.1 to 180 deg; write "90 deg"'),
         (["--grid", "2 deg"], "resolution = 4 deg must not be coarser than grid = 2 deg"),
         (["--resolution", "4 mm"], "it is measured in rad"),
         (["--macro-steps", "0 us"], "--macro-steps 0 us must be above 0"),
