@@ -67,11 +67,12 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     except ModelError as error:
         raise given.error(_mistaken(given, M) or str(error)) from None
     positions = body.positions
-    about = "Imported from mass, stiffness and gyroscopic matrices."
+    about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
     if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
         listed = shorten(", ".join(planes.rows.nodes), MOST_LISTED, placeholder=" ...")
         about += f"\nIts nodes from 1 on are those called {listed}"
-    shaft = Shaft(title, superelement=body, about=about)
+        called = planes.rows.nodes
+    shaft = Shaft(title, superelement=body, about=about, called=called)
     if not given.has("C"):
         return shaft
     return _damped(given, shaft, planes.alike("C", given.numbers("C", M.shape)))

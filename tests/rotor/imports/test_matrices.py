@@ -314,6 +314,20 @@ def test_a_place_that_is_no_node_is_refused() -> None:
     assert placed(read(EXAMPLE), {"A": "40 mm"}).node("A") == 4
 
 
+def test_a_place_may_be_what_the_file_calls_its_node() -> None:
+    data = exported(find("rotor_I"))
+    count = len(data["coordinates"])
+    data["nodes"] = np.arange(count) + 101
+    rotor = touchdown.Rotor.imported(data, {"A": 103, "B": 18})
+    assert (rotor.node("A"), rotor.node("B")) == (3, 18)
+    assert "A at node 3 (called 103), B at node 18 (called 118)" in repr(rotor)
+    data["nodes"] = [f"N{i}" for i in range(count)]
+    assert touchdown.Rotor.imported(data, {"A": "N2"}).node("A") == 3
+    data["nodes"] = np.arange(count)[::-1] + 1
+    with pytest.raises(touchdown.TouchdownError, match=rf"node 3 along the axis, called {count - 2}, at"):
+        touchdown.Rotor.imported(data, {"A": 3})
+
+
 def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     def refused(path: Path, says: str) -> None:
         with pytest.raises(ImportedRotorError, match=says):
