@@ -16,6 +16,7 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation import fig_14
+from touchdown.master.studies.rotor.balance import balanced
 from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Task
 from touchdown.master.studies.verdict import study as verdict_study
@@ -226,6 +227,9 @@ def test_a_shaft_without_any_unbalance_has_nothing_to_turn(tmp_path: Path) -> No
     scene = load_scene("rotor1-9000").swap(rotor=str(file))
     with pytest.raises(TouchdownError, match="nothing to turn"):
         study_verdict(scene, Plan(), tmp_path / "out")
+    assert balanced(scene, ["rotor"])
+    assert not balanced(load_scene("rotor1-9000"), ["rotor"])
+    assert not balanced(load_scene("disk-caged-simplified"), ["rotor"])  # rigid
 
 
 @pytest.mark.parametrize(
