@@ -99,8 +99,9 @@ class Rotor(Shaft):
         such arrays by name. Its `about` says what is left out or otherwise.
 
         at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
-        only motion is asked for; each a node (from 1), or text such as "120 mm" from node 1, by name.
-        speed: rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
+        only motion is asked for; each a node (from 1), what the file calls one, or text
+        such as "120 mm" from node 1, by name. speed: rad/s, at which bearings whose
+        coefficients hang on it are taken. Raises TouchdownError.
 
         >>> with open("pump.csv", "w") as file:
         ...     print("length [mm], outer diameter [mm], material\\n300, 30, steel", file=file)
@@ -228,7 +229,8 @@ class Rotor(Shaft):
         return report_text(described(self, speed, modes))
 
     def __repr__(self) -> str:
-        stations = ", ".join(f"{station.name} at node {station.node}" for station in self.stations)
+        called = [f" (called {name})" for name in self.called] or self.nodes * [""]
+        stations = ", ".join(f"{s.name} at node {s.node}{called[s.node - 1]}" for s in self.stations)
         made_of = f"{len(self.elements)} elements" if self.elements else self.body.kind
         return (
             f"<Rotor {self.title}: {made_of}, {self.nodes} nodes, {self.mass:.5g} kg, "

@@ -37,6 +37,7 @@ gives takes the place of what stands there, table by table; a component that nam
 
 from __future__ import annotations
 
+import json
 import os
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -114,11 +115,21 @@ def _mistaken(path: Path) -> str:
 
 def is_scene(name: str) -> bool:
     """Whether a name or path, which could be a rotor's as well, is of a scene, sound or not."""
-    if name.endswith((".ssp", ".json")):
+    if name.endswith(".ssp"):
         return True
+    if name.endswith(".json"):
+        return _may_be_left(Path(name))
     if not name.endswith(".toml"):
         return name in shipped() or os.path.isfile(Path(name) / SCENE_FILE)
     return is_scene_file(Path(name))
+
+
+def _may_be_left(path: Path) -> bool:
+    """Whether a JSON file is, or may have been, what a run left: not where it has no components."""
+    try:
+        return "components" in json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, TypeError, RecursionError):
+        return True
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:

@@ -19,6 +19,7 @@ WIDE = 0.1  # clearance over the journal's radius; usual is 0.01 to 0.03
 LOOSE = 0.7  # of the bore that journal and clearance fill at least, where no sleeve is between
 ROUGH = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
 NO_FRICTION = 5.0  # above which nothing rubs
+BALLS = "balls."  # begins the names of what a ball bearing says of its balls
 COEFFICIENTS = ("friction.dynamic", "friction.static")
 
 
@@ -97,7 +98,8 @@ def _friction(seat: Seat) -> Iterator[str]:
 
 
 def _speed(seat: Seat) -> Iterator[str]:
-    if seat.speed is None or seat.width is None:
+    rolls = seat.bore is not None or any(name.startswith(BALLS) for name in seat.values)
+    if not rolls or seat.speed is None or seat.width is None:
         return
     usual = MOST_BORE_SPEED / seat.width * RPM
     if abs(seat.speed) > FAST * usual:

@@ -109,6 +109,14 @@ def is_scene_file(path: Path) -> bool:
     return "components" in data or "extends" in data
 
 
+def is_of_ross(path: Path) -> bool:
+    """Whether ROSS saved a TOML file."""
+    try:
+        return "ross_version" in tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+
+
 def is_rotor(table: Mapping[str, Any]) -> bool:
     """Whether a file's table is a rotor's, not a scene's."""
     return "components" not in table and any(key in table for key in OF_ROTORS)

@@ -6,7 +6,7 @@ at the ends of the elements in their order; positions are measured along the axi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -77,6 +77,7 @@ class Shaft:
     about: str = ""
     supports: tuple[Support, ...] = ()
     superelement: Superelement | None = None  # in place of elements and points
+    called: tuple[str, ...] = field(default=(), compare=False)  # nodes, where it is from; not in its file
 
     @cached_property
     def body(self) -> Beams | Superelement:

@@ -24,6 +24,8 @@ NOISE = 1e-13  # of the highest squared frequency, which the lowest are calculat
 FIT = 1e-3  # of the largest motion of a node: by which shapes may miss that of a rigid body
 LENGTHS = (1e-3, 1e2)  # m, of rotors; beyond, units are mistaken
 HERTZ = (0.1, 1e6)  # of their first bending mode
+HEAVY = 1e3  # kg/m3, mass over cubed length; slender rotors have 1 to 100, short flywheels more
+DENSEST = 5e4  # kg/m3, twice that of any metal
 FREE = (
     "export the rotor free, without bearings and supports, its coordinates and matrices in the same units, "
     "with all digits, and the dofs in their order"
@@ -77,9 +79,15 @@ class Superelement:
 
     @cached_property
     def _rigid(self) -> np.ndarray:
-        """Coordinates of a translation by 1 m and of a tilt of 1 about node 1 (n, 2)."""
+        """Coordinates of a translation by 1 m and of a tilt of 1 about node 1 (n, 2).
+
+        Of shapes, within the two lowest modes: at few nodes, bending modes may seem rigid motions, too.
+        """
         motion = rigid_motion(self.positions, 0.0)
-        return motion if self.shapes is None else np.linalg.lstsq(self.shapes, motion, rcond=None)[0]
+        if self.shapes is None:
+            return motion
+        lowest = linalg.eigh(self.stiffness_matrix, self.mass_matrix)[1][:, :2]
+        return lowest @ np.linalg.lstsq(self.shapes @ lowest, motion, rcond=None)[0]
 
     @cached_property
     def _inertia(self) -> np.ndarray:
@@ -203,7 +211,7 @@ def _check_mass(mass: np.ndarray) -> None:
 
 
 def _check_rigid(body: Superelement) -> None:
-    """The shapes must hold the motions of a rigid body, in deflections and in slopes."""
+    """The two lowest modes must be the motions of a rigid body, in deflections and in slopes."""
     if body.shapes is None:
         return
     motion = rigid_motion(body.positions, 0.0)
@@ -213,9 +221,24 @@ def _check_rigid(body: Superelement) -> None:
             scale = np.max(np.abs(motion[part::2, column])) or np.max(np.abs(motion)) / body.positions[-1]
             if np.max(missed[part::2, column]) > FIT * scale:
                 raise ModelError(
-                    f"no combination of the shapes is a {what} of the rigid rotor: its {name} are missed; "
-                    "give both rigid modes of the free rotor, and slopes with the sign of dx/dz"
+                    f"no combination of the two lowest modes is a {what} of the rigid rotor: its {name} "
+                    "are missed; give both rigid modes of the free rotor, and slopes with the sign of dx/dz"
                 )
+
+
+def _check_proportion(body: Superelement) -> None:
+    """It must not be heavier than any metal, as mistaken units make it.
+
+    A body of mass m and polar inertia J on a length L is somewhere at least as dense as m^2 / (2 pi J L):
+    that of a solid cylinder. Point masses without J would seem denser, so m / L^3 counts, too.
+    """
+    length, mass = float(body.positions[-1]), body.mass
+    least = mass**2 / (2.0 * math.pi * body.polar_inertia * length)
+    if mass > HEAVY * length**3 and least > DENSEST:
+        raise ModelError(
+            f"{mass:.5g} kg on {length:.4g} m is out of proportion, look at the units: t, not kg, goes "
+            "with mm, s and N"
+        )
 
 
 def _check_inertia(body: Superelement) -> None:
@@ -241,6 +264,7 @@ def _check_inertia(body: Superelement) -> None:
         raise ModelError(
             f"G gives some section a negative polar inertia (its lowest value is {lowest:.3g})"
         )
+    _check_proportion(body)
 
 
 def _check_stiffness(body: Superelement) -> None:
@@ -249,7 +273,7 @@ def _check_stiffness(body: Superelement) -> None:
     square = linalg.eigh(K, M, eigvals_only=True)
     bending, noise = square[2], NOISE * square[-1]
     if square[0] < -(STILL**2) * abs(bending) - noise:
-        raise ModelError("K is not positive: some motion would have less energy than none")
+        raise ModelError(f"K is not positive: some motion would have less energy than none; {FREE}")
     rigid = body.matrices().rigid
     for motion, what in zip(rigid.T, ("moved sideways", "tilted"), strict=True):
         own = (motion @ K @ motion) / (motion @ M @ motion)
@@ -260,6 +284,11 @@ def _check_stiffness(body: Superelement) -> None:
         raise ModelError(
             "K leaves a third motion free in a plane (a hinge, or a part that is not fastened), or its "
             "numbers are too far apart to calculate with"
+        )
+    if body.shapes is not None and linalg.eigvalsh(K[2:, 2:], M[2:, 2:])[0] <= ROUNDING * bending + noise:
+        raise ModelError(
+            "with its first two coordinates held the rotor can still move as a rigid body; put the two "
+            "rigid modes first"
         )
     first = math.sqrt(bending) / (2.0 * math.pi)
     if not HERTZ[0] <= first <= HERTZ[1]:

@@ -37,8 +37,16 @@ from touchdown.rotor.modal.modes import RIGID, basis
 
 FIELDS = ("M", "K", "G", "C", "coordinates", "nodes", "dofs", "units")
 LENGTHS = {"m": 1.0, "mm": 1e-3}  # m
+MISTAKEN = (  # what mends a mistake: a factor of the coordinates, and the unit; and what to say
+    (-1.0, None, "the coordinates run against the axis of the matrices; turn their sign along it"),
+    (1.0, "m", 'these are matrices in kg, m, s, N, so it is units = "m"'),
+    (1.0, "mm", 'these are matrices in t, mm, s, N; give units = "mm"'),
+    (1e-3, "m", "the coordinates are in mm, the matrices in kg, m, s, N; divide the coordinates by 1000"),
+    (1e3, "mm", 'the matrices are in t, mm, s, N; give the coordinates in mm, too, and units = "mm"'),
+)
 ALONG = "motion along the axis or about it, which a rotor here does not have"
 UNDAMPED = 1e-3  # of the first bending frequency: damping of a rigid motion below it is none
+PROPORTIONAL = 1e-3  # of alpha: by which C may differ from alpha M on the rigid modes
 TOLD = 5  # damping ratios
 MOST_LISTED = 200  # characters of nodes' names
 
@@ -52,25 +60,47 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
         raise given.error(f"M is {by(M.shape)}; it must be square")
     planes = Planes(given, rows(given, len(M)), _unit(given))
     planes.check_mass(M)
+    try:
+        body = checked(_body(given, planes, M))
+    except ImportedRotorError:
+        raise
+    except ModelError as error:
+        raise given.error(_mistaken(given, M) or str(error)) from None
+    positions = body.positions
+    about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
+    if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
+        listed = shorten(", ".join(planes.rows.nodes), MOST_LISTED, placeholder=" ...")
+        about += f"\nIts nodes from 1 on are those called {listed}"
+        called = planes.rows.nodes
+    shaft = Shaft(title, superelement=body, about=about, called=called)
+    if not given.has("C"):
+        return shaft
+    return _damped(given, shaft, planes.alike("C", given.numbers("C", M.shape)))
+
+
+def _body(given: Given, planes: Planes, M: np.ndarray) -> Superelement:
+    """Of one plane, in SI, unchecked."""
     positions = planes.metre * planes.rows.positions
-    body = Superelement(
+    return Superelement(
         positions - positions[0],
         planes.alike("M", M),
         planes.alike("K", given.numbers("K", M.shape)),
         planes.polar(given.numbers("G", M.shape)),
     )
-    try:
-        body = checked(body)
-    except ModelError as error:
-        raise given.error(str(error)) from None
-    about = "Imported from mass, stiffness and gyroscopic matrices."
-    if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
-        listed = shorten(", ".join(planes.rows.nodes), MOST_LISTED, placeholder=" ...")
-        about += f"\nIts nodes from 1 on are those called {listed}"
-    shaft = Shaft(title, superelement=body, about=about)
-    if not given.has("C"):
-        return shaft
-    return _damped(given, shaft, planes.alike("C", given.numbers("C", M.shape)))
+
+
+def _mistaken(given: Given, M: np.ndarray) -> str:
+    """Which mistake about axis or units, put right, makes these the matrices of a rotor; "" of none."""
+    places = given.numbers("coordinates")
+    for factor, unit, says in MISTAKEN:
+        changes = {"coordinates": factor * places} | ({} if unit is None else {"units": unit})
+        other = Given(given.file, {**given.data, **changes})
+        try:
+            checked(_body(other, Planes(other, rows(other, len(M)), _unit(other)), M))
+        except ModelError:
+            continue
+        return says
+    return ""
 
 
 def _unit(given: Given) -> float:
@@ -178,6 +208,13 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
     free = basis(shaft, 0)
     modal = np.sum(free.shapes * (C @ free.shapes), axis=0)  # 1/s
     if np.max(np.abs(modal[:RIGID])) > UNDAMPED * free.omega[RIGID]:
+        rigid = free.shapes[:, :RIGID]
+        alpha = modal[:RIGID].mean()
+        if np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID))) <= PROPORTIONAL * alpha:
+            raise given.error(
+                f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
+                "belongs to the surroundings; export C without it"
+            )
         raise given.error(
             "C damps the rotor as a whole, so it holds bearings; export the rotor without, they belong "
             "into the scene"

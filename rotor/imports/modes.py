@@ -31,6 +31,7 @@ FIELDS = (
     *("positions", "frequencies", "deflections", "slopes"),
     *("modal_masses", "gyroscopic", "polar_inertias"),
 )
+ALIKE = 1e-6  # of 1, the largest deflection of modes that are scaled to it
 
 
 def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
@@ -46,7 +47,7 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     size = (len(positions), len(frequencies))
     shapes = np.empty((2 * size[0], size[1]))
     shapes[0::2], shapes[1::2] = (given.numbers(name, size)[:, order] for name in ("deflections", "slopes"))
-    scale = 1.0 / np.sqrt(_masses(given, size[1])[order])
+    scale = 1.0 / np.sqrt(_masses(given, shapes[0::2])[order])
     shapes *= scale
     omega = 2.0 * np.pi * frequencies[order]
     omega[:RIGID] = 0.0
@@ -62,7 +63,8 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     except ModelError as error:
         raise given.error(str(error)) from None
     about = (
-        f"Imported from modal data, {size[1]} modes per plane with the two rigid ones.\n"
+        f"Imported from modal data, {size[1]} modes per plane with the two rigid ones; mass "
+        f"{body.mass:.4g} kg, as the modes say.\n"
         f"What modes beyond {frequencies[order][-1]:.5g} Hz would give at its seats (residual flexibility) "
         "is not known."
     )
@@ -82,9 +84,15 @@ def _check_rigid(given: Given, frequencies: np.ndarray) -> None:
         )
 
 
-def _masses(given: Given, n: int) -> np.ndarray:
-    """Modal masses (n,), kg."""
+def _masses(given: Given, deflections: np.ndarray) -> np.ndarray:
+    """Modal masses (n,), kg, of modes with these deflections (N, n)."""
+    n = deflections.shape[1]
     if not given.has("modal_masses"):
+        if np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=ALIKE):
+            raise given.error(
+                "every mode has the largest deflection 1, so they are not mass-normalised: "
+                "give modal_masses"
+            )
         return np.ones(n)
     masses = given.numbers("modal_masses", (n,))
     if not np.all(masses > 0.0):

@@ -36,6 +36,8 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
         return of_sections(_text(path), str(path), path.stem)
     if kind in MODELS:
         return of_elements(_parsed(path), str(path), path.stem, speed)
+    if not path.exists():
+        raise ImportedRotorError(f"there is no file or folder {path}")
     raise ImportedRotorError(
         f"{path}: rotors are imported from ROSS's files ({', '.join(MODELS)}), tables of sections "
         f"({', '.join(TABLES)}), matrices and modal data ({ARCHIVE}), and folders of Matrix Market files"

@@ -15,6 +15,7 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import RECORDING, Result
 from touchdown.master.scene.file import SCENE_FILE
 from touchdown.master.scene.restored import restored
+from touchdown.master.scene.tables import is_scene_file
 
 
 def reopened(folder: Path) -> Result:
@@ -23,6 +24,10 @@ def reopened(folder: Path) -> Result:
     Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
     """
     if os.path.isfile(folder):
+        if is_scene_file(folder) and not (folder.parent / SUMMARY).exists():
+            raise TouchdownError(
+                f"{folder} is a scene; `touchdown run {folder}` first, and give the folder it names"
+            )
         raise TouchdownError(f"{folder} is a file; give the folder that it lies in, {folder.parent}")
     if not os.path.isdir(folder):
         raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")

@@ -13,7 +13,7 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
 from touchdown.master.scene.file import shipped as scenes
-from touchdown.master.scene.tables import is_scene_file, mistake_in
+from touchdown.master.scene.tables import is_of_ross, is_scene_file, mistake_in
 from touchdown.master.studies.rotor.held_table import held_lines
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
@@ -28,6 +28,13 @@ SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 BEYOND = 2.0  # times the speed asked for: its end
+FOREIGN = {  # what files of others hold
+    **dict.fromkeys((".csv", ".tsv", ".txt"), "a table of sections"),
+    **dict.fromkeys((".toml", ".json"), "ROSS's files"),
+    ".npz": "matrices or modal data",
+    ".mtx": "the matrices in that folder",
+}
+ANY = "a table of sections, of ROSS's files, of matrices or modal data"
 TO_REST = (
     "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
 )
@@ -98,17 +105,40 @@ def find_rotor(name: str) -> Shaft:
             raise TouchdownError(
                 f"{path} is a scene, no rotor's file; `touchdown scenes {path}` says which its rotor is"
             ) from None
-        raise TouchdownError(mistake_in(path, error)) from None
+        raise TouchdownError(_foreign(path) or mistake_in(path, error)) from None
     except LookupError:
-        if os.path.isfile(name):
+        if name in scenes():
             raise TouchdownError(
-                f"{name} is no rotor's file; `touchdown import-rotor {name}` makes one of a table of "
-                "sections or of ROSS's files"
+                f"{name} is a scene, no rotor; `touchdown scenes {name}` says which its rotor is; rotors: "
+                f"{', '.join(shipped())}"
             ) from None
-        known = [*shipped(), *scenes()]
+        if told := _foreign(Path(name)):
+            raise TouchdownError(told) from None
+        known = _nearest(name)
         raise TouchdownError(
             f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"
         ) from None
+
+
+def _nearest(name: str) -> list[str]:
+    """Rotors that begin so; or all, and the scenes where a name is like one of theirs."""
+    if begun := [rotor for rotor in shipped() if rotor.startswith(name)]:
+        return begun
+    like = one_of(name, scenes()).startswith("did you mean")
+    return [*shipped(), *(scenes() if like else ())]
+
+
+def _foreign(path: Path) -> str:
+    """What to do with a file or folder that `import-rotor` may read; "" of others."""
+    kind, source = path.suffix.lower(), path
+    if not os.path.exists(path) or (kind == ".toml" and not is_of_ross(path)):
+        return ""
+    if path.is_dir() and not any(path.glob("*.mtx")):
+        return ""
+    of = "its matrices" if path.is_dir() else FOREIGN.get(kind, ANY)
+    if kind == ".mtx":
+        source = path.parent
+    return f"{path} is no rotor's file; `touchdown import-rotor {source}` makes one of {of}"
 
 
 def report_text(portrait: Portrait) -> str:

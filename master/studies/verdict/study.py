@@ -47,8 +47,11 @@ class Plan:
     def __post_init__(self) -> None:
         for name, value in (("grid", self.spacing), ("resolution", self.resolution)):
             if not LEAST <= value <= 0.5 * CIRCLE:
+                meant = math.radians(value)  # what a number without a unit was
+                if value < LEAST or meant > 0.5 * CIRCLE:
+                    meant = GRID
                 raise TouchdownError(
-                    f'{name} = {value:g} deg must be from {LEAST} to 180 deg; write "12 deg"'
+                    f'{name} = {value:g} deg must be from {LEAST} to 180 deg; write "{meant:g} deg"'
                 )
         if self.resolution > self.spacing:
             raise TouchdownError(

@@ -18,6 +18,9 @@ from touchdown.master.common.units import to_si
 from touchdown.master.scene.restored import restored
 
 PUMP = ROOT / "examples" / "pump_sections.csv"
+SPINDLE_MATRICES = ROOT / "examples" / "spindle_matrices"
+SAVED = ROOT / "tests" / "rotor" / "imports" / "saved"
+ROSS, MATRICES = SAVED / "rotor_example.toml", SAVED / "rotor_example.npz"
 SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
 
 
@@ -31,6 +34,22 @@ SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
         ),
         (("run", "left"), "left is what a run left; give left/scene.json"),
         (("import-rotor", SPINDLE), "is a rotor's file already; `touchdown rotor` describes it"),
+        (("import-rotor", "nowhere"), "there is no file or folder nowhere"),
+        (("rotor", ROSS), f"is no rotor's file; `touchdown import-rotor {ROSS}` makes one of ROSS's files"),
+        (
+            ("rotor", "ross.json"),
+            "is no rotor's file; `touchdown import-rotor ross.json` makes one of ROSS's",
+        ),
+        (("rotor", MATRICES), f"`touchdown import-rotor {MATRICES}` makes one of matrices or modal data"),
+        (("rotor", SPINDLE_MATRICES / "M.mtx"), f"`touchdown import-rotor {SPINDLE_MATRICES}` makes one"),
+        (("rotor", SPINDLE_MATRICES), f"`touchdown import-rotor {SPINDLE_MATRICES}` makes one of its"),
+        (("rotor", "rotor"), "did you mean rotor_I or rotor_II, or give"),
+        (("rotor", "amb"), "there is no rotor called amb; there are: rotor_I, rotor_II"),
+        (
+            ("new", "m", "--rotor", "rotor1-9000", "--bearings", "7004"),
+            "rotor1-9000 is a scene, no rotor; `touchdown scenes rotor1-9000` says which its rotor is",
+        ),
+        (("report", "mine.toml"), "mine.toml is a scene; `touchdown run mine.toml` first"),
         (("rotor", PUMP), f"is no rotor's file; `touchdown import-rotor {PUMP}` makes one of a table"),
         (("new", "m", "--rotor", PUMP, "--bearings", "7004"), f"`touchdown import-rotor {PUMP}` makes one"),
         (
@@ -55,6 +74,7 @@ def test_a_mix_up_is_named_with_the_right_command(
     monkeypatch.chdir(tmp_path)
     Path("left").mkdir()
     Path("mine.toml").write_text(f'extends = "{SCENE}"')
+    Path("ross.json").write_text('{"ShaftElement_a": {}, "ross_version": "1.6"}')
     for name in ("summary", "ending", "scene"):
         Path("left", f"{name}.json").write_text("{}")
     assert said in command(*arguments).line

@@ -15,7 +15,13 @@ from touchdown.master.scene.plausible import Seat, remarks
 from touchdown.master.studies.sweep.journal import Journal, Member, read_journal
 from touchdown.master.studies.sweep.report import warned
 
-VALUES = {"journal_radius": 9.7e-3, "clearance": 0.3e-3, "friction.dynamic": 0.15, "friction.static": 0.2}
+VALUES = {
+    "journal_radius": 9.7e-3,
+    "clearance": 0.3e-3,
+    "friction.dynamic": 0.15,
+    "friction.static": 0.2,
+    "balls.count": 9.0,
+}
 SEAT = Seat("bearing", VALUES, "6004", 20e-3, "rotor", 9000.0 * math.pi / 30.0)
 
 
@@ -26,6 +32,8 @@ def with_value(name: str, value: float) -> Seat:
 
 def test_a_usual_machine_is_not_remarked_on() -> None:
     assert remarks([SEAT, SEAT]) == []
+    bushing = {name: value for name, value in VALUES.items() if name != "balls.count"}
+    assert remarks([Seat("bushing", bushing, None, None, "rotor", 20000.0)]) == []  # no balls
     assert remarks([Seat("probe", {}, None, None, "rotor", None)]) == []
 
 

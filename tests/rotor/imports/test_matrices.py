@@ -216,6 +216,22 @@ def grounded(data: Arrays) -> None:
     data["C"][[0, 1], [0, 1]] = 1e3
 
 
+def mass_damped(data: Arrays) -> None:
+    data["C"] = 50.0 * data["M"]
+
+
+def few_digits(data: Arrays) -> None:
+    """Six, of which the entries of K leave nothing for what its rigid motions take."""
+    for name in "MKG":
+        data[name] = np.array([[float(f"{value:.5e}") for value in row] for row in data[name]])
+
+
+def kilograms_and_millimetres(data: Arrays) -> None:
+    data.update(exported(find("rotor_I"), unit=1e-3))
+    data["M"] *= 1e3
+    data["G"] *= 1e3
+
+
 def hinged(data: Arrays) -> None:
     """Two halves that are not fastened to each other."""
     half = 6 * (len(data["coordinates"]) // 2)
@@ -235,7 +251,12 @@ MISTAKES = [
     (given(dofs=["UX", "UY"]), "dofs are 40 by 2, and M has 120 rows"),
     (given(dofs="UX"), "dofs are 20 by 2, and M has 120 rows"),
     (given(dofs=[{}]), "dofs must be an array of texts or whole numbers"),
-    (given(units="mm"), "out of proportion; look at the units"),
+    (given(units="mm"), 'so it is units = "m"'),
+    (times("coordinates", -1.0), "the coordinates run against the axis of the matrices"),
+    (times("coordinates", 1e3), "the coordinates are in mm, the matrices in kg, m, s, N"),
+    (few_digits, "some motion would have less energy than none; export the rotor free"),
+    (kilograms_and_millimetres, "kg on 0.3097 m is out of proportion, look at the units"),
+    (mass_damped, "alpha M (alpha = 50 1/s), which damps rigid motion, too"),
     (times("K", 1e-12), "the first bending mode has"),
     (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "PHI"]), "PHI is none; they are 1 to 6"),
     (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "UX"]), "UX of node 1 is there twice"),
@@ -247,7 +268,7 @@ MISTAKES = [
     (changed("G", 3, 4, 5.0), "G is not skew-symmetric: 5 between ROTX of node 1 and ROTY of node 1"),
     (changed("coordinates", 3, 0, 0.01), "away from a line along Z"),
     (changed("coordinates", 3, 2, 7.0), "two nodes are at 7 along Z"),
-    (times("coordinates", 1000.0), "309.7 m, which is out of proportion"),
+    (times("coordinates", 1e5), "m, which is out of proportion; look at the units"),
     (times("coordinates", 10.0), "K holds the rotor: tilted as a whole it swings at"),
     (times("G", -1.0), "G has a polar inertia of -"),
     (times("G", 942.0), "G is per spin speed, in rad/s"),
@@ -276,10 +297,35 @@ def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: 
     assert "\n" not in told
 
 
+@pytest.mark.parametrize(
+    ("coordinates", "says"), [(1.0, "give the coordinates in mm, too"), (1e3, 'give units = "mm"')]
+)
+def test_matrices_in_millimetres_that_are_not_said_to_be_are_told(coordinates: float, says: str) -> None:
+    data = exported(find("rotor_I"), unit=1e-3)
+    data["coordinates"] = (data["coordinates"] - 7.0) * 1e-3 * coordinates
+    del data["units"]
+    with pytest.raises(ImportedRotorError, match=says):
+        of_arrays(data, "rotor.npz", "rotor")
+
+
 def test_a_place_that_is_no_node_is_refused() -> None:
     with pytest.raises(touchdown.TouchdownError, match=r"no node .* the nearest is node 4 at 40 mm"):
         touchdown.Rotor.imported(EXAMPLE, {"A": "41 mm"})
     assert placed(read(EXAMPLE), {"A": "40 mm"}).node("A") == 4
+
+
+def test_a_place_may_be_what_the_file_calls_its_node() -> None:
+    data = exported(find("rotor_I"))
+    count = len(data["coordinates"])
+    data["nodes"] = np.arange(count) + 101
+    rotor = touchdown.Rotor.imported(data, {"A": 103, "B": 18})
+    assert (rotor.node("A"), rotor.node("B")) == (3, 18)
+    assert "A at node 3 (called 103), B at node 18 (called 118)" in repr(rotor)
+    data["nodes"] = [f"N{i}" for i in range(count)]
+    assert touchdown.Rotor.imported(data, {"A": "N2"}).node("A") == 3
+    data["nodes"] = np.arange(count)[::-1] + 1
+    with pytest.raises(touchdown.TouchdownError, match=rf"node 3 along the axis, called {count - 2}, at"):
+        touchdown.Rotor.imported(data, {"A": 3})
 
 
 def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> None:

@@ -15,7 +15,9 @@ from places import ROOT
 
 import touchdown
 from touchdown.master.cli import main
+from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import find
 from touchdown.rotor.imports import ImportedRotorError, of_arrays, read
 from touchdown.rotor.modal.modes import basis
@@ -55,6 +57,7 @@ def test_a_rotor_by_its_modes_has_them(name: str, tmp_path: Path) -> None:
     for size in ("mass", "centre_of_mass", "polar_inertia", "diametral_inertia"):
         assert getattr(found, size) == pytest.approx(getattr(shaft, size), rel=1e-9)
     assert "What modes beyond" in found.about
+    assert f"mass {shaft.mass:.4g} kg, as the modes say" in found.about
 
 
 def test_scale_order_and_the_shapes_of_rigid_modes_do_not_matter() -> None:
@@ -72,6 +75,39 @@ def test_scale_order_and_the_shapes_of_rigid_modes_do_not_matter() -> None:
     assert found.mass == pytest.approx(shaft.mass, rel=1e-9)
     assert again.omega == pytest.approx(own.omega, rel=1e-9)
     assert again.shapes == pytest.approx(own.shapes, abs=1e-9 * np.max(np.abs(own.shapes)))
+
+
+def few(shaft: Shaft, nodes: int, modes: int) -> Arrays:
+    """Modes of `shaft` at few of its nodes, from the first to the last."""
+    kept = np.linspace(0, shaft.nodes - 1, nodes).round().astype(int)
+    data = exported(shaft, modes)
+    return data | {name: data[name][kept] for name in ("positions", "deflections", "slopes")}
+
+
+@pytest.mark.parametrize(("nodes", "modes"), [(3, 8), (4, 10)])
+def test_few_nodes_may_have_many_modes(nodes: int, modes: int) -> None:
+    """More than they have coordinates, where bending modes together look like a rigid motion."""
+    shaft = find("rotor_I")
+    found = of_arrays(few(shaft, nodes, modes), "few", "few")
+    for size in ("mass", "centre_of_mass", "polar_inertia", "diametral_inertia"):
+        assert getattr(found, size) == pytest.approx(getattr(shaft, size), rel=1e-9)
+
+
+def test_rigid_modes_come_first() -> None:
+    """Or residual vectors, which hold the first two coordinates, could not be found."""
+    shaft = find("rotor_I")
+    body = of_arrays(exported(shaft), "own", "own").superelement
+    assert body is not None
+    order = np.roll(np.arange(MODES), 2)
+    M, K, G = (
+        A[np.ix_(order, order)] for A in (body.mass_matrix, body.stiffness_matrix, body.polar_matrix)
+    )
+    assert body.shapes is not None
+    moved = Superelement(body.positions, M, K, G, body.shapes[:, order])
+    assert moved.mass == pytest.approx(shaft.mass, rel=1e-9)
+    assert checked(body) == body
+    with pytest.raises(ModelError, match="put the two rigid modes first"):
+        checked(moved)
 
 
 def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
@@ -121,6 +157,12 @@ def times(name: str, factor: float) -> Callable[[Arrays], None]:
     return lambda data: data.update({name: factor * data[name]})
 
 
+def largest_is_one(data: Arrays) -> None:
+    largest = np.abs(data["deflections"]).max(axis=0)
+    for name in ("deflections", "slopes"):
+        data[name] = data[name] / largest
+
+
 def bending_only(data: Arrays) -> None:
     data["frequencies"] = data["frequencies"][2:]
     for name in ("deflections", "slopes"):
@@ -139,6 +181,10 @@ MISTAKES = [
     (given(gyroscopic=np.arange(49.0).reshape(7, 7)), "G is not symmetric in a plane"),
     (given(frequencies=1j * np.arange(MODES)), "frequencies must be an array of real numbers"),
     (given(frequencies=np.arange(20.0, 20.0 + MODES)), "the lowest are 20, 21, 22 Hz; a free rotor has"),
+    (
+        largest_is_one,
+        "every mode has the largest deflection 1, so they are not mass-normalised: give modal",
+    ),
     (bending_only, "a free rotor has two rigid modes of 0 Hz in a plane"),
     (times("slopes", -1.0), "slopes with the sign of dx/dz"),
     (times("positions", 10.0), "is a tilt of the rigid rotor"),

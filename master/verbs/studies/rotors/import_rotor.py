@@ -36,7 +36,8 @@ def declare(verb: argparse.ArgumentParser) -> None:
             action="append",
             default=[],
             metavar="NAME=PLACE,...",
-            help=f"{meaning}; a PLACE is a node, from 1, or a distance from node 1 such as 120 mm",
+            help=f"{meaning}; a PLACE is a node, from 1, or its name in the file, or a distance from node "
+            "1 such as 120 mm",
         )
     verb.add_argument("--force", action="store_true", help="replace a file that is there")
     verb.add_argument("--speed", help="at which ROSS's bearings are taken, where they hang on the speed")

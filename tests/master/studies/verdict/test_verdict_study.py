@@ -16,6 +16,7 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation import fig_14
+from touchdown.master.studies.rotor.balance import balanced
 from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Task
 from touchdown.master.studies.verdict import study as verdict_study
@@ -226,13 +227,17 @@ def test_a_shaft_without_any_unbalance_has_nothing_to_turn(tmp_path: Path) -> No
     scene = load_scene("rotor1-9000").swap(rotor=str(file))
     with pytest.raises(TouchdownError, match="nothing to turn"):
         study_verdict(scene, Plan(), tmp_path / "out")
+    assert balanced(scene, ["rotor"])
+    assert not balanced(load_scene("rotor1-9000"), ["rotor"])
+    assert not balanced(load_scene("disk-caged-simplified"), ["rotor"])  # rigid
 
 
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
         (["--grid", "0 deg"], "grid = 0 deg must be from 0.1 to 180 deg"),
-        (["--grid", "12"], "grid = 687.549 deg must be from 0.1 to 180 deg"),
+        (["--grid", "12"], 'grid = 687.549 deg must be from 0.1 to 180 deg; write "12 deg"'),
+        (["--grid", "90"], 'must be from 0.1 to 180 deg; write "90 deg"'),
         (["--grid", "2 deg"], "resolution = 4 deg must not be coarser than grid = 2 deg"),
         (["--resolution", "4 mm"], "it is measured in rad"),
         (["--macro-steps", "0 us"], "--macro-steps 0 us must be above 0"),
