@@ -25,7 +25,7 @@ from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import Basis
 
 DAMPED = 1e-6  # damping ratio (either sign) below which rounding may be all there is
-STILL = 1e-7  # of the largest root: below, a root that does not swing is a rotor that nothing holds
+STILL = 1e-7  # of the largest root that swings: what swings less does not, and what is less is next to zero
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Whirl:
 
     roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part positive
     sense: np.ndarray  # (M,), 1 circular whirl counter-clockwise, -1 circular clockwise, 0 in a plane
-    aperiodic: np.ndarray  # (A,), real roots of what does not swing, 1/s
+    aperiodic: np.ndarray  # (A,), real parts of roots that do not swing, or swing less than `STILL`, 1/s
     free: int  # roots next to zero: of what nothing holds, which may drift
     vectors: np.ndarray  # (coordinates, M), complex, by the root of their masses, of unit length
 
@@ -103,9 +103,12 @@ class Whirl:
     @property
     def stable(self) -> bool:
         """Whether nothing grows, by more than what rounding makes of no damping at all."""
-        size = np.max(np.abs(np.concatenate((self.roots, self.aperiodic))), initial=0.0)
-        fallen = np.any(self.aperiodic > STILL * size)
-        return not fallen and bool(np.all(self.damping_ratios > -DAMPED))
+        return not self.pushed_away and bool(np.all(self.damping_ratios > -DAMPED))
+
+    @property
+    def pushed_away(self) -> bool:
+        """Whether something grows without a swing."""
+        return bool(np.any(self.aperiodic > 0.0))
 
 
 def damping_ratios(roots: np.ndarray) -> np.ndarray:
@@ -193,9 +196,13 @@ class HeldRotor:
 
     def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> Whirl:
         """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
-        swinging = np.imag(roots) > STILL * np.max(np.abs(roots))
-        aperiodic = np.sort(np.real(roots[np.imag(roots) == 0.0]))
-        free = int(np.count_nonzero(np.abs(roots) <= STILL * np.max(np.abs(roots))))
+        size = np.abs(roots)
+        fast = np.imag(roots) > STILL * np.max(size)
+        small = STILL * np.max(size[fast] if fast.any() else size)  # a short lag's root counts for no mode
+        least = np.maximum(small, STILL * size)
+        swinging = np.imag(roots) > least
+        aperiodic = np.sort(np.real(roots[(np.abs(np.imag(roots)) <= least) & (size > small)]))
+        free = int(np.count_nonzero(size <= small))
         order = np.flatnonzero(swinging)[np.argsort(np.abs(roots[swinging]))]
         moving = vectors[self.places : 2 * self.places, order]
         x, y = moving[: self.n], moving[self.n : 2 * self.n]

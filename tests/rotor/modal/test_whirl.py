@@ -19,6 +19,7 @@ from touchdown.rotor.modal.whirl import (
     Foundation,
     HeldRotor,
     LinearBearing,
+    Whirl,
     damping_ratios,
     log_decrements,
 )
@@ -137,6 +138,36 @@ def test_what_nothing_holds_is_no_mode_and_what_is_pushed_away_falls() -> None:
     pushed = HeldRotor(RIGID, bearings(stiffness=-K * ONE)).whirl(0.0)
     assert not pushed.stable
     assert pushed.aperiodic[-1] > 0.0
+
+
+@pytest.mark.parametrize("speed", [1e-3, 1.0, 100.0, 1000.0])
+@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
+def test_what_is_pushed_away_falls_at_any_speed(name: str, speed: float) -> None:
+    """Roots that fall in both planes make pairs that hardly swing: they are no modes, and yet there."""
+    shaft = find(name)
+    modes = basis(shaft, 16, [3, shaft.nodes - 3])
+    for k in (-1e4, -1e6):
+        for c in (0.0, 100.0):
+            held = [
+                LinearBearing(node, times * k * ONE, c * ONE)
+                for node, times in ((4, 1.0), (shaft.nodes - 4, 1.3))
+            ]
+            assert not HeldRotor(modes, held, 0.003).whirl(speed).stable
+
+
+def test_a_short_lag_takes_no_mode_away() -> None:
+    """Its own root is 1 / lag, far above those of the modes."""
+    shaft = find("rotor_I")
+    modes = basis(shaft, 5, [3])
+
+    def soft(lag: float, c: float) -> Whirl:
+        held = [LinearBearing(shaft.node(name), 1e4 * ONE, c * ONE, lag) for name in ("amb_A", "amb_B")]
+        return HeldRotor(modes, held, 0.003).whirl(SPEED)
+
+    at_once, found = soft(0.0, 10.0), soft(1.5e-9, 10.0)
+    assert found.roots == pytest.approx(at_once.roots, rel=1e-4)  # found: 2e-7
+    assert found.free == 0
+    assert not soft(1.5e-9, -10.0).stable
 
 
 def test_critical_speeds_without_damping() -> None:
