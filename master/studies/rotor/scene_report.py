@@ -16,6 +16,7 @@ from touchdown.master.studies.rotor.situations import Bearing, Seen, Situation, 
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.modal.critical import CriticalMap, critical_map
 from touchdown.rotor.modal.modes import fullest
+from touchdown.rotor.modal.whirl import static_stiffness
 from touchdown.rotor.portrait import Portrait
 
 MISFIT = 1e-2  # of a law; above, it is said
@@ -88,7 +89,7 @@ def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
 
 def _support(node: int, bearings: list[Bearing]) -> Support:
     """The springs that bearings at a node are."""
-    across, upright = np.diag(sum((b.statically for b in bearings), np.zeros((2, 2)))).tolist()
+    across, upright = np.diag(static_stiffness(p for b in bearings for p in b.parts)).tolist()
     alike = abs(across - upright) <= ALIKE * max(abs(across), abs(upright))
     return Support(node, across, None if alike else upright)
 

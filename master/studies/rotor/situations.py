@@ -25,7 +25,7 @@ from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.campbell import Held, held
 from touchdown.rotor.modal.data import most_modes, seats
 from touchdown.rotor.modal.modes import RIGID, Basis, basis
-from touchdown.rotor.modal.whirl import Foundation, HeldRotor, LinearBearing
+from touchdown.rotor.modal.whirl import Foundation, HeldRotor, LinearBearing, static_stiffness
 from touchdown.rotor.statics import at_rest
 
 SHUTDOWN, NEVER = "shutdown_time", 1e9  # a parameter of magnetic bearings; s
@@ -52,7 +52,7 @@ class Bearing:
     @property
     def statically(self) -> np.ndarray:
         """Stiffness (2, 2) with what it stands on in series, N/m, as if it looked where it acts."""
-        return sum((part.statically for part in self.parts), np.zeros((2, 2)))
+        return static_stiffness(self.parts)
 
 
 @dataclass(frozen=True)
@@ -218,7 +218,7 @@ def _foundation(system: System, mount: str) -> Foundation | None:
     """What the body at COMPONENT.PORT is, as the contract has it; None: it does not give way."""
     names = [f"{mount}.{gain}" for gain in GAINS if gain != "inv_I"]
     inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)
-    return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m) if inv_m > 0.0 else None
+    return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m, mount) if inv_m > 0.0 else None
 
 
 # -- what the bearings do ----------------------------------------------------------------------------
