@@ -11,6 +11,7 @@ import numpy as np
 from touchdown.master.results.run import make_writable
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.rotor.held_table import held_lines
+from touchdown.master.studies.rotor.linear import Answer
 from touchdown.master.studies.rotor.report import MODES, SPEED, Report, described, report_text
 from touchdown.master.studies.rotor.situations import Bearing, Seen, Situation, seen_in, situations
 from touchdown.rotor.beams.shaft import Shaft, Support
@@ -108,19 +109,27 @@ def _situation(situation: Situation) -> Iterator[str]:
 
 
 def _floating(b: Bearing) -> Iterator[str]:
-    """One that holds the rotor where it starts: its law, and what that is at each frequency."""
-    assert b.law is not None
-    assert b.response is not None
+    """One that holds the rotor where it starts: its laws, and what they are at each frequency."""
+    several = len(b.answers) > 1
     looks = f", sees the rotor at {b.sensor}" if b.sensor else ""
     yield f"    {b.name} at {b.station}{looks}{_on(b)}"
-    lag = f", behind a lag of {1e6 * b.law.lag:.4g} us ({1.0 / b.law.lag:.5g} rad/s)" if b.law.lag else ""
-    yield f"      {_both(b.law.stiffness, 'N/m')}, {_both(b.law.damping, 'N s/m')}{lag}"
-    if b.law.misfit > MISFIT:
-        yield f"      off by up to {100.0 * b.law.misfit:.2g} % of what it answers, as the modes may be"
-    if b.law.lag or b.law.misfit > MISFIT:
-        yield "      at " + "".join(f"{f:11.0f} Hz" for f in b.response.frequencies)
-        yield "      N/m" + "".join(f"{k:13.4g} " for k in b.response.real[:, 0])[1:]
-        yield "      N s/m" + "".join(f"{c:13.4g} " for c in b.response.damping[:, 0])[3:]
+    for answer in b.answers:
+        if several:
+            yield f"      as the rotor moves at {b.sensor if answer.sensed else b.station}:"
+        yield from _law(answer)
+
+
+def _law(answer: Answer) -> Iterator[str]:
+    """What a bearing answers to one motion."""
+    law, response = answer.law, answer.response
+    lag = f", behind a lag of {1e6 * law.lag:.4g} us ({1.0 / law.lag:.5g} rad/s)" if law.lag else ""
+    yield f"      {_both(law.stiffness, 'N/m')}, {_both(law.damping, 'N s/m')}{lag}"
+    if law.misfit > MISFIT:
+        yield f"      off by up to {100.0 * law.misfit:.2g} % of what it answers, as the modes may be"
+    if law.lag or law.misfit > MISFIT:
+        yield "      at " + "".join(f"{f:11.0f} Hz" for f in response.frequencies)
+        yield "      N/m" + "".join(f"{k:13.4g} " for k in response.real[:, 0])[1:]
+        yield "      N s/m" + "".join(f"{c:13.4g} " for c in response.damping[:, 0])[3:]
 
 
 def _both(matrix: np.ndarray, unit: str) -> str:

@@ -17,7 +17,7 @@ from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor.held_figure import held_campbell
-from touchdown.master.studies.rotor.linear import Response, fitted, response
+from touchdown.master.studies.rotor.linear import Response, answers, fitted
 from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Rig
 from touchdown.master.studies.rotor.scene_report import SceneRotor, described_in, scene_text
 from touchdown.master.studies.rotor.situations import Situation
@@ -30,13 +30,18 @@ CONTROL = {"stiffness": 3e5, "damping": 200.0, "bandwidth": 8000.0, "shutdown_ti
 
 @contextmanager
 def on_rig(
-    fmu: str, values: dict[str, float], sensors: tuple[str, ...] = (), in_process: bool = True
+    fmu: str,
+    values: dict[str, float],
+    sensors: tuple[str, ...] = (),
+    in_process: bool = True,
+    step: float | None = None,
 ) -> Iterator[Rig]:
-    """A bearing with some of its parameters, in the middle of its housing."""
+    """A bearing with some of its parameters, in the middle of its housing; step: s, that it takes alone."""
     component = load_component(fmu, fmu, stepping=Stepping(in_process))
     component.set(values)
     place = Place(MIDDLE, MIDDLE, dict.fromkeys(sensors, MIDDLE))
-    yield Rig(component, "journal", place, 1e-5)
+    component.any_step = step is None
+    yield Rig(component, "journal", place, step or 1e-5)
     component.close()
 
 
@@ -54,34 +59,88 @@ def situation(found: SceneRotor, name: str) -> Situation:
 def test_a_magnetic_bearing_answers_as_its_law_has_it(in_process: bool) -> None:
     """Also through the FMI, as a bearing of others is measured. Found: 2e-7, the swing's parabolas."""
     with on_rig("amb", CONTROL, in_process=in_process) as rig:
-        answer = response(rig, sensors=False)
-    assert answer is not None
+        (found,) = answers(rig, sensors=False)
+    answer, law = found.response, found.law
     rate = 2.0 * math.pi * answer.frequencies
     told = (3e5 + 200j * rate) / (1.0 + 1j * rate / 8000.0)
     for axis in (0, 1):
         assert answer.stiffness[:, axis, axis] == pytest.approx(told, rel=1e-6)
     assert np.abs(answer.stiffness[:, 0, 1]).max() < 1.0
-    law = fitted(answer)
     assert np.diag(law.stiffness) == pytest.approx([3e5, 3e5], rel=1e-6)
     assert np.diag(law.damping) == pytest.approx([200.0, 200.0], rel=1e-6)
     assert law.lag == pytest.approx(1.0 / 8000.0, rel=1e-5)
     assert law.misfit < 1e-6
 
 
-@pytest.mark.parametrize(("sensed", "by_journal"), [(0, 1.0), (1, 0.0)])
-def test_where_a_bearing_looks_is_found(sensed: int, by_journal: float) -> None:
-    with on_rig("amb", CONTROL | {"sensed": sensed, "bandwidth": 0.0}, ("sensor",)) as rig:
-        answer = response(rig, sensors=True)
-    assert answer is not None
-    assert answer.by_journal == by_journal
-    assert fitted(answer).lag == 0.0
+@pytest.mark.parametrize("sensed", [False, True])
+@pytest.mark.parametrize(
+    ("stiffness", "bandwidth", "step"), [(3e5, 300.0, None), (0.0, 0.0, None), (3e5, 0.0, 4e-5)]
+)
+def test_where_a_bearing_looks_is_found(
+    stiffness: float, bandwidth: float, sensed: bool, step: float | None
+) -> None:
+    """Whatever its bandwidth, also without a stiffness, and in steps of its own."""
+    law = CONTROL | {"sensed": float(sensed), "stiffness": stiffness, "bandwidth": bandwidth}
+    with on_rig("amb", law, ("sensor",), step=step) as rig:
+        (answer,) = answers(rig, sensors=True)
+    assert answer.sensed is sensed
+    lag = 1.0 / bandwidth if bandwidth else 0.0
+    assert answer.law.lag == pytest.approx(lag, rel=1e-4)
+    assert answer.law.damping[0, 0] == pytest.approx(200.0, rel=1e-4)  # found: 2e-5
+
+
+class Levitating:
+    """Stands in for a rig: control by the sensor behind a lag, pushed away where the journal is."""
+
+    frequencies = np.array(FREQUENCIES)
+
+    def sagitta(self) -> np.ndarray:
+        return np.full(len(FREQUENCIES), 1e-4)
+
+    def dynamic_stiffness(
+        self, frequency: float, direction: np.ndarray, amplitude: float, *, sensed: bool
+    ) -> np.ndarray:
+        rate = 2j * math.pi * frequency
+        control = (3e6 + 400.0 * rate) / (1.0 + rate / 3000.0) if sensed else 0.0
+        return (control - 1e6) * direction
+
+
+def test_a_bearing_that_pushes_away_at_its_journal_and_controls_by_its_sensor() -> None:
+    journal, sensor = answers(Levitating(), sensors=True)  # type: ignore[arg-type]
+    assert (journal.sensed, sensor.sensed) == (False, True)
+    assert journal.law.stiffness == pytest.approx(-1e6 * np.eye(2))
+    assert (np.abs(journal.law.damping).max(), journal.law.lag) == (pytest.approx(0.0, abs=1e-6), 0.0)
+    assert sensor.law.stiffness == pytest.approx(3e6 * np.eye(2))
+    assert sensor.law.damping == pytest.approx(400.0 * np.eye(2))
+    assert sensor.law.lag == pytest.approx(1.0 / 3000.0)
+
+
+@pytest.mark.parametrize("step", [1e-4, 5e-4])
+def test_steps_of_its_own_are_shaken_at_whole_ones(step: float) -> None:
+    """A period is a whole number of steps, and 8 of them or more; found: 2e-3."""
+    with on_rig("amb", CONTROL, step=step) as rig:
+        (answer,) = answers(rig, sensors=False)
+    counts = 1.0 / (answer.response.frequencies * step)
+    assert counts == pytest.approx(np.round(counts))
+    assert counts.min() > 7.5
+    rate = 2.0 * math.pi * answer.response.frequencies
+    told = (3e5 + 200j * rate) / (1.0 + 1j * rate / 8000.0)
+    assert answer.response.stiffness[:, 0, 0] == pytest.approx(told, rel=5e-3)
+
+
+def test_steps_too_long_to_shake_it_are_refused() -> None:
+    with (
+        on_rig("amb", CONTROL, step=0.02) as rig,
+        pytest.raises(TouchdownError, match=r"steps of 0\.02 s, too long to be shaken at 10 Hz"),
+    ):
+        answers(rig, sensors=False)
 
 
 def test_a_law_that_does_not_fit_is_told() -> None:
     """An integrator, 3e4 / s beside 1e5 N/m: at 10 Hz it is a part that no lag makes."""
     frequencies = np.array(FREQUENCIES)
     law = 1e5 + 3e7 / (2j * math.pi * frequencies)
-    misfit = fitted(Response(frequencies, law[:, None, None] * np.eye(2), 1.0)).misfit
+    misfit = fitted(Response(frequencies, law[:, None, None] * np.eye(2))).misfit
     assert misfit > 0.1
 
 
@@ -90,7 +149,7 @@ def test_a_journal_pressed_on_a_bushing() -> None:
     k, load, clearance = 2e7, 50.0, 1e-4
     law = {"contact.stiffness": k, "contact.exponent": 1.0, "contact.damping": 0.0}
     with on_rig("bushing", law | {"clearance": clearance}) as rig:
-        assert response(rig, sensors=False) is None
+        assert not answers(rig, sensors=False)
         pressed = rig.pressed(load)
     assert pressed is not None
     depth = clearance + load / k
@@ -104,10 +163,10 @@ def test_levitated_by_what_the_scene_sets(found: SceneRotor) -> None:
     levitated = situation(found, "levitated")
     assert [b.name for b in levitated.bearings] == ["amb_A", "amb_B"]
     for bearing, sensor in zip(levitated.bearings, ("sensor_A", "sensor_B"), strict=True):
-        assert bearing.law is not None
+        (answer,) = bearing.answers
         assert bearing.sensor == sensor
-        assert bearing.law.stiffness[0, 0] == pytest.approx(2e5, rel=1e-6)
-        assert bearing.law.lag == pytest.approx(1.0 / 12566.0, rel=1e-5)
+        assert answer.law.stiffness[0, 0] == pytest.approx(2e5, rel=1e-6)
+        assert answer.law.lag == pytest.approx(1.0 / 12566.0, rel=1e-5)
     assert levitated.held.whirl.stable
     assert len(levitated.left_out) == 2
 
