@@ -139,6 +139,16 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
     def ahead(speed: float) -> float:
         return at(speed).root.imag - speed
 
+    if (ahead(speeds[0]) > 0.0) == (
+        ahead(speeds[1]) > 0.0
+    ):  # at an end another mode is as near: as they go
+        above = np.imag(roots) - speeds
+        share = above[0] / (above[0] - above[1])
+        return Crossing(
+            float(speeds[0] + share * np.diff(speeds)[0]),
+            complex(roots[0] + share * np.diff(roots)[0]),
+            sense,
+        )
     found = optimize.root_scalar(ahead, bracket=speeds.tolist(), xtol=EXACT * speeds[1])
     return at(float(found.root))
 

@@ -123,7 +123,8 @@ def _least_squares(found: Response, lags: bool) -> Law:
     K, C, lag = values[:4].reshape(2, 2), values[4:8].reshape(2, 2), float(values[8])
     told = (K + 1j * rate[:, None, None] * C) / (1.0 + 1j * rate[:, None, None] * lag)
     misfit = np.max(np.abs(told - found.stiffness)) / np.max(np.abs(found.stiffness))
-    return Law(_cleared(K), _cleared(C), lag, float(misfit))
+    most = np.max(np.abs(found.stiffness))
+    return Law(_cleared(K, most), _cleared(C, most / np.max(rate)), lag, float(misfit))
 
 
 def _split(values: np.ndarray) -> np.ndarray:
@@ -131,9 +132,12 @@ def _split(values: np.ndarray) -> np.ndarray:
     return np.concatenate((np.real(values), np.imag(values)))
 
 
-def _cleared(matrix: np.ndarray) -> np.ndarray:
-    """Without what measuring adds: directions that are alike are made equal, coupling that is none goes."""
-    size = np.max(np.abs(matrix))
+def _cleared(matrix: np.ndarray, measured: float) -> np.ndarray:
+    """Without what measuring adds: directions that are alike are made equal, what is none goes.
+
+    measured: the largest that was, in the unit of `matrix`.
+    """
+    size = max(measured, np.max(np.abs(matrix)))
     cleared = np.where(np.abs(matrix) > ROUNDING * size, matrix, 0.0)
     if abs(cleared[0, 0] - cleared[1, 1]) <= ROUNDING * size:
         cleared[0, 0] = cleared[1, 1] = 0.5 * (cleared[0, 0] + cleared[1, 1])

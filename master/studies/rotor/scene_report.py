@@ -39,13 +39,14 @@ class SceneRotor:
 def described_in(
     scene: Scene, speed: float | None = None, modes: int = MODES, load: float = 1.0
 ) -> SceneRotor:
-    """The rotor of `scene` at `speed` (rad/s; None: the scene's own), free and on what holds it.
+    """The rotor of `scene` at `speed` (rad/s, signed; None: the scene's own), free and on what holds it.
 
     modes: told of the free rotor, per plane; load: of the touchdown bearings, over what they carry of its
     weight. Raises TouchdownError where the scene has no rotor of elements, or nothing that holds it.
     """
     seen = seen_in(scene)
-    asked = abs(seen.speed if speed is None else speed)
+    seen = seen if speed is None else replace(seen, speed=speed)
+    asked = abs(seen.speed)
     end = BEYOND * (asked or SPEED)
     found, unheld = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
     free = described(replace(seen.shaft, supports=()), asked, modes)

@@ -75,7 +75,7 @@ class Seen:
     basis: Basis
     damping_ratio: float  # of the elastic modes
     gravity: float  # m/s2
-    speed: float  # rad/s, signed
+    speed: float  # rad/s, counter-clockwise: that bearings are measured at
     journals: tuple[Attachment, ...]
     sensors: dict[str, dict[str, str]]  # by bearing: its port, and the rotor's that it sees
     places: dict[str, Place]  # by bearing

@@ -12,7 +12,7 @@ from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft, Support, disc
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.campbell import followed
+from touchdown.rotor.modal.campbell import _crossing, followed
 from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.whirl import (
@@ -222,3 +222,13 @@ def test_a_mode_that_stops_swinging_ends_its_line() -> None:
 def test_what_cannot_be_a_bearing() -> None:
     with pytest.raises(ModelError, match=r"stiffness of a bearing has the shape \(2,\)"):
         LinearBearing(1, np.ones(2), ONE)
+
+
+def test_a_crossing_that_another_mode_hides_is_still_told() -> None:
+    """At both ends a mode of the other sense is nearer: the line's own course is left."""
+    rotor = HeldRotor(RIGID, bearings())
+    swing = float(rotor.whirl(0.0).roots[0].imag)
+    speeds, roots = np.array([0.9, 1.1]) * 0.5 * swing, 1j * swing * np.array([0.5, 0.5])
+    found = _crossing(rotor, speeds, roots, 1.0)
+    assert found.speed == pytest.approx(0.5 * swing)
+    assert found.root == pytest.approx(0.5j * swing)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,11 +17,16 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.results.figures.style import sheet
+from touchdown.master.studies.rotor import situations
 from touchdown.master.studies.rotor.held_figure import held_campbell
+from touchdown.master.studies.rotor.held_table import held_lines
 from touchdown.master.studies.rotor.linear import Response, answers, fitted
 from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Rig
 from touchdown.master.studies.rotor.scene_report import SceneRotor, described_in, scene_text
 from touchdown.master.studies.rotor.situations import Situation
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.modal.campbell import Lines
+from touchdown.rotor.modal.whirl import LinearBearing, Whirl
 
 RPM = 30.0 / math.pi
 MIDDLE = np.zeros(2)
@@ -228,6 +234,78 @@ def test_the_text_says_all(found: SceneRotor) -> None:
     lines = situation(found, "levitated").held.lines
     for one in lines.crossings:
         assert f"{RPM * one.speed:10.0f}" in text
+
+
+@dataclass(frozen=True)
+class Told:
+    """A rotor in bearings as the table has it."""
+
+    whirl: Whirl
+    lines: Lines
+    speed: float = 100.0
+
+    @property
+    def swinging(self) -> np.ndarray:
+        return np.arange(len(self.whirl.roots))
+
+
+def test_the_table_says_what_grows_and_where() -> None:
+    """Undamped modes do not, though rounding has them positive; a gap between ranges stays one."""
+    roots = np.array([1e-9 + 100j, 2.0 + 200j])
+    whirl = Whirl(roots, np.ones(2), np.array([-5.0, 3.0]), 0, np.eye(2))
+    stable = np.array([False, False, True, False, True])
+    speeds = np.array([0.0, 1.0, 2.0, 3.0, 4.0]) / RPM
+    nothing = np.empty((5, 0))
+    lines = list(held_lines(Told(whirl, Lines(speeds, nothing, nothing, stable, ())), "levitated"))  # type: ignore[arg-type]
+    assert [line.endswith("grows") for line in lines[2:4]] == [False, True]
+    assert "  it is pushed away from where it stands, without a swing" in lines
+    assert "  something grows between 0 and 1, 3 and 3 rpm of the diagram" in lines
+
+
+@pytest.mark.parametrize("spin", [-1000.0, 1000.0])
+def test_the_journal_spins_on_the_rig(spin: float) -> None:
+    """Coulomb friction: a pressure that swings drags the journal to the side, by the spin's sense."""
+    friction = {"friction.static": 0.2, "friction.dynamic": 0.2, "friction.g6": 0.0}
+    law = friction | {"contact.stiffness": 2e7, "contact.exponent": 1.0, "contact.damping": 0.0}
+    with on_rig("bushing", law | {"clearance": 1e-4}) as rig:
+        rig.spin = spin
+        side, up = rig.dynamic_stiffness(160.0, np.array([0.0, 1.0]), 1e-7, np.array([0.0, -1.05e-4]))
+    assert up.real == pytest.approx(2e7, rel=0.1)
+    assert abs(side.real) == pytest.approx(0.2 * up.real, rel=0.1)
+    assert np.sign(side.real) == -np.sign(spin)  # below, it moves with the spin
+
+
+def test_the_sign_of_the_speed_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    spins: list[float] = []
+
+    def no_force(rig: Rig, sensors: bool) -> tuple[()]:
+        spins.append(rig.spin)
+        return ()
+
+    monkeypatch.setattr(situations, "answers", no_force)
+    monkeypatch.setattr(Rig, "pressed", lambda rig, load: None)
+    with pytest.raises(TouchdownError, match="no bearing holds its rotor"):
+        described_in(SCENE, -942.0)
+    assert spins == 4 * [-942.0]
+
+
+def test_a_damper_carries_no_weight(monkeypatch: pytest.MonkeyPatch) -> None:
+    shaft = touchdown.Rotor.load("rotor_I")
+    seen = SimpleNamespace(shaft=shaft, gravity=9.81, scene=SCENE)
+    pressing = [SimpleNamespace(bearing=name, body_port=name) for name in ("A", "B")]
+    node = shaft.node("amb_A")
+    damper = situations.Bearing(
+        "damper", "amb_A", node, (LinearBearing(node, np.zeros((2, 2)), np.eye(2)),)
+    )
+    shares = situations._shares(seen, pressing, [damper])  # type: ignore[arg-type]
+    assert shares["A"] == pytest.approx(shaft_share(shaft), rel=1e-6)
+
+    def refuses(*_: object) -> None:
+        raise ModelError("too few modes")
+
+    monkeypatch.setattr(situations, "at_rest", refuses)
+    with pytest.raises(TouchdownError, match="how its rotor lies is not known: too few modes"):
+        situations._shares(seen, pressing, [])  # type: ignore[arg-type]
 
 
 def test_the_diagram_is_labelled(found: SceneRotor) -> None:
