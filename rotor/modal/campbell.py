@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import Basis
 from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing, Whirl
 
@@ -38,11 +37,6 @@ def whirl_frequencies(
     for i, speed in enumerate(speeds):
         whirl[i] = np.linalg.eigvalsh(np.block([[speed * basis.gyroscopic, B], [B.T, np.zeros((n, n))]]))
     return whirl
-
-
-def supported_whirl(basis: Basis, speed: float, supports: Sequence[Support]) -> Whirl:
-    """Modes at spin `speed` (rad/s) on `supports`, which may differ by plane and damp; it does not."""
-    return HeldRotor(basis, [LinearBearing.of(s) for s in supports]).whirl(speed)
 
 
 @dataclass(frozen=True)
