@@ -27,7 +27,6 @@ import ross
 import touchdown
 from touchdown.master.cli import main as command
 from touchdown.rotor.beams.shaft import Support
-from touchdown.rotor.modal.campbell import supported_whirl
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
 
@@ -51,7 +50,7 @@ def ross_modes(rotor: ross.Rotor, speed: float) -> np.ndarray:
 def our_modes(rotor: touchdown.Rotor, speed: float, supports: tuple[Support, ...]) -> np.ndarray:
     """The same of ours on the springs of `supports`."""
     springs = [replace(s, damping=0.0, damping_y=0.0) for s in supports]
-    found = supported_whirl(basis(rotor, 0), speed, springs).frequencies
+    found = HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in springs]).whirl(speed).frequencies
     return np.sort(found[found > STILL / (2.0 * math.pi)])[:MODES]
 
 
@@ -178,7 +177,11 @@ def run_modal(held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> str:
     if len(rotor.about.splitlines()) > 1:
         return "-"
     theirs = held.run_modal(speed, num_modes=4 * MODES, sparse=False).wd / (2.0 * math.pi)
-    ours = supported_whirl(basis(rotor, 0), speed, rotor.supports).frequencies[: MODES // 2]
+    ours = (
+        HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in rotor.supports])
+        .whirl(speed)
+        .frequencies[: MODES // 2]
+    )
     return f"{max(np.min(np.abs(theirs / one - 1.0)) for one in ours):.1e}"
 
 

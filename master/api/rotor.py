@@ -159,9 +159,9 @@ class Rotor(Shaft):
     def in_scene(scene: PathLike | Scene, speed: float | None = None, load: float = 1.0) -> InScene:
         """The rotor of a scene in its bearings: levitated, and resting on its touchdown bearings.
 
-        speed: rad/s, the scene's own where it is not given; load: what presses the rotor on its touchdown
-        bearings, over its weight. Raises TouchdownError where the scene has no rotor of elements, or
-        nothing holds it.
+        speed: rad/s, counter-clockwise, the scene's own where it is not given; load: what presses the
+        rotor on its touchdown bearings, over its weight. Raises TouchdownError where the scene has no
+        rotor of elements, or nothing holds it.
 
         >>> found = touchdown.Rotor.in_scene("rotor1-9000")
         >>> found.levitated.stable

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import optimize
 
-from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import Basis
 from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing, Whirl
 
@@ -38,11 +37,6 @@ def whirl_frequencies(
     for i, speed in enumerate(speeds):
         whirl[i] = np.linalg.eigvalsh(np.block([[speed * basis.gyroscopic, B], [B.T, np.zeros((n, n))]]))
     return whirl
-
-
-def supported_whirl(basis: Basis, speed: float, supports: Sequence[Support]) -> Whirl:
-    """Modes at spin `speed` (rad/s) on `supports`, which may differ by plane and damp; it does not."""
-    return HeldRotor(basis, [LinearBearing.of(s) for s in supports]).whirl(speed)
 
 
 @dataclass(frozen=True)
@@ -139,6 +133,16 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
     def ahead(speed: float) -> float:
         return at(speed).root.imag - speed
 
+    if (ahead(speeds[0]) > 0.0) == (
+        ahead(speeds[1]) > 0.0
+    ):  # at an end another mode is as near: as they go
+        above = np.imag(roots) - speeds
+        share = above[0] / (above[0] - above[1])
+        return Crossing(
+            float(speeds[0] + share * np.diff(speeds)[0]),
+            complex(roots[0] + share * np.diff(roots)[0]),
+            sense,
+        )
     found = optimize.root_scalar(ahead, bracket=speeds.tolist(), xtol=EXACT * speeds[1])
     return at(float(found.root))
 

@@ -15,7 +15,7 @@ bandwidth 1 / lag. What it stands on is the ground, or a mass on springs and dam
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,16 +25,17 @@ from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import Basis
 
 DAMPED = 1e-6  # damping ratio (either sign) below which rounding may be all there is
-STILL = 1e-7  # of the largest root: below, a root that does not swing is a rotor that nothing holds
+STILL = 1e-7  # of the largest root that swings: what swings less does not, and what is less is next to zero
 
 
 @dataclass(frozen=True)
 class Foundation:
-    """What a bearing stands on: a mass on equal springs and dampers in both directions."""
+    """What bearings stand on: a mass on equal springs and dampers in both directions."""
 
     mass: float  # kg
     stiffness: float  # N/m
     damping: float = 0.0  # N s/m
+    name: str = ""  # bearings stand on one mass where its name is the same; "": each on its own
 
 
 @dataclass(frozen=True)
@@ -66,18 +67,42 @@ class LinearBearing:
         c_y = c if support.damping_y is None else support.damping_y
         return cls(support.node, np.diag([k, k_y]), np.diag([c, c_y]))
 
-    @property
-    def statically(self) -> np.ndarray:
-        """Stiffness (2, 2) with what it stands on in series, N/m."""
-        if self.foundation is None:
-            return self.stiffness
-        # force k (u - v) = s v gives v = (k + s)^-1 k u
-        k, s = self.stiffness, self.foundation.stiffness * np.eye(2)
-        return s @ np.linalg.solve(k + s, k)
-
     def dynamic_stiffness(self, omega: float) -> np.ndarray:
         """Force against small motion at `omega` (rad/s) over that motion (2, 2), complex, N/m."""
         return (self.stiffness + 1j * omega * self.damping) / (1.0 + 1j * omega * self.lag)
+
+
+def static_stiffness(bearings: Iterable[LinearBearing]) -> np.ndarray:
+    """Stiffness (2, 2) of bearings at one node with what they stand on in series, N/m.
+
+    As if each looked where it acts. Those on one foundation add up before it gives way.
+    """
+    whole = np.zeros((2, 2))
+    for on_it in _by_foundation(bearings):
+        k, foundation = sum((b.stiffness for b in on_it), np.zeros((2, 2))), on_it[0].foundation
+        if foundation is not None:  # force k (u - v) = s v gives v = (k + s)^-1 k u
+            k = foundation.stiffness * np.linalg.pinv(k + foundation.stiffness * np.eye(2)) @ k
+        whole += k
+    return whole
+
+
+def _by_foundation(bearings: Iterable[LinearBearing]) -> list[list[LinearBearing]]:
+    """Bearings that stand on one mass together. Raises ModelError where one name means two masses."""
+    groups: list[list[LinearBearing]] = []
+    named: dict[str, list[LinearBearing]] = {}
+    for b in bearings:
+        name = "" if b.foundation is None else b.foundation.name
+        if name in named:
+            if b.foundation != named[name][0].foundation:
+                raise ModelError(
+                    f"there are two foundations called {name}; they must have names of their own"
+                )
+            named[name].append(b)
+        else:
+            groups.append([b])
+            if name:
+                named[name] = groups[-1]
+    return groups
 
 
 @dataclass(frozen=True)
@@ -86,7 +111,7 @@ class Whirl:
 
     roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part positive
     sense: np.ndarray  # (M,), 1 circular whirl counter-clockwise, -1 circular clockwise, 0 in a plane
-    aperiodic: np.ndarray  # (A,), real roots of what does not swing, 1/s
+    aperiodic: np.ndarray  # (A,), real parts of roots that do not swing, or swing less than `STILL`, 1/s
     free: int  # roots next to zero: of what nothing holds, which may drift
     vectors: np.ndarray  # (coordinates, M), complex, by the root of their masses, of unit length
 
@@ -103,9 +128,12 @@ class Whirl:
     @property
     def stable(self) -> bool:
         """Whether nothing grows, by more than what rounding makes of no damping at all."""
-        size = np.max(np.abs(np.concatenate((self.roots, self.aperiodic))), initial=0.0)
-        fallen = np.any(self.aperiodic > STILL * size)
-        return not fallen and bool(np.all(self.damping_ratios > -DAMPED))
+        return not self.pushed_away and bool(np.all(self.damping_ratios > -DAMPED))
+
+    @property
+    def pushed_away(self) -> bool:
+        """Whether something grows without a swing."""
+        return bool(np.any(self.aperiodic > 0.0))
 
 
 def damping_ratios(roots: np.ndarray) -> np.ndarray:
@@ -128,10 +156,11 @@ class HeldRotor:
     def __init__(self, basis: Basis, bearings: Sequence[LinearBearing], damping_ratio: float = 0.0) -> None:
         """damping_ratio: of the elastic modes, as in the rotor's model."""
         n = len(basis.omega)
-        standing = [b for b in bearings if b.foundation is not None]
+        groups = _by_foundation(bearings)
+        standing = [on_it for on_it in groups if on_it[0].foundation is not None]
         self.n, self.bearings, self.basis = n, bearings, basis
         self.places = 2 * n + 2 * len(standing)
-        lagging = [b for b in bearings if b.lag > 0.0]
+        lagging = [b for on_it in groups for b in on_it if b.lag > 0.0]
         self.states = 2 * self.places + 2 * len(lagging)
         self.K = np.zeros((self.places, self.places))
         self.C = np.zeros((self.places, self.places))
@@ -143,15 +172,21 @@ class HeldRotor:
         self.asked = np.zeros((2 * len(lagging), 2 * self.places))  # what they follow
         self.lag = np.repeat([b.lag for b in lagging], 2)
         seat, force = 2 * n, 0
-        for b in bearings:
-            if b.foundation is not None:
-                at = slice(seat, seat + 2)
-                self.mass[at] = b.foundation.mass
-                self.K[at, at] += b.foundation.stiffness * np.eye(2)
-                self.C[at, at] += b.foundation.damping * np.eye(2)
-            self._add(b, seat, force)
-            seat += 2 if b.foundation is not None else 0
-            force += 2 if b.lag > 0.0 else 0
+        for on_it in groups:
+            foundation = on_it[0].foundation
+            if foundation is not None:
+                self._stand(foundation, seat)
+            for b in on_it:
+                self._add(b, seat, force)
+                force += 2 if b.lag > 0.0 else 0
+            seat += 2 if foundation is not None else 0
+
+    def _stand(self, foundation: Foundation, seat: int) -> None:
+        """A mass on its springs and dampers, at the place `seat`."""
+        at = slice(seat, seat + 2)
+        self.mass[at] = foundation.mass
+        self.K[at, at] = foundation.stiffness * np.eye(2)
+        self.C[at, at] = foundation.damping * np.eye(2)
 
     def _add(self, b: LinearBearing, seat: int, force: int) -> None:
         """Force of a bearing: on its node, and back on what it stands on, at the place `seat`."""
@@ -193,9 +228,13 @@ class HeldRotor:
 
     def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> Whirl:
         """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
-        swinging = np.imag(roots) > STILL * np.max(np.abs(roots))
-        aperiodic = np.sort(np.real(roots[np.imag(roots) == 0.0]))
-        free = int(np.count_nonzero(np.abs(roots) <= STILL * np.max(np.abs(roots))))
+        size = np.abs(roots)
+        fast = np.imag(roots) > STILL * np.max(size)
+        small = STILL * np.max(size[fast] if fast.any() else size)  # a short lag's root counts for no mode
+        least = np.maximum(small, STILL * size)
+        swinging = np.imag(roots) > least
+        aperiodic = np.sort(np.real(roots[(np.abs(np.imag(roots)) <= least) & (size > small)]))
+        free = int(np.count_nonzero(size <= small))
         order = np.flatnonzero(swinging)[np.argsort(np.abs(roots[swinging]))]
         moving = vectors[self.places : 2 * self.places, order]
         x, y = moving[: self.n], moving[self.n : 2 * self.n]

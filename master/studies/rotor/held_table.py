@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from touchdown.rotor.modal.campbell import Held
-from touchdown.rotor.modal.whirl import damping_ratios, log_decrements
+from touchdown.rotor.modal.whirl import DAMPED, damping_ratios, log_decrements
 
 RPM = 60.0 / (2.0 * math.pi)
 TOLD = 8  # modes
@@ -25,7 +25,7 @@ def held_lines(held: Held, title: str) -> Iterator[str]:
     yield f"  {'mode':<10}{HEAD}"
     for number, k in enumerate(held.swinging[:TOLD], 1):
         root = complex(held.whirl.roots[k])
-        grows = "  grows" if root.real > 0.0 and not held.whirl.stable else ""
+        grows = "  grows" if held.whirl.damping_ratios[k] < -DAMPED else ""
         yield f"  {number:<10}{_row(root, float(held.whirl.sense[k]))}{grows}"
     slow = len(held.whirl.roots) - len(held.swinging)
     if slow:
@@ -50,12 +50,19 @@ def _row(root: complex, sense: float) -> str:
 
 def _falling(held: Held) -> Iterator[str]:
     """What grows without a swing, and at which of the diagram's speeds anything grows."""
-    if not held.whirl.stable and not np.any(np.real(held.whirl.roots) > 0.0):
+    if held.whirl.pushed_away:
         yield "  it is pushed away from where it stands, without a swing"
-    lines = held.lines
-    if not lines.stable.all():
-        growing = RPM * lines.speeds[~lines.stable]
-        yield f"  something grows between {growing[0]:.0f} and {growing[-1]:.0f} rpm of the diagram"
+    ranges = [
+        f"{rpm[0]:.0f} and {rpm[-1]:.0f}" for rpm in _stretches(RPM * held.lines.speeds, ~held.lines.stable)
+    ]
+    if ranges:
+        yield f"  something grows between {', '.join(ranges)} rpm of the diagram"
+
+
+def _stretches(values: np.ndarray, where: np.ndarray) -> list[np.ndarray]:
+    """Runs of neighbouring `values` for which `where` holds."""
+    runs = np.split(np.arange(len(values)), np.flatnonzero(np.diff(where)) + 1)
+    return [values[run] for run in runs if len(run) and where[run[0]]]
 
 
 def _critical(held: Held) -> Iterator[str]:

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.studies.rotor.rig import AT_REST, FREQUENCIES, NO_FORCE, Rig
+from touchdown.master.studies.rotor.rig import NO_FORCE, Rig
 
 AMPLITUDE = 1e-6  # m
-NO_LAG = 1e-9  # s; a lag this short is none
+NO_LAG = 1e-7  # s; a lag this short is none
+PLAIN = 1e-3  # misfit of a law without a lag that needs none
 ROUNDING = 1e-6  # of the stiffness, what measuring may add
 
 
 @dataclass(frozen=True)
 class Response:
-    """Dynamic stiffness of a bearing by frequency, and where it looks."""
+    """Dynamic stiffness of a bearing by frequency."""
 
     frequencies: np.ndarray  # (F,), Hz
     stiffness: np.ndarray  # (F, 2, 2), complex, N/m; rows: the force's directions, columns: the motion's
-    by_journal: float  # the share of the static force that follows the journal; the rest, its sensors
 
     @property
     def real(self) -> np.ndarray:
@@ -45,32 +45,62 @@ class Law:
     misfit: float  # the largest deviation, over the largest dynamic stiffness
 
 
-def response(rig: Rig, sensors: bool) -> Response | None:
-    """What a bearing answers to swings about its place; None where it gives no force there.
+@dataclass(frozen=True)
+class Answer:
+    """What of a bearing's force follows one motion."""
 
-    sensors: whether it has any beside the journal.
+    sensed: bool  # the motion that its sensors see; else the journal's
+    response: Response
+    law: Law
+
+
+def answers(rig: Rig, sensors: bool) -> tuple[Answer, ...]:
+    """A bearing's answers to swings about its place: of its journal, of its sensors; none without a force.
+
+    sensors: whether it has any beside the journal. By its sensors is what it answers beyond its answer to
+    the journal alone.
     """
-    columns = np.empty((len(FREQUENCIES), 2, 2), complex)  # frequency, motion, force
-    for k in reversed(range(len(FREQUENCIES))):  # a short swing says whether there is a force
-        columns[k] = [rig.dynamic_stiffness(FREQUENCIES[k], axis, AMPLITUDE) for axis in np.eye(2)]
+    whole = _response(rig, True)
+    if whole is None:
+        return ()
+    if not sensors:
+        return (_answer(False, whole),)
+    alone = _response(rig, False)
+    if alone is None:
+        return (_answer(True, whole),)
+    rest = Response(whole.frequencies, whole.stiffness - alone.stiffness)
+    size, by_journal, by_sensor = (np.max(np.abs(r.stiffness), axis=(1, 2)) for r in (whole, alone, rest))
+    if np.all(by_journal <= ROUNDING * size):
+        return (_answer(True, whole),)
+    if np.all(by_sensor <= (rig.sagitta() + ROUNDING) * size):
+        return (_answer(False, whole),)
+    return _answer(False, alone), _answer(True, rest)
+
+
+def _answer(sensed: bool, found: Response) -> Answer:
+    return Answer(sensed, found, fitted(found))
+
+
+def _response(rig: Rig, sensed: bool) -> Response | None:
+    """What a bearing answers to swings that its sensors see or do not; None where it gives no force."""
+    frequencies = rig.frequencies
+    columns = np.empty((len(frequencies), 2, 2), complex)  # frequency, motion, force
+    for k in reversed(range(len(frequencies))):  # a short swing says whether there is a force
+        columns[k] = [
+            rig.dynamic_stiffness(frequencies[k], axis, AMPLITUDE, sensed=sensed) for axis in np.eye(2)
+        ]
         if AMPLITUDE * np.max(np.abs(columns[k])) <= NO_FORCE:
             return None
-    share = _by_journal(rig) if sensors else 1.0
-    return Response(np.array(FREQUENCIES), columns.transpose(0, 2, 1), share)
-
-
-def _by_journal(rig: Rig) -> float:
-    """The share of the static force that is there when the journal alone has moved, and no sensor."""
-    still = rig.stands(AT_REST)
-    alone, together = (rig.stands(AMPLITUDE * np.ones(2), sensed) - still for sensed in (False, True))
-    whole = float(together @ together)
-    return abs(round(float(alone @ together) / whole, 6)) if whole > 0.0 else 1.0
+    return Response(frequencies, columns.transpose(0, 2, 1))
 
 
 def fitted(found: Response) -> Law:
-    """The law nearest to a response, every frequency weighing as much; its lag is not negative."""
+    """The law nearest to a response, every frequency weighing as much; with a lag only if one is there."""
+    plain = _least_squares(found, False)
+    if plain.misfit <= PLAIN:
+        return plain
     law = _least_squares(found, True)
-    return law if law.lag > NO_LAG else _least_squares(found, False)
+    return law if law.lag > NO_LAG else plain
 
 
 def _least_squares(found: Response, lags: bool) -> Law:
@@ -93,7 +123,8 @@ def _least_squares(found: Response, lags: bool) -> Law:
     K, C, lag = values[:4].reshape(2, 2), values[4:8].reshape(2, 2), float(values[8])
     told = (K + 1j * rate[:, None, None] * C) / (1.0 + 1j * rate[:, None, None] * lag)
     misfit = np.max(np.abs(told - found.stiffness)) / np.max(np.abs(found.stiffness))
-    return Law(_cleared(K), _cleared(C), lag, float(misfit))
+    most = np.max(np.abs(found.stiffness))
+    return Law(_cleared(K, most), _cleared(C, most / np.max(rate)), lag, float(misfit))
 
 
 def _split(values: np.ndarray) -> np.ndarray:
@@ -101,9 +132,12 @@ def _split(values: np.ndarray) -> np.ndarray:
     return np.concatenate((np.real(values), np.imag(values)))
 
 
-def _cleared(matrix: np.ndarray) -> np.ndarray:
-    """Without what measuring adds: directions that are alike are made equal, coupling that is none goes."""
-    size = np.max(np.abs(matrix))
+def _cleared(matrix: np.ndarray, measured: float) -> np.ndarray:
+    """Without what measuring adds: directions that are alike are made equal, what is none goes.
+
+    measured: the largest that was, in the unit of `matrix`.
+    """
+    size = max(measured, np.max(np.abs(matrix)))
     cleared = np.where(np.abs(matrix) > ROUNDING * size, matrix, 0.0)
     if abs(cleared[0, 0] - cleared[1, 1]) <= ROUNDING * size:
         cleared[0, 0] = cleared[1, 1] = 0.5 * (cleared[0, 0] + cleared[1, 1])

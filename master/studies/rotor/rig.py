@@ -1,7 +1,7 @@
 """A bearing alone on a rig that moves its journal as asked and reads its force: stiffness and damping.
 
 It is stepped as in a run, through the variables of the contract, so that a bearing of others is measured
-as one of the project's own. Its housing stands still, and its journal does not spin.
+as one of the project's own. Its housing stands still.
 """
 
 from __future__ import annotations
@@ -17,11 +17,12 @@ from touchdown.master.components.contract import FORCE, MOUNTED, POSITION
 
 FREQUENCIES = (10.0, 40.0, 160.0, 640.0)  # Hz, at which a bearing is shaken
 STEPS = 256  # macro steps of a period, of what takes any
-FEWEST = 8  # of what takes only its own
+FEWEST = 8  # of what takes only its own; at frequencies for which there are less it is not shaken
 PERIODS = 40  # at most, until one is as the last
 ALIKE, NEARLY = 1e-8, 1e-3  # of a period's answer to the last one's: aimed at, and told all the same
 NO_FORCE = 1e-9  # N
 AT_REST = np.zeros(2)
+SPIN = "omega"  # at a journal's port
 
 DESCENT = 0.01  # m/s, of a journal that is lowered onto its bearing
 DEEPEST = 0.002  # m that it is lowered at most
@@ -58,7 +59,8 @@ class Rig:
         """`component` is loaded and set, not initialised; macro_step: s, for what takes no other."""
         self._component, self._place, self._port = component, place, port
         self._own_step = None if component.any_step else macro_step
-        names = [
+        self.spin = 0.0  # rad/s, of the journal, counter-clockwise
+        names = [f"{port}.{SPIN}"] + [
             f"{one}.{name}" for one in (port, *place.sensors, MOUNTED) for axis in POSITION
             for name in (axis, f"v{axis}", f"a{axis}_free")
         ]  # fmt: skip
@@ -71,12 +73,24 @@ class Rig:
         component.pull()
         component.exit()
 
-    def stands(self, off: np.ndarray, sensed: bool = True) -> np.ndarray:
-        """Force (2,) once the journal stands `off` (2,) its place (m); sensed: seen by its sensors, too."""
-        step = self._step_of(SETTLING / STEPS)
-        for _ in range(round(SETTLING / step)):
-            self._take(off, AT_REST, AT_REST, step, sensed)
-        return self._force.copy()
+    @property
+    def frequencies(self) -> np.ndarray:
+        """At which it is shaken (F,), Hz: whole macro steps to a period. Raises TouchdownError for none."""
+        if self._own_step is None:
+            return np.array(FREQUENCIES)
+        counts = np.array([round(1.0 / (f * self._own_step)) for f in FREQUENCIES])
+        counts = counts[counts >= FEWEST]
+        if not len(counts):
+            raise TouchdownError(
+                f"{self._component.name} takes steps of {self._own_step:g} s, too long to be shaken at "
+                f"{FREQUENCIES[0]:g} Hz; set a shorter run.macro_step"
+            )
+        return 1.0 / (counts * self._own_step)
+
+    def sagitta(self) -> np.ndarray:
+        """Of a swing, what a chord leaves out that lasts a macro step (F,), by frequency."""
+        steps = np.array([self._step_of(1.0 / (STEPS * f)) for f in self.frequencies])
+        return (2.0 * math.pi * self.frequencies * steps) ** 2 / 8.0
 
     def dynamic_stiffness(
         self,
@@ -85,17 +99,20 @@ class Rig:
         amplitude: float,
         about: np.ndarray = AT_REST,
         alike: float = ALIKE,
+        sensed: bool = True,
     ) -> np.ndarray:
         """Force against the motion over it (2,), complex, N/m, in a swing (m) along `direction` (2,).
 
-        frequency: Hz; alike: of two periods' answers, over their size. Raises TouchdownError where they do
-        not become `NEARLY` alike.
+        frequency: Hz, one of `frequencies`; alike: of two periods' answers, over their size; sensed: by its
+        sensors, too. Raises TouchdownError where answers do not become `NEARLY` alike.
         """
         step = self._step_of(1.0 / (STEPS * frequency))
-        count = max(FEWEST, round(1.0 / (frequency * step)))
+        count = round(1.0 / (frequency * step))
         omega = 2.0 * math.pi / (count * step)
         turn = np.exp(1j * omega * step * np.arange(count + 1))
         here, rate = amplitude * np.real(turn), -amplitude * omega * np.imag(turn)
+        if not sensed:  # along its chords: beside it what its sensors see goes on in straight lines
+            rate = np.append(np.diff(here) / step, 0.0)
         bend = 2.0 * (np.diff(here) - step * rate[:-1]) / step**2  # parabolas that end where the swing does
         middle = np.conj(turn[:-1]) * np.exp(-0.5j * omega * step) / np.sinc(1.0 / count)
         last = np.full(2, np.nan + 0j)
@@ -103,7 +120,7 @@ class Rig:
             forces = np.empty((count, 2))
             for k in range(count):
                 forces[k] = self._take(
-                    about + here[k] * direction, rate[k] * direction, bend[k] * direction, step
+                    about + here[k] * direction, rate[k] * direction, bend[k] * direction, step, sensed
                 )
             answer = -2.0 / count * (middle @ forces) / amplitude
             apart = np.max(np.abs(answer - last))
@@ -118,7 +135,8 @@ class Rig:
         )
 
     def pressed(self, load: float) -> Pressed | None:
-        """The journal lowered until the bearing carries `load` (N); None where it falls through."""
+        """The journal, without spin, lowered until the bearing carries `load` (N); None: it sinks on."""
+        self.spin = 0.0
         depth = self._lowered(load)
         if depth is None:
             return None
@@ -127,8 +145,9 @@ class Rig:
         side, up = np.eye(2)
         across, along = (self._slope(down, move * axis) for axis in (side, up))
         self._listen(down)
-        swings = [self.dynamic_stiffness(f, up, move, down, NEARLY)[1] for f in FREQUENCIES[2:]]
-        rates = [2.0 * math.pi * f for f in FREQUENCIES[2:]]
+        highest = self.frequencies[-2:]
+        swings = [self.dynamic_stiffness(f, up, move, down, NEARLY)[1] for f in highest]
+        rates = 2.0 * math.pi * highest
         return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
 
     def _slope(self, off: np.ndarray, move: np.ndarray) -> float:
@@ -175,7 +194,7 @@ class Rig:
         step = self._step_of(FINE)
         for _ in range(round(SETTLING / step)):
             self._take(off, AT_REST, AT_REST, step)
-        heard = [self._take(off, AT_REST, AT_REST, step) for _ in range(round(LISTENING / step))]
+        heard = [self._take(off, AT_REST, AT_REST, step) for _ in range(max(1, round(LISTENING / step)))]
         return np.mean(heard, axis=0)
 
     def _step_of(self, wanted: float) -> float:
@@ -200,6 +219,9 @@ class Rig:
             moving[sensor] = (place + off, rate, bend) if sensed else (place, AT_REST, AT_REST)
         for i, name in enumerate(self._names):
             port, _, variable = name.rpartition(".")
+            if variable == SPIN:
+                self._component.inputs[i] = self.spin
+                continue
             axis = POSITION.index(variable.removesuffix("_free")[-1])
             order = {"x": 0, "y": 0, "v": 1, "a": 2}[variable[0]]
             self._component.inputs[i] = moving[port][order][axis]

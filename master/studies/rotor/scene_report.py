@@ -11,11 +11,13 @@ import numpy as np
 from touchdown.master.results.run import make_writable
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.rotor.held_table import held_lines
+from touchdown.master.studies.rotor.linear import Answer
 from touchdown.master.studies.rotor.report import MODES, SPEED, Report, described, report_text
 from touchdown.master.studies.rotor.situations import Bearing, Seen, Situation, seen_in, situations
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.modal.critical import CriticalMap, critical_map
 from touchdown.rotor.modal.modes import fullest
+from touchdown.rotor.modal.whirl import static_stiffness
 from touchdown.rotor.portrait import Portrait
 
 MISFIT = 1e-2  # of a law; above, it is said
@@ -37,13 +39,14 @@ class SceneRotor:
 def described_in(
     scene: Scene, speed: float | None = None, modes: int = MODES, load: float = 1.0
 ) -> SceneRotor:
-    """The rotor of `scene` at `speed` (rad/s; None: the scene's own), free and on what holds it.
+    """The rotor of `scene` at `speed` (rad/s, signed; None: the scene's own), free and on what holds it.
 
     modes: told of the free rotor, per plane; load: of the touchdown bearings, over what they carry of its
     weight. Raises TouchdownError where the scene has no rotor of elements, or nothing that holds it.
     """
     seen = seen_in(scene)
-    asked = abs(seen.speed if speed is None else speed)
+    seen = seen if speed is None else replace(seen, speed=speed)
+    asked = abs(seen.speed)
     end = BEYOND * (asked or SPEED)
     found, unheld = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
     free = described(replace(seen.shaft, supports=()), asked, modes)
@@ -88,7 +91,7 @@ def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
 
 def _support(node: int, bearings: list[Bearing]) -> Support:
     """The springs that bearings at a node are."""
-    across, upright = np.diag(sum((b.statically for b in bearings), np.zeros((2, 2)))).tolist()
+    across, upright = np.diag(static_stiffness(p for b in bearings for p in b.parts)).tolist()
     alike = abs(across - upright) <= ALIKE * max(abs(across), abs(upright))
     return Support(node, across, None if alike else upright)
 
@@ -107,19 +110,27 @@ def _situation(situation: Situation) -> Iterator[str]:
 
 
 def _floating(b: Bearing) -> Iterator[str]:
-    """One that holds the rotor where it starts: its law, and what that is at each frequency."""
-    assert b.law is not None
-    assert b.response is not None
+    """One that holds the rotor where it starts: its laws, and what they are at each frequency."""
+    several = len(b.answers) > 1
     looks = f", sees the rotor at {b.sensor}" if b.sensor else ""
     yield f"    {b.name} at {b.station}{looks}{_on(b)}"
-    lag = f", behind a lag of {1e6 * b.law.lag:.4g} us ({1.0 / b.law.lag:.5g} rad/s)" if b.law.lag else ""
-    yield f"      {_both(b.law.stiffness, 'N/m')}, {_both(b.law.damping, 'N s/m')}{lag}"
-    if b.law.misfit > MISFIT:
-        yield f"      off by up to {100.0 * b.law.misfit:.2g} % of what it answers, as the modes may be"
-    if b.law.lag or b.law.misfit > MISFIT:
-        yield "      at " + "".join(f"{f:11.0f} Hz" for f in b.response.frequencies)
-        yield "      N/m" + "".join(f"{k:13.4g} " for k in b.response.real[:, 0])[1:]
-        yield "      N s/m" + "".join(f"{c:13.4g} " for c in b.response.damping[:, 0])[3:]
+    for answer in b.answers:
+        if several:
+            yield f"      as the rotor moves at {b.sensor if answer.sensed else b.station}:"
+        yield from _law(answer)
+
+
+def _law(answer: Answer) -> Iterator[str]:
+    """What a bearing answers to one motion."""
+    law, response = answer.law, answer.response
+    lag = f", behind a lag of {1e6 * law.lag:.4g} us ({1.0 / law.lag:.5g} rad/s)" if law.lag else ""
+    yield f"      {_both(law.stiffness, 'N/m')}, {_both(law.damping, 'N s/m')}{lag}"
+    if law.misfit > MISFIT:
+        yield f"      off by up to {100.0 * law.misfit:.2g} % of what it answers, as the modes may be"
+    if law.lag or law.misfit > MISFIT:
+        yield "      at " + "".join(f"{f:11.0f} Hz" for f in response.frequencies)
+        yield "      N/m" + "".join(f"{k:13.4g} " for k in response.real[:, 0])[1:]
+        yield "      N s/m" + "".join(f"{c:13.4g} " for c in response.damping[:, 0])[3:]
 
 
 def _both(matrix: np.ndarray, unit: str) -> str:

@@ -18,14 +18,15 @@ from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.linear import Law, Response, fitted, response
+from touchdown.master.studies.rotor.linear import Answer, answers
 from touchdown.master.studies.rotor.report import find_rotor
 from touchdown.master.studies.rotor.rig import DEEPEST, Place, Pressed, Rig
+from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.campbell import Held, held
 from touchdown.rotor.modal.data import most_modes, seats
 from touchdown.rotor.modal.modes import RIGID, Basis, basis
-from touchdown.rotor.modal.whirl import Foundation, HeldRotor, LinearBearing
+from touchdown.rotor.modal.whirl import Foundation, HeldRotor, LinearBearing, static_stiffness
 from touchdown.rotor.statics import at_rest
 
 SHUTDOWN, NEVER = "shutdown_time", 1e9  # a parameter of magnetic bearings; s
@@ -41,9 +42,8 @@ class Bearing:
     station: str  # of the rotor
     node: int
     parts: tuple[LinearBearing, ...]  # one that follows the journal, one that follows a sensor, or both
-    sensor: str = ""  # the station that it looks at, where that is another
-    response: Response | None = None  # of one that holds the rotor where it starts
-    law: Law | None = None
+    sensor: str = ""  # the station that the latter looks at
+    answers: tuple[Answer, ...] = ()  # by part, of one that holds the rotor where it starts
     load: float = 0.0  # N, that it was pressed with
     pressed: Pressed | None = None  # of one that the rotor lies on
     mount: str = ""  # what it stands on; "": the ground
@@ -52,7 +52,7 @@ class Bearing:
     @property
     def statically(self) -> np.ndarray:
         """Stiffness (2, 2) with what it stands on in series, N/m, as if it looked where it acts."""
-        return sum((part.statically for part in self.parts), np.zeros((2, 2)))
+        return static_stiffness(self.parts)
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Seen:
     basis: Basis
     damping_ratio: float  # of the elastic modes
     gravity: float  # m/s2
-    speed: float  # rad/s, signed
+    speed: float  # rad/s, counter-clockwise: that bearings are measured at
     journals: tuple[Attachment, ...]
     sensors: dict[str, dict[str, str]]  # by bearing: its port, and the rotor's that it sees
     places: dict[str, Place]  # by bearing
@@ -218,7 +218,7 @@ def _foundation(system: System, mount: str) -> Foundation | None:
     """What the body at COMPONENT.PORT is, as the contract has it; None: it does not give way."""
     names = [f"{mount}.{gain}" for gain in GAINS if gain != "inv_I"]
     inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)
-    return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m) if inv_m > 0.0 else None
+    return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m, mount) if inv_m > 0.0 else None
 
 
 # -- what the bearings do ----------------------------------------------------------------------------
@@ -233,24 +233,40 @@ def _rig(seen: Seen, idle: System, a: Attachment) -> Rig:
 
 
 def _floating(seen: Seen, a: Attachment, rig: Rig) -> Bearing | str:
-    """A bearing about the place where the rotor starts; or that it gives no force there."""
+    """A bearing about the place where the rotor starts, spinning; or that it gives no force there."""
     sensors = seen.sensors[a.bearing]
-    found = response(rig, bool(sensors))
-    if found is None:
+    rig.spin = seen.speed
+    found = answers(rig, bool(sensors))
+    if not found:
         return "gives no force where the rotor starts"
-    law, node = fitted(found), seen.shaft.node(a.body_port)
+    node, sensor = seen.shaft.node(a.body_port), ""
+    if any(answer.sensed for answer in found):
+        sensor = _looks_at(seen, a.bearing, tuple(sensors.values()))
     mount, foundation = _stands_on(seen, a)
-    sensor = next(iter(sensors.values()), "") if found.by_journal != 1.0 else ""
-    parts: list[LinearBearing] = []
-    for share, looks in ((found.by_journal, ""), (1.0 - found.by_journal, sensor)):
-        if share != 0.0:
-            matrices = share * law.stiffness, share * law.damping
-            sensed = seen.shaft.node(looks) if looks else None
-            parts.append(LinearBearing(node, *matrices, law.lag, sensed, foundation))
+    parts = tuple(
+        LinearBearing(
+            node,
+            answer.law.stiffness,
+            answer.law.damping,
+            answer.law.lag,
+            seen.shaft.node(sensor) if answer.sensed else None,
+            foundation,
+        )
+        for answer in found
+    )
     return Bearing(
-        a.bearing, a.body_port, node, tuple(parts), sensor,
-        response=found, law=law, mount=mount, foundation=foundation,
-    )  # fmt: skip
+        a.bearing, a.body_port, node, parts, sensor, answers=found, mount=mount, foundation=foundation
+    )
+
+
+def _looks_at(seen: Seen, bearing: str, stations: Sequence[str]) -> str:
+    """The station that a bearing sees the rotor at. Raises TouchdownError where there are several."""
+    if len({seen.shaft.node(station) for station in stations}) > 1:
+        raise TouchdownError(
+            f"{bearing} of scene {seen.scene.name} sees the rotor at {', '.join(stations)}: "
+            "what it does by each is not told apart; give it one sensor"
+        )
+    return stations[0]
 
 
 def _stands_on(seen: Seen, a: Attachment) -> tuple[str, Foundation | None]:
@@ -282,10 +298,14 @@ def _shares(seen: Seen, pressing: Sequence[Attachment], holding: Sequence[Bearin
     """Of the rotor's weight (N), by bearing: what rigid ones carry; those of one place share it."""
     nodes = {a.bearing: seen.shaft.node(a.body_port) for a in pressing}
     supports = dict.fromkeys(nodes.values(), np.inf)
-    supports |= {b.node: float(b.statically[1, 1]) for b in holding if b.node not in supports}
+    others = {b.node: float(b.statically[1, 1]) for b in holding if b.node not in supports}
+    supports |= {node: k for node, k in others.items() if k > 0.0}  # a damper carries nothing
     if len(supports) < 2:  # it would tip; nothing is known of what holds it there
         return dict.fromkeys(nodes, 0.0)
-    reactions = at_rest(seen.shaft, list(supports.items()), seen.gravity).reactions
+    try:
+        reactions = at_rest(seen.shaft, list(supports.items()), seen.gravity).reactions
+    except ModelError as error:
+        raise TouchdownError(f"scene {seen.scene.name}: how its rotor lies is not known: {error}") from None
     on = dict(zip(supports, reactions.tolist(), strict=True))
     every = list(nodes.values())
     return {name: on[node] / every.count(node) for name, node in nodes.items()}

@@ -19,9 +19,10 @@ from touchdown.rotor.beams.shaft import Shaft, Station, Support
 from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import ImportedRotorError, from_ross, read
 from touchdown.rotor.imports.ross import of_elements
-from touchdown.rotor.modal.campbell import supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
 
 SAVED = Path(__file__).parent / "saved"
 THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
@@ -57,7 +58,9 @@ def test_six_modes_of_a_published_example(name: str, kind: str) -> None:
             found = bent(np.abs(whirl_frequencies(basis(shaft, 0), [speed])[0]) / (2.0 * math.pi), shaft)
         else:
             springs = [Support(s.node, s.stiffness, s.stiffness_y) for s in shaft.supports]
-            found = supported_whirl(basis(shaft, 0), speed, springs).frequencies
+            found = (
+                HeldRotor(basis(shaft, 0), [LinearBearing.of(s) for s in springs]).whirl(speed).frequencies
+            )
         ours = np.sort(found)
         assert len(theirs) >= 10
         assert ours[: len(theirs)] == pytest.approx(theirs, rel=AGREE)

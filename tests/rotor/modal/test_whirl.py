@@ -12,15 +12,17 @@ from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft, Support, disc
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.campbell import followed
+from touchdown.rotor.modal.campbell import _crossing, followed
 from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.whirl import (
     Foundation,
     HeldRotor,
     LinearBearing,
+    Whirl,
     damping_ratios,
     log_decrements,
+    static_stiffness,
 )
 
 LENGTH, K, C = 0.6, 1e6, 300.0
@@ -100,8 +102,20 @@ def test_a_bearing_on_a_foundation() -> None:
     chain = (half * s**2 + tied) * (own + tied) - tied**2
     for root in chain.roots[chain.roots.imag > 0.0]:
         assert np.isclose(found.roots, root, rtol=EXACT).sum() == 2
-    assert held[0].statically == pytest.approx(ONE / (1.0 / K + 1.0 / 5e6))
-    assert bearings()[0].statically == pytest.approx(K * ONE)
+    assert static_stiffness(held[:1]) == pytest.approx(ONE / (1.0 / K + 1.0 / 5e6))
+    assert static_stiffness(bearings()[:1]) == pytest.approx(K * ONE)
+
+
+def test_parts_of_a_bearing_stand_on_one_foundation() -> None:
+    """Halves of a bearing, one by a sensor in its place, are the whole one: in its modes and at rest."""
+    named = Foundation(mass=3.0, stiffness=5e6, damping=80.0, name="housing.A")
+    whole, other = bearings(foundation=named)[0], bearings()[1]
+    half = replace(whole, stiffness=0.5 * K * ONE, damping=0.5 * C * ONE)
+    found = HeldRotor(RIGID, [half, other, replace(half, sensed=1)]).whirl(SPEED)
+    assert found.roots == pytest.approx(HeldRotor(RIGID, [whole, other]).whirl(SPEED).roots, rel=EXACT)
+    assert static_stiffness([half, half]) == pytest.approx(static_stiffness([whole]))
+    with pytest.raises(ModelError, match=r"two foundations called housing\.A"):
+        HeldRotor(RIGID, [half, replace(other, foundation=replace(named, mass=4.0))])
 
 
 def test_a_bearing_that_looks_elsewhere() -> None:
@@ -137,6 +151,36 @@ def test_what_nothing_holds_is_no_mode_and_what_is_pushed_away_falls() -> None:
     pushed = HeldRotor(RIGID, bearings(stiffness=-K * ONE)).whirl(0.0)
     assert not pushed.stable
     assert pushed.aperiodic[-1] > 0.0
+
+
+@pytest.mark.parametrize("speed", [1e-3, 1.0, 100.0, 1000.0])
+@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
+def test_what_is_pushed_away_falls_at_any_speed(name: str, speed: float) -> None:
+    """Roots that fall in both planes make pairs that hardly swing: they are no modes, and yet there."""
+    shaft = find(name)
+    modes = basis(shaft, 16, [3, shaft.nodes - 3])
+    for k in (-1e4, -1e6):
+        for c in (0.0, 100.0):
+            held = [
+                LinearBearing(node, times * k * ONE, c * ONE)
+                for node, times in ((4, 1.0), (shaft.nodes - 4, 1.3))
+            ]
+            assert not HeldRotor(modes, held, 0.003).whirl(speed).stable
+
+
+def test_a_short_lag_takes_no_mode_away() -> None:
+    """Its own root is 1 / lag, far above those of the modes."""
+    shaft = find("rotor_I")
+    modes = basis(shaft, 5, [3])
+
+    def soft(lag: float, c: float) -> Whirl:
+        held = [LinearBearing(shaft.node(name), 1e4 * ONE, c * ONE, lag) for name in ("amb_A", "amb_B")]
+        return HeldRotor(modes, held, 0.003).whirl(SPEED)
+
+    at_once, found = soft(0.0, 10.0), soft(1.5e-9, 10.0)
+    assert found.roots == pytest.approx(at_once.roots, rel=1e-6)  # found: 6e-8
+    assert found.free == 0
+    assert not soft(1.5e-9, -10.0).stable
 
 
 def test_critical_speeds_without_damping() -> None:
@@ -178,3 +222,13 @@ def test_a_mode_that_stops_swinging_ends_its_line() -> None:
 def test_what_cannot_be_a_bearing() -> None:
     with pytest.raises(ModelError, match=r"stiffness of a bearing has the shape \(2,\)"):
         LinearBearing(1, np.ones(2), ONE)
+
+
+def test_a_crossing_that_another_mode_hides_is_still_told() -> None:
+    """At both ends a mode of the other sense is nearer: the line's own course is left."""
+    rotor = HeldRotor(RIGID, bearings())
+    swing = float(rotor.whirl(0.0).roots[0].imag)
+    speeds, roots = np.array([0.9, 1.1]) * 0.5 * swing, 1j * swing * np.array([0.5, 0.5])
+    found = _crossing(rotor, speeds, roots, 1.0)
+    assert found.speed == pytest.approx(0.5 * swing)
+    assert found.root == pytest.approx(0.5j * swing)

@@ -42,7 +42,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--speed",
         help='for forward and backward whirl; Campbell diagrams reach twice as far (default: "9000 rpm", '
-        "of a scene its own)",
+        "of a scene its own); of a scene's rotor, below 0: clockwise",
     )
     verb.add_argument(
         "--modes",
