@@ -229,8 +229,8 @@ class Rotor(Shaft):
         return report_text(described(self, speed, modes))
 
     def __repr__(self) -> str:
-        called = [f" (called {name})" for name in self.called] or self.nodes * [""]
-        stations = ", ".join(f"{s.name} at node {s.node}{called[s.node - 1]}" for s in self.stations)
+        called = {node: f" (called {name})" for node, name in enumerate(self.called, start=1)}
+        stations = ", ".join(f"{s.name} at node {s.node}{called.get(s.node, '')}" for s in self.stations)
         made_of = f"{len(self.elements)} elements" if self.elements else self.body.kind
         return (
             f"<Rotor {self.title}: {made_of}, {self.nodes} nodes, {self.mass:.5g} kg, "

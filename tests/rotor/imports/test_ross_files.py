@@ -182,8 +182,10 @@ def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path.write_text("[", encoding="utf-8")
     with pytest.raises(ImportedRotorError, match="cannot be read"):
         read(path)
+    sheet = tmp_path / "rotor.xls"
+    sheet.touch()
     with pytest.raises(ImportedRotorError, match="imported from ROSS's files"):
-        read(tmp_path / "rotor.xls")
+        read(sheet)
     with pytest.raises(ImportedRotorError, match=r"gone\.csv: cannot be read: No such file"):
         read(tmp_path / "gone.csv")
     with pytest.raises(ImportedRotorError, match="a str is no"):
