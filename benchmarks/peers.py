@@ -4,7 +4,8 @@ The drops of tests/master/interop/peers at a macro step of 5 us: by this project
 scheme, and by libcosim, ecos, fmpy's SSP runner and cofmupy, which step all FMUs in parallel with loads
 predicted one step ahead (scheme jacobi-lead). Cost is what is spent beyond the kernels, per FMU that is
 stepped and macro step: processor time of all threads, and time on the wall. Errors are those against the
-same drop at a macro step of 1 us. The tools are installed from PyPI; ecos needs Debian's libtbb12.
+same drop at a macro step of 1 us. Each runs FMUs in Python and native ones. The tools are installed from
+PyPI; ecos needs Debian's libtbb12.
 
     python benchmarks/peers.py [--repeat 7] [--falls disk,"rotor I"]
 """
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import time as clock
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -32,10 +34,12 @@ from environments import REQUIREMENTS, Found, UnavailableError, run, title
 from touchdown.master.components.twin import TwinComponent
 from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.interop.packing import Making
 from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts
 LEAD = "jacobi-lead"
+OWN = "touchdown-cosim"
 SLOW = ("fmpy", "cofmupy")  # run once
 
 
@@ -73,9 +77,9 @@ def kernels(scene: Scene, repeat: int, retire: bool) -> Kernels:
     return Kernels(1e6 * float(np.min(runs, axis=0).sum()) / steps, len(runs[0]) / steps)
 
 
-def ours(fall: Fall) -> Found:
+def ours(fall: Fall, native: bool) -> Found:
     """The project's master through FMUs."""
-    system = open_system(fall.scene)
+    system = open_system(fall.scene.set({f"{name}.native": native for name in fall.scene.components}))
     marks: list[tuple[float, float]] = []
 
     def watch(_: Moment) -> None:
@@ -94,37 +98,46 @@ def ours(fall: Fall) -> Found:
         system.close()
 
 
+def _package(fall: Fall, folder: Path, native: bool) -> Path:
+    """The fall's package for other tools, with native FMUs or with ones in Python."""
+    inside = folder / ("native" if native else "python")
+    inside.mkdir(exist_ok=True)
+    return fall.package(LEAD, inside, Making(native=native))
+
+
 def report(fall: Fall, repeat: int, folder: Path) -> None:
     """Print the fall's table."""
     exact, _ = Fall(fall.scene.set({"run.macro_step": 1e-6}), fall.journals, fall.bearings).ours()
-    package = fall.package(LEAD, folder)
+    packages = {native: _package(fall, folder, native) for native in (False, True)}
     own = kernels(fall.scene, repeat, retire=True)
     parallel = kernels(fall.with_scheme(LEAD), repeat, retire=False)
     found: dict[str, list[Found]] = {}
-    for k in range(repeat):
-        found.setdefault("touchdown-cosim", []).append(ours(fall))
+    for k, native in product(range(repeat), packages):
+        kind = ", native" if native else ""
+        found.setdefault(f"{OWN}{kind}", []).append(ours(fall, native))
         for peer in REQUIREMENTS:
             if k > 0 and peer in SLOW:
                 continue
             try:
-                found.setdefault(title(peer), []).append(run(peer, package, fall.wanted))
+                told = run(peer, packages[native], fall.wanted)
+                found.setdefault(f"{title(peer)}{kind}", []).append(told)
             except UnavailableError as reason:
                 print(f"{title(peer)} left out: {reason}")
     print(f"\n{fall.scene.name}, {len(fall.scene.components)} FMUs, median of {repeat} runs; kernels take")
     print(f"{own.time:.2f} us per macro step, {parallel.time:.2f} us with loads predicted")
-    print(f"{'':<20}{'cost beyond the kernels':^30}{'error':^36}")
-    print(f"{'tool':<20}{'processor':>16}{'wall':>14}{'journal':>13}{'peak force':>12}{'impact':>11}")
+    print(f"{'':<26}{'cost beyond the kernels':^30}{'error':^36}")
+    print(f"{'tool':<26}{'processor':>16}{'wall':>14}{'journal':>13}{'peak force':>12}{'impact':>11}")
     for tool, runs in found.items():
         if not runs:
             continue
-        base = own if tool == "touchdown-cosim" else parallel
+        base = own if tool.startswith(OWN) else parallel
         beyond = [
             (statistics.median(values) - base.time) / base.stepped
             for values in ([r.processor for r in runs], [r.wall for r in runs])
         ]
         error = fall.error(runs[0].values, exact)
         print(
-            f"{tool:<20}{beyond[0]:>13.1f} us{beyond[1]:>11.1f} us{error.journal:>10.2g} um"
+            f"{tool:<26}{beyond[0]:>13.1f} us{beyond[1]:>11.1f} us{error.journal:>10.2g} um"
             f"{100 * error.peak:>10.2g} %{error.impact:>8.2g} us"
         )
 

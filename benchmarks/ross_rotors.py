@@ -3,9 +3,11 @@
     python benchmarks/ross_rotors.py [-o FOLDER]
 
 needs ROSS (`pip install ross-rotordynamics "plotly<6"`). Each example is saved by `rotor.save` and imported
-by one command. ROSS's own matrices are solved here without its axial and torsional coordinates, undamped;
-`run_modal` and `run_ucs` (critical speeds over the stiffness of the bearings) are solved as they are. With
--o it leaves saved files and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
+by one command, and besides by the matrices M, K and G of the free rotor alone. ROSS's own matrices are
+solved here without its axial and torsional coordinates, undamped, and with all coefficients of its
+bearings, damping and cross-coupling, as complex roots ("damped"); `run_modal` and `run_ucs` (critical
+speeds over the stiffness of the bearings) are solved as they are. With -o it leaves saved files, matrices
+and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
 """
 
 from __future__ import annotations
@@ -25,8 +27,8 @@ import ross
 import touchdown
 from touchdown.master.cli import main as command
 from touchdown.rotor.beams.shaft import Support
-from touchdown.rotor.modal.campbell import supported_whirl
 from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
 
 EXAMPLES = ("rotor_example", "rotor_example_with_damping", "compressor_example")
 SPEEDS = (0.0, 6000.0, 12000.0)  # rpm
@@ -48,8 +50,39 @@ def ross_modes(rotor: ross.Rotor, speed: float) -> np.ndarray:
 def our_modes(rotor: touchdown.Rotor, speed: float, supports: tuple[Support, ...]) -> np.ndarray:
     """The same of ours on the springs of `supports`."""
     springs = [replace(s, damping=0.0, damping_y=0.0) for s in supports]
-    found = supported_whirl(basis(rotor, 0), speed, springs).frequencies
+    found = HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in springs]).whirl(speed).frequencies
     return np.sort(found[found > STILL / (2.0 * math.pi)])[:MODES]
+
+
+def ross_roots(free: ross.Rotor, held: ross.Rotor, speed: float) -> np.ndarray:
+    """Complex roots (1/s) of ROSS's matrices, by size, damped by its bearings alone."""
+    keep = [6 * node + i for node in range(len(held.nodes)) for i in (0, 1, 3, 4)]
+    damping = held.C(speed) - free.C(speed)
+    matrices = (held.M(speed), held.K(speed), damping + speed * held.G())
+    M, K, C = (m[np.ix_(keep, keep)] for m in matrices)
+    inverse = np.linalg.inv(M)
+    zero, one = np.zeros_like(M), np.eye(len(M))
+    return swinging(np.linalg.eigvals(np.block([[zero, one], [-inverse @ K, -inverse @ C]])))
+
+
+def our_roots(held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> np.ndarray:
+    """The same of ours in bearings of the same coefficients."""
+    bearings = [
+        LinearBearing(b.n + 1, b.K(speed)[:2, :2], b.C(speed)[:2, :2]) for b in held.bearing_elements
+    ]
+    return swinging(HeldRotor(basis(rotor, 0), bearings).whirl(speed).roots)
+
+
+def swinging(roots: np.ndarray) -> np.ndarray:
+    """The lowest of each conjugate pair."""
+    roots = roots[roots.imag > STILL]
+    return roots[np.argsort(np.abs(roots))][:MODES]
+
+
+def apart_roots(free: ross.Rotor, held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> str:
+    """How far each of our roots is from the nearest of ROSS's, over its size; the largest."""
+    theirs, ours = ross_roots(free, held, speed), our_roots(held, rotor, speed)
+    return f"{max(np.min(np.abs(theirs / one - 1.0)) for one in ours):.1e}"
 
 
 def bending(frequencies: np.ndarray, rotor: touchdown.Rotor) -> np.ndarray:
@@ -65,7 +98,10 @@ def main() -> None:
     print(
         f"ROSS {ross.__version__}; largest relative deviation of {MODES // 2} modes, backward and forward"
     )
-    print(f"{'example':28}{'rpm':>7}{'free':>10}{'on bearings':>13}{'run_modal':>11}{'run_ucs':>10}")
+    columns = (
+        f"{'free':>10}{'matrices':>10}{'on bearings':>13}{'damped':>10}{'run_modal':>11}{'run_ucs':>10}"
+    )
+    print(f"{'example':28}{'rpm':>7}{columns}")
     with TemporaryDirectory() as temporary:
         told = {name: compared(name, folder or Path(temporary)) for name in EXAMPLES}
     if folder:
@@ -88,17 +124,33 @@ def compared(name: str, folder: Path) -> dict[str, dict[str, list[float]]]:
         rotor = imported(saved, rpm)
         theirs = {"free": bending(ross_modes(free, speed), rotor), "held": ross_modes(held, speed)}
         ours = {"free": bending(our_modes(rotor, speed, ()), rotor)}
+        alone = bending(our_modes(from_matrices(free, folder / f"{name}.npz"), speed, ()), rotor)
         if "cross-coupled" not in rotor.about:
             ours["held"] = our_modes(rotor, speed, rotor.supports)
         apart = {kind: f"{np.max(np.abs(ours[kind] / theirs[kind] - 1.0)):.1e}" for kind in ours}
-        cells = (apart["free"], apart.get("held", "-"), run_modal(held, rotor, speed))
+        taken = f"{np.max(np.abs(alone / theirs['free'] - 1.0)):.1e}"
+        damped = apart_roots(free, held, rotor, speed)
         for kind in ours:
             told[kind][f"{rpm:g}"] = theirs[kind].tolist()
-        print(f"{name:28}{rpm:7.0f}{cells[0]:>10}{cells[1]:>13}{cells[2]:>11}", end="\n" if rpm else "")
+        row = f"{name:28}{rpm:7.0f}{apart['free']:>10}{taken:>10}{apart.get('held', '-'):>13}{damped:>10}"
+        print(f"{row}{run_modal(held, rotor, speed):>11}", end="\n" if rpm else "")
         if not rpm:
             told["critical"], line = critical(original, rotor)
             print(line)
     return told
+
+
+def from_matrices(free: ross.Rotor, path: Path) -> touchdown.Rotor:
+    """A rotor of ROSS's matrices, by way of the archive at `path`."""
+    np.savez_compressed(
+        path,
+        M=free.M(0.0),
+        K=free.K(0.0),
+        G=free.G(),
+        coordinates=np.array(free.nodes_pos, dtype=float),
+        dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"],
+    )
+    return touchdown.Rotor.imported(path)
 
 
 def critical(original: ross.Rotor, rotor: touchdown.Rotor) -> tuple[dict[str, list[float]], str]:
@@ -125,7 +177,11 @@ def run_modal(held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> str:
     if len(rotor.about.splitlines()) > 1:
         return "-"
     theirs = held.run_modal(speed, num_modes=4 * MODES, sparse=False).wd / (2.0 * math.pi)
-    ours = supported_whirl(basis(rotor, 0), speed, rotor.supports).frequencies[: MODES // 2]
+    ours = (
+        HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in rotor.supports])
+        .whirl(speed)
+        .frequencies[: MODES // 2]
+    )
     return f"{max(np.min(np.abs(theirs / one - 1.0)) for one in ours):.1e}"
 
 

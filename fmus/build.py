@@ -16,6 +16,7 @@ from pathlib import Path
 
 from pythonfmu import FmuBuilder
 
+from touchdown.fmus.description.variables import scalars
 from touchdown.fmus.presentation import references, terminals
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
@@ -39,7 +40,7 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
     entries = _entries(recipe, interpreter)
     entries["documentation/index.html"] = page(recipe, interpreter).encode()
     entries["model.png"] = icon(recipe.model)
-    entries |= terminals.entries(recipe.model)
+    entries |= terminals.entries(recipe.model, scalars(recipe.model))
     for name in [name for name in entries if name.startswith("binaries/")]:
         library = with_errors(entries.pop(name))
         if name.endswith(LIBRARY):

@@ -54,7 +54,7 @@ _WITH_MODES = """
 
 from touchdown.fmus.variants.modes import with_modes
 
-{identifier}.model = with_modes({identifier}.model, {count})
+{identifier}.model = with_modes({identifier}.model, {count}, {told})
 """
 
 
@@ -86,13 +86,13 @@ class Recipe:
         script = self.script + _STARTING.format(identifier=self.identifier, values=others)
         return replace(self, script=script, content=f"{self.content}{model.content[-17:]}", model=model)
 
-    def with_modes(self, count: int) -> Recipe:
+    def with_modes(self, count: int, told: int) -> Recipe:
         """The recipe of an FMU for rotors of `count` modes per plane (`variants.modes`)."""
-        model = with_modes(self.model, count)
+        model = with_modes(self.model, count, told)
         if model is self.model:
             return self
-        script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count)
-        return replace(self, script=script, content=f"{self.content}_modes{count}", model=model)
+        script = self.script + _WITH_MODES.format(identifier=self.identifier, count=count, told=told)
+        return replace(self, script=script, content=f"{self.content}_modes{count}_{told}", model=model)
 
 
 def names() -> list[str]:
@@ -174,3 +174,8 @@ def find_preset(name: str, *folders: Path) -> str:
 def preset(found: str) -> dict[str, float]:
     """Values in SI by parameter name; a component takes those it has. Raises CatalogueError."""
     return catalogue.bearing(found).settings()
+
+
+def bore_of(found: str) -> float:
+    """Bore (m) of the bearing that `preset` takes. Raises CatalogueError."""
+    return catalogue.bearing(found).bore

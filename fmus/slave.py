@@ -25,7 +25,8 @@ from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
 from touchdown.fmus import refusals
-from touchdown.fmus.description import describe, guid
+from touchdown.fmus.description.fmi2 import describe
+from touchdown.fmus.description.making import guid
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, StepSizeError
 from touchdown.modelkit.variables import Causality, Scalar

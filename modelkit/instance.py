@@ -12,7 +12,7 @@ import numpy as np
 from touchdown.modelkit import refusals
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.integrators.control import MOST_STEPS
-from touchdown.modelkit.model import Model, ModelError, StepSizeError, slots
+from touchdown.modelkit.model import Model, ModelError, Slot, StepSizeError, slots
 from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
 from touchdown.modelkit.variables import Causality, Scalar, as_tuple, from_record, layout
 
@@ -47,6 +47,10 @@ class Instance:
     def record(self) -> Any:
         """The memory as one record."""
         return self.memory[0]
+
+    def store(self, slot: Slot) -> memoryview[Any]:
+        """The memory as numbers of a variable's kind; its value is at `slot.index`."""
+        return self.reals if slot.variable.spec.kind is Scalar.REAL else self.integers
 
     def start(self, time: float) -> None:
         """Check the parameters, settle what follows from them, and set state and outputs at `time` (s).
@@ -130,8 +134,7 @@ class Instance:
         for slot in self.slots:
             if slot.causality is not causality:
                 continue
-            store = self.reals if slot.variable.spec.kind is Scalar.REAL else self.integers
-            problem = slot.variable.problem(store[slot.index])
+            problem = slot.variable.problem(self.store(slot)[slot.index])
             if problem:
                 raise ModelError(problem)
 

@@ -230,7 +230,12 @@ def tables(shaft: Shaft, p: Parameters) -> np.ndarray:
 
 
 def exposed(shaft: Shaft, name: str) -> str | None:
-    """Stations and sensors by the names the shaft gives them; what it does not have is hidden."""
+    """Stations and sensors by the names the shaft gives them; what it does not have is hidden.
+
+    That is all stresses where it has no elements to have them.
+    """
+    if name.startswith("stress.") and not shaft.elements:
+        return None
     match = re.match(r"(station|sensor|node)\[(\d+)\](.*)", name)
     if match is None:
         return name
@@ -297,7 +302,7 @@ def flexible_rotor(shaft: Shaft, name: str, content: str = "") -> Model:
         name=name,
         content=content,
         title=shaft.title,
-        about=f"{shaft.title}: Timoshenko beam of {len(shaft.elements)} elements in modal coordinates",
+        about=f"{shaft.title}: {shaft.body.kind}, in modal coordinates",
         tables=partial(tables, shaft),
         rename=partial(exposed, shaft),
         starts_from=_starts_from(shaft),

@@ -10,13 +10,17 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.modal.campbell import Whirl, supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.campbell import Held, held, whirl_frequencies
 from touchdown.rotor.modal.critical import CriticalMap, critical_map
-from touchdown.rotor.modal.data import seats
+from touchdown.rotor.modal.data import most_modes, seats
 from touchdown.rotor.modal.modes import RIGID, Basis, basis, fullest
+from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
 from touchdown.rotor.statics import Rest, at_rest
 
 HERTZ = 0.5 / math.pi
+FOLLOWED = 12  # modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones
+LINES = 12  # of a Campbell diagram on supports
+COARSER = 2  # of the speeds every which is taken for it
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ class Portrait:
     backward: np.ndarray  # (S, n), Hz, whirl against it
     rest: Rest | None  # rigidly held at the seats; None where there are less than two
     critical: tuple[CriticalMap, ...]  # held where it is levitated, and at its seats; where two nodes are
-    held: Whirl | None  # at the first speed on the shaft's own supports; None where there are none
+    held: Held | None  # on the shaft's own supports, over the speeds as well; None where there are none
 
 
 def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> Portrait:
@@ -51,7 +55,7 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
             f"modes = {modes}: {shaft.title} has {len(full.omega)} modes per plane; ask for "
             f"{RIGID} (rigid) to {len(full.omega)}, or 0 for all"
         )
-    held = fullest(shaft, list(dict.fromkeys(s.node for s in (*shaft.stations, *shaft.supports))))
+    full_there = fullest(shaft, list(dict.fromkeys(s.node for s in (*shaft.stations, *shaft.supports))))
     shapes = full.shapes[0::2, :count]
     turning = np.abs(np.asarray(speeds, dtype=float))
     whirl = HERTZ * whirl_frequencies(full, turning)
@@ -65,9 +69,17 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
         forward=forward,
         backward=backward,
         rest=_at_rest(shaft),
-        critical=tuple(_critical(shaft, held)),
-        held=supported_whirl(held, turning[0], shaft.supports) if shaft.supports else None,
+        critical=tuple(_critical(shaft, full_there)),
+        held=_held(shaft, turning) if shaft.supports else None,
     )
+
+
+def _held(shaft: Shaft, speeds: np.ndarray) -> Held:
+    """On its own supports, at the first speed and over the others, with the damping of its own modes."""
+    nodes = list(dict.fromkeys(s.node for s in shaft.supports))
+    few = basis(shaft, min(FOLLOWED, most_modes(shaft)), nodes)
+    rotor = HeldRotor(few, [LinearBearing.of(s) for s in shaft.supports], shaft.damping_ratio)
+    return held(rotor, [speeds[0], *speeds[1:][::COARSER]], LINES)
 
 
 def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,8 +9,9 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import assemble, check_nodes, solve, translation
+from touchdown.rotor.beams.assembly import check_nodes, tilt, translation
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.modal.modes import flexibility
 from touchdown.rotor.modal.stresses import bending_per_moment, end_nodes, shear_per_force
 
 
@@ -22,7 +22,7 @@ class Rest:
     deflection: np.ndarray  # (N,), m, upwards
     slope: np.ndarray  # (N,)
     reactions: np.ndarray  # (supports,), N, upwards
-    node: np.ndarray  # (R,), 1-based; R = 2 elements, start and end of each
+    node: np.ndarray  # (R,), 1-based; R = 2 elements, start and end of each; none of a superelement
     position: np.ndarray  # (R,), m from node 1
     bending: np.ndarray  # (R,), Pa
     shear: np.ndarray  # (R,), Pa
@@ -38,25 +38,40 @@ def at_rest(shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float 
     if len(set(nodes)) < 2 or len(set(nodes)) != len(nodes):
         raise ModelError(f"supports at nodes {nodes}: a rotor rests on two nodes or more, each named once")
     check_nodes(shaft, nodes)
+    if len(nodes) > shaft.coordinates:
+        raise ModelError(
+            f"{shaft.title} has {shaft.coordinates} modes, too few to lie on {len(nodes)} nodes"
+        )
     for node, spring in supports:
         if not spring > 0.0:
             raise ModelError(
                 f"the support at node {node} has a stiffness of {spring:g} N/m; it must be above 0"
             )
-    matrices = assemble(shaft)
-    load = -gravity * matrices.mass @ translation(shaft)
-    stiffness = matrices.stiffness.copy()
-    for node, spring in supports:
-        if math.isfinite(spring):
-            stiffness[2 * node - 2, 2 * node - 2] += spring
-    held = [2 * node - 2 for node, spring in supports if math.isinf(spring)]
-    free = np.setdiff1d(np.arange(2 * shaft.nodes), held)
-    q = np.zeros(2 * shaft.nodes)
-    q[free] = solve(stiffness[np.ix_(free, free)], load[free])
-    reactions = (matrices.stiffness @ q - load)[[2 * node - 2 for node in nodes]]
+    q, reactions = _equilibrium(shaft, supports, gravity)
     bending, shear = _stresses(shaft, q, gravity)
     node = end_nodes(shaft)
     return Rest(q[0::2], q[1::2], reactions, node, shaft.positions()[node - 1], bending, shear)
+
+
+def _equilibrium(
+    shaft: Shaft, supports: Sequence[tuple[int, float]], gravity: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Deflection and slope of the nodes (2N,), and forces of the supports (S,), N, upwards.
+
+    The supports bend the rotor by `flexibility`; a rigid motion brings it onto them. Weight alone bends
+    nothing: as inertia it is balanced by itself.
+    """
+    nodes, springs = zip(*supports, strict=True)
+    bent = flexibility(shaft, nodes)
+    rigid = np.stack((translation(shaft), tilt(shaft)), axis=1)
+    at = [2 * (node - 1) for node in nodes]
+    give = bent[at] + np.diag(1.0 / np.array(springs))  # m/N, also of the springs
+    scale = np.max(np.abs(give)) or 1.0
+    count = len(nodes)
+    balance = np.block([[give / scale, rigid[at]], [rigid[at].T, np.zeros((2, 2))]])
+    weight = np.concatenate((np.zeros(count), [gravity * shaft.mass, 0.0]))
+    found = np.linalg.solve(balance, weight)
+    return bent @ found[:count] + scale * (rigid @ found[count:]), found[:count]
 
 
 def _stresses(shaft: Shaft, q: np.ndarray, gravity: float) -> tuple[np.ndarray, np.ndarray]:

@@ -63,7 +63,8 @@ RATED = {"touchdown.master.report", "touchdown.master.studies.machine", "touchdo
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.studies.rotors"),
-        *("touchdown.master.api.rotor", "touchdown.master.studies.machine"),
+        *("touchdown.master.api.rotor", "touchdown.master.api.in_bearings"),
+        "touchdown.master.studies.machine",
         *("touchdown.master.report.chapters.machine", "touchdown.master.report.pictures.machine"),
     },
     "touchdown.bearings.rating": RATED,

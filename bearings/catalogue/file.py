@@ -52,15 +52,14 @@ def read(path: Path) -> dict[str, Bearing]:
         raise CatalogueError(f"{path}: cannot be read: {error.strerror}") from None
     except (ValueError, RecursionError) as error:
         raise CatalogueError(f"{path}: is not valid TOML: {error}") from None
+    for name in tables:
+        if not name.isprintable():
+            raise CatalogueError(f"{path}: a bearing cannot be called {name!r}; leave out line breaks")
     return {name: _bearing(name, table, f"{path}: [{name}]", path.name) for name, table in tables.items()}
 
 
 def _bearing(name: str, table: Any, where: str, file: str) -> Bearing:
     """A bearing of its table."""
-    if not name.isprintable():
-        raise CatalogueError(
-            f"{where.partition(chr(91))[0]}a bearing cannot be called {name!r}; leave out line breaks"
-        )
     if not isinstance(table, dict):
         raise CatalogueError(f"{where} must be a table, with {', '.join(NEEDED)} of a bearing")
     kind = table.get("kind", DEEP_GROOVE)

@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import tostring
 
-from pythonfmu import Fmi2Slave
-
 from touchdown.fmus.build import kept_sound, write
-from touchdown.fmus.description import Making, describe, guid
+from touchdown.fmus.description.making import Making, guid
 from touchdown.fmus.native.compiler import SOURCE, command, library
+from touchdown.fmus.native.faces import FMI_2, Face
 from touchdown.fmus.native.in_c import ENTRIES, InC, sources
 from touchdown.fmus.native.kernels import bitcode
 from touchdown.fmus.native.tables import Choice, Held, source
-from touchdown.fmus.native.targets import NativeError, Target, chosen, places
+from touchdown.fmus.native.targets import NativeError, Target, chosen
 from touchdown.fmus.native.texts import header
 from touchdown.fmus.presentation import references, terminals
 from touchdown.fmus.presentation.documentation import page
@@ -39,7 +38,7 @@ _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"
 
 @dataclass(frozen=True)
 class Native:
-    """What native FMUs are built for: machines, and numbers of modes of rotors.
+    """What native FMUs are built for: machines, numbers of modes of rotors, a version of FMI.
 
     lenient: leave out numbers of modes that a rotor does not have.
     """
@@ -47,6 +46,7 @@ class Native:
     targets: tuple[Target, ...]
     modes: tuple[int, ...] = MODES
     lenient: bool = True
+    face: Face = FMI_2
 
     def check(self) -> None:
         """Raise NativeError where the compiler for a target is not there."""
@@ -59,22 +59,24 @@ def build(recipe: Recipe, folder: Path, native: Native) -> Path:
 
     Raises NativeError where kernels cannot be compiled, or the compiler is missing or fails.
     """
-    model, held = recipe.model, _held(recipe.model, native)
-    identity = _identity(model, held)
+    model, held, face = recipe.model, _held(recipe.model, native), native.face
+    identity = _identity(model, held, face)
     making = Making(f"touchdown-cosim {VERSION}, native", identity, needs_tool=False)
-    description = describe(model, recipe.identifier, Fmi2Slave.log_categories, making)
+    description = face.describe(model, recipe.identifier, making)
     entries = {
         "modelDescription.xml": _HEAD + tostring(description),
-        "documentation/index.html": page(recipe, needs=_needs(model, native, held)).encode(),
-        "model.png": icon(model),
-        **terminals.entries(model),
+        "documentation/index.html": page(
+            recipe, needs=_needs(model, native, held), exposed=face.documented(model)
+        ).encode(),
+        **terminals.entries(model, face.variables(model)),
+        **({"model.png": icon(model)} if face is FMI_2 else {}),
     }
     if not isinstance(model.advance, InC):  # whose model is the library itself
         trial = references.Trial(Instance(model), ModelError)
         entries |= references.entries(model, trial, parameter_sets(model))
-    code, texts = _code(model, identity, held)
+    code, texts = _code(model, identity, held, face)
     made = {target: library(code, texts, target, recipe.identifier) for target in native.targets}
-    for place, target in places(native.targets).items():
+    for place, target in face.places(native.targets).items():
         entries[f"binaries/{place}/{recipe.identifier}{target.suffix}"] = made[target]
     return write(entries, folder, recipe.name)
 
@@ -104,12 +106,14 @@ def cached(recipe: Recipe) -> Path:
     return kept_sound(recipe.name, f"{content}-native", lambda folder: build(recipe, folder, native))
 
 
-def _code(model: Model, identity: str, held: Held) -> tuple[bytes | None, dict[str, str]]:
+def _code(model: Model, identity: str, held: Held, face: Face) -> tuple[bytes | None, dict[str, str]]:
     """What a library is made of: kernels as bitcode, if they are not in C, and sources in C by name."""
+    side = (SOURCE / face.source).read_text(encoding="utf-8")
+    texts = {face.source: side, "texts.h": header()}
+    own = face.tables(model)
     if isinstance(model.advance, InC):
-        table = source(model, identity, held, ENTRIES)
-        return None, {"model.c": table, "texts.h": header(), **sources(model)}
-    return bitcode(model), {"model.c": source(model, identity, held), "texts.h": header()}
+        return None, texts | {"model.c": source(model, identity, held, own, ENTRIES)} | sources(model)
+    return bitcode(model), texts | {"model.c": source(model, identity, held, own)}
 
 
 def _held(model: Model, native: Native) -> Held:
@@ -131,9 +135,9 @@ def _held(model: Model, native: Native) -> Held:
     return Held(tuple(held))
 
 
-def _identity(model: Model, held: Held) -> str:
+def _identity(model: Model, held: Held, face: Face) -> str:
     """GUID of a native FMU: another one than that of the model's FMU in Python, whose states are others."""
-    digest = hashlib.sha256(f"{guid(model)} native {_sources()} {held}".encode()).hexdigest()
+    digest = hashlib.sha256(f"{guid(model)} native {_sources()} {held} {face.version}".encode()).hexdigest()
     return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"
 
 

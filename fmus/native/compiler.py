@@ -18,6 +18,7 @@ from typing import Any
 from touchdown.fmus.native.targets import NativeError, Target, here
 
 SOURCE = Path(__file__).parent / "source"
+COMMON = ("instance.h", "model.h", "numba.c")  # of all libraries; the face is one more
 FLAGS = ("-std=c11", "-O2", "-fPIC", "-fvisibility=hidden", "-ffp-contract=off", "-Wall", "-Wextra")
 _LINKING = {
     ".so": ("-shared", "-Wl,-z,defs", "-Wl,--gc-sections", "-Wl,--build-id=none", "-s", "-lm"),
@@ -26,7 +27,9 @@ _LINKING = {
 }
 
 
-_TELLING = re.compile(r"undefined (reference|symbol)|\berror:")  # a line of a compiler or a linker
+_TELLING = re.compile(
+    r"undefined (reference|symbol)|multiple definition|duplicate symbol|\berror:"
+)  # a line of a compiler or a linker
 
 
 def library(code: bytes | None, sources: Mapping[str, str], target: Target, identifier: str) -> bytes:
@@ -38,8 +41,8 @@ def library(code: bytes | None, sources: Mapping[str, str], target: Target, iden
         place = Path(folder)
         if code is not None:
             (place / "kernels.o").write_bytes(machine_code(code, target))
-        for path in sorted(SOURCE.iterdir()):
-            shutil.copy(path, place)
+        for name in COMMON:
+            shutil.copy(SOURCE / name, place)
         for name, text in sources.items():
             (place / name).write_text(text, encoding="utf-8")
         made = f"{identifier}{target.suffix}"

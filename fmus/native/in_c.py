@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.fmus.description import base_unit
+from touchdown.fmus.description.units import base_unit
 from touchdown.fmus.native.targets import NativeError
 from touchdown.fmus.recipes import Recipe
 from touchdown.modelkit import status
@@ -40,7 +40,7 @@ int64_t advance(double *words, double *scratch, double time, double step)
 """
 
 
-TAKEN = ("fmi2.c", "model.c", "numba.c")  # names of the other sources
+TAKEN = ("fmi2.c", "fmi3.c", "model.c", "numba.c")  # names of the other sources
 
 
 class InC:

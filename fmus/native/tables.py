@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -58,7 +58,7 @@ class Held:
         return "; ".join(f"{name} = {', '.join(map(str, dict.fromkeys(c)))}" for name, c in columns)
 
 
-ARRAYS = ("slots", "access", "defaults", "begun", "problems", "keys", "tables")  # by their names in C
+ARRAYS = ("slots", "defaults", "begun", "problems", "keys", "tables")  # by their names in C
 PARTS = {  # of the memory, by what the FMI side calls where they begin
     "parameters": "p",
     "inputs": "u",
@@ -72,19 +72,21 @@ PARTS = {  # of the memory, by what the FMI side calls where they begin
 }
 
 
-def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> str:
+def source(model: Model, identity: str, held: Held, own: Mapping[str, str], entries: str = ENTRIES) -> str:
     """The file, of a model whose FMU has the GUID `identity` and holds tables for `held`.
 
-    entries: `settle`, `start` and `advance` of model.h in C, where its kernels are not numba's.
+    own: tables that are the face's own, by members of MODEL (`faces.Face.tables`); entries: `settle`,
+    `start` and `advance` of model.h in C, where its kernels are not numba's.
     """
     exposed = slots(model)
     begins, begun = Instance(model).words, _begun(model)
     keys = [next(s.index for s in exposed if s.variable.name == name) for name in model.tabulated]
-    at = _places(model)
+    at = places(model)
     sections = [
         '#include "model.h"\n\n#include <math.h>',
         entries,
-        *_slots(exposed, at["hidden"]),
+        *_slots(exposed),
+        *own.values(),
         _words("DEFAULTS", begins),
         _words("BEGUN", begun),
         *_problems(model),
@@ -94,7 +96,7 @@ def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> s
     members = {
         "guid": quoted(identity),
         "held": quoted(held.told(model)),
-        **{name: name.upper() for name in ARRAYS},
+        **{name: name.upper() for name in (*ARRAYS, *own)},
         "slot_count": len(exposed),
         "default_count": _filled(begins),
         "begun_count": _filled(begun),
@@ -109,7 +111,18 @@ def source(model: Model, identity: str, held: Held, entries: str = ENTRIES) -> s
     return "\n".join([*sections, f"const Model MODEL = {{\n{body}}};\n"])
 
 
-def _places(model: Model) -> dict[str, int]:
+def by_word(kind: str, name: str, end: int, entries: Mapping[int, str]) -> str:
+    """A table in C of what there is to say of each word before `end`."""
+    listed = ", ".join(f"[{index}] = {text}" for index, text in entries.items())
+    return f"static const {kind} {name}[{end}] = {{{listed}}};"
+
+
+def hidden(model: Model) -> int:
+    """The word behind those of variables."""
+    return places(model)["hidden"]
+
+
+def places(model: Model) -> dict[str, int]:
     """Where the parts of the memory begin that the FMI side knows, in words."""
     fields: Any = model.memory.fields
     return {name: fields[part][1] // 8 for name, part in PARTS.items()}
@@ -122,8 +135,8 @@ def constants(model: Model, choice: Choice) -> np.ndarray:
     return model.tables(parameters).view("f8").ravel()
 
 
-def _slots(exposed: Sequence[Slot], end: int) -> Iterator[str]:
-    """The variables, and by word what may be done to it."""
+def _slots(exposed: Sequence[Slot]) -> Iterator[str]:
+    """The variables."""
     yield "static const Slot SLOTS[] = {"
     for slot in exposed:
         spec = slot.variable.spec
@@ -135,14 +148,13 @@ def _slots(exposed: Sequence[Slot], end: int) -> Iterator[str]:
         )
         yield (
             f"    {{{word(slot.variable.name)}, {word(unit)}, {', '.join(bounds)}, {slot.index}, "
-            f"{_access(slot)}}},"
+            f"{access(slot)}}},"
         )
     yield "};"
-    access = ", ".join(f"[{slot.index}] = {_access(slot)}" for slot in exposed)
-    yield f"static const uint8_t ACCESS[{end}] = {{{access}}};"
 
 
-def _access(slot: Slot) -> str:
+def access(slot: Slot) -> str:
+    """What may be done to a variable, in C."""
     tunable = " | TUNABLE" if slot.variable.spec.tunable else ""
     return f"{_KINDS[slot.variable.spec.kind]} | {_CAUSES[slot.causality]}{tunable}"
 

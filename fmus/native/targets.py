@@ -19,7 +19,8 @@ class Target:
     triple: str  # LLVM's
     processor: str  # the least that code is made for
     zig: str  # zig's triple; for Linux with the oldest glibc that will do
-    folder: str  # in binaries/
+    folder: str  # in binaries/, of FMI 2.0
+    folder_3: str  # of FMI 3.0
     suffix: str
 
     @property
@@ -31,16 +32,24 @@ class Target:
 _LINUX, _WINDOWS = "x86_64-unknown-linux-gnu", "x86_64-pc-windows-gnu"
 _V2, _V3 = "x86-64-v2", "x86-64-v3"  # of 2009 and of 2013: detailed bearings take 1.3 times as long on v2
 _ALL = (
-    Target("linux-x86_64", _LINUX, _V3, "x86_64-linux-gnu.2.17", "linux64", ".so"),
-    Target("linux-x86_64-v2", _LINUX, _V2, "x86_64-linux-gnu.2.17", "linux64", ".so"),
+    Target("linux-x86_64", _LINUX, _V3, "x86_64-linux-gnu.2.17", "linux64", "x86_64-linux", ".so"),
+    Target("linux-x86_64-v2", _LINUX, _V2, "x86_64-linux-gnu.2.17", "linux64", "x86_64-linux", ".so"),
     Target(
         "linux-aarch64",
-        *("aarch64-unknown-linux-gnu", "generic", "aarch64-linux-gnu.2.17", "aarch64-linux", ".so"),
+        *(
+            "aarch64-unknown-linux-gnu",
+            "generic",
+            "aarch64-linux-gnu.2.17",
+            "aarch64-linux",
+            "aarch64-linux",
+            ".so",
+        ),
     ),
-    Target("windows-x86_64", _WINDOWS, _V3, "x86_64-windows-gnu", "win64", ".dll"),
-    Target("windows-x86_64-v2", _WINDOWS, _V2, "x86_64-windows-gnu", "win64", ".dll"),
+    Target("windows-x86_64", _WINDOWS, _V3, "x86_64-windows-gnu", "win64", "x86_64-windows", ".dll"),
+    Target("windows-x86_64-v2", _WINDOWS, _V2, "x86_64-windows-gnu", "win64", "x86_64-windows", ".dll"),
     Target(
-        "macos-arm64", "arm64-apple-macosx11.0.0", "apple-m1", "aarch64-macos.11.0", "darwin64", ".dylib"
+        *("macos-arm64", "arm64-apple-macosx11.0.0", "apple-m1", "aarch64-macos.11.0"),
+        *("darwin64", "aarch64-darwin", ".dylib"),
     ),
 )
 TARGETS = {target.name: target for target in _ALL}
@@ -97,7 +106,7 @@ def _require_apart(targets: tuple[Target, ...]) -> None:
 
 
 def places(targets: tuple[Target, ...]) -> dict[str, Target]:
-    """Folders in binaries/, and whose library lies there.
+    """Folders in binaries/, and whose library lies there, in FMUs of FMI 2.0.
 
     Hosts on 64-bit ARM look where FMI 2.0 has 64-bit Linux: there it lies, too, where nothing else does.
     """
@@ -106,3 +115,8 @@ def places(targets: tuple[Target, ...]) -> dict[str, Target]:
     if arm in targets:
         found.setdefault("linux64", arm)
     return found
+
+
+def places_3(targets: tuple[Target, ...]) -> dict[str, Target]:
+    """The same in FMUs of FMI 3.0, which names processor and system."""
+    return {target.folder_3: target for target in targets}

@@ -22,6 +22,9 @@ OWN = {  # what only a native FMU has to say
     "OLD_PROCESSOR": "this processor lacks AVX2, FMA or BMI2; build the FMU for a target that ends in -v2",
     "NOT_OFFERED": "the FMU does not offer this",
     "NO_ROOM": "there is too little room for the state",
+    "NO_EVENT_MODE": "it has no event mode; instantiate it without",
+    "PAST_STOP": "cannot step from t = {time:.9g} s by {step:g} s; the end was said to be t = {stop:.9g} s",
+    "OTHER_COUNT": "{given:d} values for variables that hold {held:d}",
 }
 _CONVERSIONS = {"": "s", "g": "g", ".9g": ".9g", "d": "u"}
 

@@ -10,7 +10,7 @@ from inspect import cleandoc
 from itertools import groupby
 from pathlib import Path
 
-from touchdown.fmus.description import causality
+from touchdown.fmus.description.variables import causality
 from touchdown.fmus.python.host import NEEDED
 from touchdown.fmus.python.link import Interpreter
 from touchdown.fmus.python.sources import ROOT
@@ -38,13 +38,22 @@ td:first-child { font-family: monospace }
 """
 
 
-def page(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = "") -> str:
+def page(
+    recipe: Recipe,
+    interpreter: Interpreter | None = None,
+    needs: str = "",
+    exposed: Sequence[Slot] | None = None,
+) -> str:
     """HTML for the FMU of `recipe`; with the interpreter it is linked to, what that binds it to.
 
-    needs: what it needs in a host, where that is no Python.
+    needs: what it needs in a host, where that is no Python; exposed: its variables as they are named, where
+    they are not the model's own.
     """
     title = _plain(recipe.model.title)
-    body = [f'<h1><img src="../model.png" alt="">{title}</h1>', *article(recipe, interpreter, needs)]
+    body = [
+        f'<h1><img src="../terminalsAndIcons/icon.png" alt="">{title}</h1>',
+        *article(recipe, interpreter, needs, exposed),
+    ]
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n"
@@ -53,7 +62,12 @@ def page(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = ""
     )
 
 
-def article(recipe: Recipe, interpreter: Interpreter | None = None, needs: str = "") -> list[str]:
+def article(
+    recipe: Recipe,
+    interpreter: Interpreter | None = None,
+    needs: str = "",
+    exposed: Sequence[Slot] | None = None,
+) -> list[str]:
     """What stands below the title: pieces of HTML, headings at the beginnings of lines."""
     model = recipe.model
     own, *parts = _documented(recipe.model)
@@ -64,7 +78,7 @@ def article(recipe: Recipe, interpreter: Interpreter | None = None, needs: str =
         "<h2>What it needs</h2>",
         *([f"<p>{_plain(needs)}</p>"] if needs else _host(interpreter)),
         *_example(recipe),
-        *_tables(slots(model)),
+        *_tables(exposed or slots(model)),
     ]
     if parts:
         body.append("<h2>The equations of its parts</h2>")

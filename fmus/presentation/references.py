@@ -17,16 +17,18 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement, indent
 
-from touchdown.fmus.description import causality
+from touchdown.fmus.description.variables import causality, scalars
 from touchdown.fmus.presentation.terminals import ports
+from touchdown.fmus.presentation.xml import document
 from touchdown.modelkit.model import Model, Slot, slots
 from touchdown.modelkit.variables import Causality, Scalar
 
 NAME, VERSION = "org.fmi-standard.fmi-ls-ref", "1.0.0-alpha.1"
 FOLDER = f"extra/{NAME}"
 STEP, STEPS = 2e-5, 50  # s; macro steps
+RATE = math.pi / (STEP * STEPS)  # rad/s, of what goes to and fro once
 TOLERANCE = 1e-6  # of the largest value in a result's unit
 START, DEPTH, AROUND = 1e-6, 4e-6, 1e-6  # m; how far inside the clearance, pressed in, and sideways
 SPIN = 500.0  # rad/s
@@ -68,7 +70,7 @@ def entries(model: Model, trial: Trial, sets: Mapping[str, Values]) -> dict[str,
         file = f"{name.replace(' ', '-')}.ssv"
         files[file] = _parameter_set(name, values, exposed)
         related.append((_SET, file, "parameter", f"Bearing {name}"))
-    stimuli = [_stimuli(model, k * STEP) for k in range(STEPS + 1)]
+    stimuli = _stimuli(model)
     results = _results(trial, exposed, stimuli)
     if results:
         files |= {
@@ -85,28 +87,28 @@ def entries(model: Model, trial: Trial, sets: Mapping[str, Values]) -> dict[str,
 # -- what is done, and what comes out ----------------------------------------------------------------------
 
 
-def _stimuli(model: Model, time: float) -> Row:
-    """Time (s) and what the inputs hold then."""
-    settable = {s.variable.name: s.variable.default for s in slots(model) if s.causality is Causality.INPUT}
+def _stimuli(model: Model) -> list[Row]:
+    """Times (s) and what the inputs hold then."""
+    settable = {s.variable.name for s in slots(model) if s.causality is Causality.INPUT}
     clearance = next((s.variable.default for s in slots(model) if s.variable.name == "clearance"), 0.0)
-    moved = {
-        f"{port}.{member}": value
-        for port in ports(model)
-        for member, value in (_pressed(clearance, time) | _pushed(time)).items()
-        if not port.startswith("housing")
-    }
-    row = {"time": time} | {name: value for name, value in moved.items() if name in settable}
-    return {name: float(_written(value)) for name, value in row.items()}
+    moved = [port for port in ports(scalars(model)) if not port.startswith("housing")]
+
+    def row(time: float) -> Row:
+        given = _pressed(clearance, time) | _pushed(time)
+        held = {f"{port}.{member}": value for port in moved for member, value in given.items()}
+        values = {"time": time} | {name: value for name, value in held.items() if name in settable}
+        return {name: float(_written(value)) for name, value in values.items()}
+
+    return [row(k * STEP) for k in range(STEPS + 1)]
 
 
 def _pressed(clearance: float, time: float) -> dict[str, float]:
     """Motion of a journal (m, m/s, rad/s) that is pressed down and out again, and its mobility (1/kg)."""
-    rate = math.pi / (STEP * STEPS)
     return {
-        "x": AROUND * math.sin(2.0 * rate * time),
-        "y": -(clearance - START) - DEPTH * math.sin(rate * time) ** 2,
-        "vx": 2.0 * rate * AROUND * math.cos(2.0 * rate * time),
-        "vy": -rate * DEPTH * math.sin(2.0 * rate * time),
+        "x": AROUND * math.sin(2.0 * RATE * time),
+        "y": -(clearance - START) - DEPTH * math.sin(RATE * time) ** 2,
+        "vx": 2.0 * RATE * AROUND * math.cos(2.0 * RATE * time),
+        "vy": -RATE * DEPTH * math.sin(2.0 * RATE * time),
         "omega": SPIN,
         "inv_m": INVERSE_MASS,
     }
@@ -114,8 +116,7 @@ def _pressed(clearance: float, time: float) -> dict[str, float]:
 
 def _pushed(time: float) -> dict[str, float]:
     """Forces on a body (N)."""
-    rate = math.pi / (STEP * STEPS)
-    return {"fx": SHAKE * math.sin(2.0 * rate * time), "fy": PUSH * math.sin(rate * time) ** 2}
+    return {"fx": SHAKE * math.sin(2.0 * RATE * time), "fy": PUSH * math.sin(RATE * time) ** 2}
 
 
 def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> list[Row]:
@@ -124,8 +125,10 @@ def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> lis
     Nothing where the model refuses to start or to step, or has nothing to tell.
     """
     instance = trial.instance
+    own = {s.variable.name: s for s in instance.slots}
     inputs = {s.variable.name: s.index for s in exposed if s.causality is Causality.INPUT}
-    outputs = [s for s in exposed if causality(s)[0] is Causality.OUTPUT and "[" not in s.variable.name]
+    told = [s.variable.name for s in exposed if causality(s)[0] is Causality.OUTPUT]
+    outputs = [own[name] for name in told if "[" not in name]
     found: list[Row] = []
     try:
         for number, row in enumerate(stimuli):
@@ -135,17 +138,12 @@ def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> lis
                 instance.reals[inputs[name]] = row[name]
             if not number:
                 instance.start(row["time"])
-            values = {s.variable.name: float(_stored(instance, s)) for s in outputs}
+            values = {s.variable.name: float(instance.store(s)[s.index]) for s in outputs}
             found.append({"time": row["time"], **values})
     except trial.refused:
         return []
-    told = [name for name in found[0] if name == "time" or any(row[name] for row in found)]
-    return [{name: row[name] for name in told} for row in found] if len(told) > 1 else []
-
-
-def _stored(instance: Any, slot: Slot) -> float:
-    of_reals = slot.variable.spec.kind is Scalar.REAL
-    return (instance.reals if of_reals else instance.integers)[slot.index]
+    moved = [name for name in found[0] if name == "time" or any(row[name] for row in found)]
+    return [{name: row[name] for name in moved} for row in found] if len(moved) > 1 else []
 
 
 # -- files -------------------------------------------------------------------------------------------------
@@ -202,4 +200,4 @@ def _manifest(related: Iterable[tuple[str, str, str, str]]) -> bytes:
 
 def _xml(root: Element) -> bytes:
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+    return document(root)

@@ -6,12 +6,13 @@ a bearing with a journal by one line instead of thirty: members of one name belo
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from collections.abc import Iterator, Mapping
+from xml.etree.ElementTree import Element, SubElement, indent
 
-from touchdown.fmus.description import causality
+from touchdown.fmus.description.variables import causality
 from touchdown.fmus.presentation.icon import dot, icon
-from touchdown.modelkit.model import Model, slots
+from touchdown.fmus.presentation.xml import document
+from touchdown.modelkit.model import Model, Slot
 from touchdown.modelkit.variables import Causality
 
 FOLDER = "terminalsAndIcons"
@@ -20,33 +21,33 @@ SIZE, PORT = 100.0, 12.0  # half the width of the drawing, and of a port in it
 _CROSSING = (Causality.INPUT, Causality.OUTPUT, Causality.CALCULATED_PARAMETER)
 
 
-def entries(model: Model) -> dict[str, bytes]:
-    """The folder's files by their names in the FMU."""
+def entries(model: Model, variables: Mapping[str, Slot]) -> dict[str, bytes]:
+    """The folder's files by their names in the FMU of `model`, which exposes `variables` by name."""
     return {
-        f"{FOLDER}/terminalsAndIcons.xml": _xml(model),
+        f"{FOLDER}/terminalsAndIcons.xml": _xml(ports(variables)),
         f"{FOLDER}/icon.png": icon(model),
         f"{FOLDER}/{PORT_ICON}.png": dot(),
     }
 
 
-def ports(model: Model) -> dict[str, list[str]]:
-    """Members of each port of `model`: whatever has a position x and y, or takes a force fx and fy."""
+def ports(variables: Mapping[str, Slot]) -> dict[str, list[str]]:
+    """Members of each port: whatever has a position x and y, or takes a force fx and fy."""
     found: dict[str, list[str]] = {}
-    for slot in slots(model):
-        port, _, member = slot.variable.name.partition(".")
+    for name, slot in variables.items():
+        port, _, member = name.partition(".")
         if member and causality(slot)[0] in _CROSSING:
             found.setdefault(port, []).append(member)
     kinds = ({"x", "y"}, {"fx", "fy"})
     return {port: members for port, members in found.items() if any(k <= set(members) for k in kinds)}
 
 
-def _xml(model: Model) -> bytes:
+def _xml(found: Mapping[str, list[str]]) -> bytes:
     root = Element("fmiTerminalsAndIcons", {"fmiVersion": "3.0"})
     picture = SubElement(root, "GraphicalRepresentation")
     SubElement(picture, "CoordinateSystem", {**_corners(0.0, SIZE), "suggestedScalingFactorTo_mm": "0.1"})
     SubElement(picture, "Icon", _corners(0.0, SIZE))
     terminals = SubElement(root, "Terminals")
-    for (port, members), height in zip(ports(model).items(), _heights(len(ports(model))), strict=True):
+    for (port, members), height in zip(found.items(), _heights(len(found)), strict=True):
         terminal = SubElement(terminals, "Terminal", {"name": port, "matchingRule": "bus"})
         for member in members:
             SubElement(
@@ -57,7 +58,7 @@ def _xml(model: Model) -> bytes:
         place = {**_corners(height, PORT), "iconBaseName": PORT_ICON}
         SubElement(terminal, "TerminalGraphicalRepresentation", place)
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+    return document(root)
 
 
 def _heights(count: int) -> Iterator[float]:

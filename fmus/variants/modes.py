@@ -7,34 +7,56 @@ Where fewer are in use the others are in the way, most of all where connections 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
 from touchdown.fmus.variants.starts import defaults, starting_from
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError
+from touchdown.modelkit.ports import MODES
 
 ALL = 0  # modes of the finite elements
 RIGID = 2  # per plane
+_MASS = re.compile(r"\.mode\[(\d+)\]\.inv_m$")
 _MODE = re.compile(r"(?:^|\.)mode\[(\d+)\]")
 
 
-def with_modes(model: Model, count: int) -> Model:
+def with_modes(model: Model, count: int, told: int) -> Model:
     """`model` for rotors of `count` modes per plane, the two rigid ones included; `ALL`: it stays.
 
-    A rotor starts with so many, and where they are the rigid ones with nothing else. Seats tell of as many
-    elastic modes: two less, and the residual vectors of two seats; for a rigid rotor of none. Where a
-    variable lies in memory, its value reference, does not change.
+    A rotor starts with so many, and where they are the rigid ones with nothing else. Seats tell of `told`
+    elastic modes (`told_of`). Where a variable lies in memory, its value reference, does not change.
     """
     if count == ALL:
         return model
-    told = 0 if count == RIGID else count
     own = defaults(model)
     starts = {name: value for name, value in _starts(count).items() if name in own and own[name] != value}
     started = starting_from(model, starts) if starts else model
     rename = partial(_exposed, model.rename, told)
-    return replace(started, rename=rename, content=f"{started.content}_modes{count}")
+    return replace(started, rename=rename, content=f"{started.content}_modes{count}_{told}")
+
+
+def told_of(count: int, rotors: Iterable[Model] = ()) -> int:
+    """How many elastic modes and residual vectors seats have to tell of with `count` modes per plane.
+
+    That is two less, and a vector for each seat that has one: of two seats where no rotor is given, else as
+    many as the rotors have. Raises ModelError, which names it, where one does not start with so many.
+    """
+    if count in (ALL, RIGID):
+        return 0
+    return max((_in_use(with_modes(rotor, count, MODES)) for rotor in rotors), default=count)
+
+
+def _in_use(rotor: Model) -> int:
+    """The last elastic mode that a seat of a rotor carries, as it starts."""
+    instance = Instance(rotor)
+    try:
+        instance.start(0.0)
+    except ModelError as error:
+        raise ModelError(f"{rotor.name}: {error}") from None
+    found = ((_MASS.search(slot.variable.name), slot) for slot in instance.slots)
+    return max((int(m[1]) for m, slot in found if m and instance.reals[slot.index]), default=0)
 
 
 def _starts(count: int) -> Mapping[str, float]:

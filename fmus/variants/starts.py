@@ -37,10 +37,8 @@ def starting_from(model: Model, values: Mapping[str, float]) -> Model:
     settable = {s.variable.name: s for s in begun.slots if s.causality is not Causality.OUTPUT}
     for name, value in values.items():
         slot = settable[name]
-        if slot.variable.spec.kind is Scalar.REAL:
-            begun.reals[slot.index] = float(value)
-        else:
-            begun.integers[slot.index] = int(value)
+        kind = float if slot.variable.spec.kind is Scalar.REAL else int
+        begun.store(slot)[slot.index] = kind(value)
     digest = hashlib.sha256(repr(sorted(values.items())).encode()).hexdigest()[:16]
     return replace(
         model,

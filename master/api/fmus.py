@@ -10,11 +10,12 @@ from pathlib import Path
 from touchdown.fmus import build as builder
 from touchdown.fmus.native.build import MODES, Native, prepare
 from touchdown.fmus.native.build import build as build_native
+from touchdown.fmus.native.faces import FACES, FMI_2, Face
 from touchdown.fmus.native.in_c import recipe_in_c
 from touchdown.fmus.native.targets import NativeError, chosen
 from touchdown.fmus.python.link import LinkError, interpreter
 from touchdown.fmus.recipes import Recipe, names
-from touchdown.fmus.variants.modes import ALL, RIGID, refusal
+from touchdown.fmus.variants.modes import ALL, RIGID, told_of
 from touchdown.master.api.scenes import PathLike
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.files import writing_to
@@ -23,6 +24,7 @@ from touchdown.master.components.library.sources import locate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import Report
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
+from touchdown.modelkit.model import ModelError
 
 
 def build(
@@ -33,21 +35,22 @@ def build(
     native: bool = False,
     targets: Iterable[str] = (),
     modes: Iterable[int] | None = None,
+    fmi: int = 2,
 ) -> list[Path]:
     """Build FMUs of the project's by name, or of rotors by the paths of their files; None: all.
 
     Returns the files, NAME.fmu in `folder`. link_python: for hosts without Python on this machine; native:
     for hosts without Python anywhere, of the machines `targets` (none: this one's kind). modes: per plane,
-    the two rigid ones included (0: all): rotors start with so many, and no seat tells of more; native
-    rotors hold constants for each of them and start with the most. Raises TouchdownError for an unknown
-    name, modes that a rotor does not have, where the folder cannot be written, and where a compiler is
-    missing.
+    the two rigid ones included (0: all): rotors start with so many, and seats tell of what they then have;
+    native rotors hold constants for each of them and start with the most. fmi: 2, or 3, native only.
+    Raises TouchdownError for an unknown name, modes that a rotor does not have, where the folder cannot be
+    written, and where a compiler is missing.
 
     >>> touchdown.build(["bushing"], "build")
     [PosixPath('build/bushing.fmu')]
     """
     made = built_one_by_one(
-        fmus, folder, link_python=link_python, native=native, targets=targets, modes=modes
+        fmus, folder, link_python=link_python, native=native, targets=targets, modes=modes, fmi=fmi
     )
     return list(made)
 
@@ -60,15 +63,24 @@ def built_one_by_one(
     native: bool,
     targets: Iterable[str],
     modes: Iterable[int] | None,
+    fmi: int,
 ) -> Iterator[Path]:
     """`build`, each file when it is there."""
     if native and link_python:
         raise TouchdownError("an FMU is native or linked to a Python; choose one")
+    if fmi not in FACES:
+        raise TouchdownError(f"there is no FMI {fmi} to build for; choose 2 or 3")
+    if fmi != FMI_2.version and not native:
+        raise TouchdownError("pythonfmu's FMUs are of FMI 2.0; add --native for FMI 3.0")
     try:
         given = names() if fmus is None else several(fmus)
         counts = None if modes is None else tuple(modes)
-        recipes = [_for_modes(_recipe(os.fspath(fmu), native), counts, native) for fmu in given]
-        make = _native(recipes, targets, counts) if native else partial(_in_python, linked=link_python)
+        recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
+        make = (
+            _native(recipes, targets, counts, FACES[fmi])
+            if native
+            else partial(_in_python, linked=link_python)
+        )
         with writing_to(Path(folder)):
             for recipe in recipes:
                 yield make(recipe, Path(folder))
@@ -80,28 +92,33 @@ def _in_python(recipe: Recipe, folder: Path, linked: bool) -> Path:
     return builder.build(recipe, folder, interpreter() if linked else None)
 
 
-def _for_modes(recipe: Recipe, modes: tuple[int, ...] | None, native: bool) -> Recipe:
-    """The recipe for the largest of some numbers of modes. Raises TouchdownError where it cannot be."""
+def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: bool) -> list[Recipe]:
+    """The recipes for the largest of some numbers of modes; bearings fit all rotors among them.
+
+    Raises TouchdownError where a rotor does not have so many.
+    """
     if modes is None:
-        return recipe
+        return recipes
     if not modes or any(count < RIGID and count != ALL for count in modes):
         raise TouchdownError(f"modes = {list(modes)}: give {RIGID} (rigid) or more, or {ALL} for all")
     if len(modes) > 1 and not native:
         raise TouchdownError(
             f"modes = {list(modes)}: an FMU in Python takes any number of modes; give the one to start with"
         )
-    changed = recipe.with_modes(ALL if ALL in modes else max(modes))
-    problem = refusal(changed.model, {}) if changed.model.tabulated and not native else ""
-    if problem:
-        raise TouchdownError(f"{recipe.name}: {problem}")
-    return changed
+    count = ALL if ALL in modes else max(modes)
+    rotors = [recipe for recipe in recipes if recipe.model.tabulated]
+    try:
+        told = told_of(count, [rotor.model for rotor in rotors])
+    except ModelError as error:
+        raise TouchdownError(str(error)) from None
+    return [recipe.with_modes(count, told) for recipe in recipes]
 
 
 def _native(
-    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None
+    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None, face: Face
 ) -> Callable[[Recipe, Path], Path]:
     """How to build each of `recipes`, whose kernels are compiled beside each other first."""
-    native = Native(chosen(list(several(targets))), modes or MODES, modes is None)
+    native = Native(chosen(list(several(targets))), modes or MODES, modes is None, face)
     native.check()
     prepare(recipes)
     return partial(build_native, native=native)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from touchdown.master.api.run import open_result
@@ -44,7 +45,7 @@ def report(
 
 def _read(folder: Path) -> Result | Sweep:
     """What a run or a sweep left in a folder. Raises TouchdownError where there is neither."""
-    return read_sweep(folder) if (folder / SWEEP).is_file() else open_result(folder)
+    return read_sweep(folder) if os.path.isfile(folder / SWEEP) else open_result(folder)
 
 
 def animate(run: Result | PathLike, path: PathLike | None = None, *, progress: bool = False) -> Path:

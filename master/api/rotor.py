@@ -12,18 +12,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from touchdown.master.api.scenes import PathLike
+from touchdown.master.api.in_bearings import InBearings, InScene
+from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
+from touchdown.master.common.files import holds, writing_to
+from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.rotor.importing import import_rotor
 from touchdown.master.studies.rotor.report import (
     MODES,
     SPEED,
     described,
     find_rotor,
+    on_supports,
     report_text,
     supported,
 )
+from touchdown.master.studies.rotor.scene_report import described_in, scene_text, title_of
 from touchdown.modelkit.kernel.cache_folder import kept, put
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
@@ -90,12 +94,14 @@ class Rotor(Shaft):
         sensors: Places | None = None,
         speed: float | None = None,
     ) -> Rotor:
-        """A rotor of others': the path of a file that ROSS saved (.toml, .json) or of a table of sections
-        (.csv), or a `ross.Rotor`; its `about` says what is left out or otherwise.
+        """A rotor of others': the path of a file that ROSS saved (.toml, .json), of a table of sections
+        (.csv), of matrices or modal data (.npz, or a folder of Matrix Market files), or a `ross.Rotor`, or
+        such arrays by name. Its `about` says what is left out or otherwise.
 
         at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where
-        only motion is asked for; each a node (from 1), or text such as "120 mm" from node 1, by name.
-        speed: rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
+        only motion is asked for; each a node (from 1), what the file calls one, or text
+        such as "120 mm" from node 1, by name. speed: rad/s, at which bearings whose
+        coefficients hang on it are taken. Raises TouchdownError.
 
         >>> with open("pump.csv", "w") as file:
         ...     print("length [mm], outer diameter [mm], material\\n300, 30, steel", file=file)
@@ -124,13 +130,48 @@ class Rotor(Shaft):
 
         >>> rotor = touchdown.Rotor.load("rotor_II")
         >>> rotor.critical_speeds({"amb_A": 20e6, "amb_B": 20e6})[:3].round(1)
-        array([ 561.2,  784.2, 4453.1])
+        array([ 611.1,  733.7, 4456.2])
         """
         shaft = supported(self, supports or {})
         if len({s.node for s in shaft.supports if s.stiffness > 0.0}) < 2:
             raise TouchdownError(f"critical speeds need supports at two nodes of {self.title} or more")
         held_at = list(dict.fromkeys(s.node for s in shaft.supports))
         return critical_speeds(fullest(shaft, held_at), shaft.supports)
+
+    def in_bearings(self, speed: float = SPEED, supports: Mapping[str, float] | None = None) -> InBearings:
+        """Its damped modes at `speed` (rad/s) on its own `supports`, and over speeds to twice as much.
+
+        supports: stiffness in N/m of stations by name, beside its own. Raises TouchdownError where there is
+        none.
+
+        >>> rotor = touchdown.Rotor.load("rotor_II")
+        >>> held = rotor.in_bearings(1000.0, {"amb_A": 20e6, "amb_B": 20e6})
+        >>> held.frequencies[:4].round(1)  # Hz
+        array([ 96.6,  97.3, 102.7, 119.2])
+        """
+        shaft = supported(self, supports or {})
+        portrait = described(shaft, speed, MODES)
+        if portrait.held is None:
+            raise TouchdownError(f"{self.title} has no supports to be held by; give some")
+        return InBearings(portrait.held, f"{self.title} {on_supports(portrait)}")
+
+    @staticmethod
+    def in_scene(scene: PathLike | Scene, speed: float | None = None, load: float = 1.0) -> InScene:
+        """The rotor of a scene in its bearings: levitated, and resting on its touchdown bearings.
+
+        speed: rad/s, counter-clockwise, the scene's own where it is not given; load: what presses the
+        rotor on its touchdown bearings, over its weight. Raises TouchdownError where the scene has no
+        rotor of elements, or nothing holds it.
+
+        >>> found = touchdown.Rotor.in_scene("rotor1-9000")
+        >>> found.levitated.stable
+        True
+        >>> found.levitated.frequencies[:4].round(1)  # Hz
+        array([48.2, 51.1, 57.2, 63.3])
+        """
+        found = described_in(as_scene(scene), speed, MODES, load)
+        held = {one.name: InBearings(one.held, title_of(found, one)) for one in found.situations}
+        return InScene(held.get("levitated"), held.get("resting"), lambda: scene_text(found))
 
     def whirl(self, speed: float, modes: int = MODES) -> tuple[np.ndarray, np.ndarray]:
         """Of the free rotor at `speed` (rad/s): whirl against the spin, and with it, by mode (Hz).
@@ -145,12 +186,17 @@ class Rotor(Shaft):
         """Pictures: `plot.modes()`, `.campbell()`, `.critical()`, `.rest()`; each returns its axes."""
         return RotorPlot(lambda: described(self, SPEED, MODES))
 
-    def save(self, path: PathLike) -> Path:
-        """Write it as a rotor file (.toml); returns the path.
+    def save(self, path: PathLike, force: bool = True) -> Path:
+        """Write it as a rotor file (.toml); returns the path. A file that is there is replaced.
 
-        Raises TouchdownError for what such a file cannot hold, and where it cannot be written.
+        force=False: not one that holds something else. Raises TouchdownError for that, for what such a
+        file cannot hold, and where it cannot be written.
         """
         text, path = self._text(), Path(path)
+        if not force and os.path.exists(path) and not holds(path, text):
+            raise TouchdownError(
+                f"{path} is there already; choose another file, or --force (in Python, force=True)"
+            )
         with writing_to(path.parent):
             path.write_text(text, encoding="utf-8")
         return path
@@ -183,9 +229,11 @@ class Rotor(Shaft):
         return report_text(described(self, speed, modes))
 
     def __repr__(self) -> str:
-        stations = ", ".join(f"{station.name} at node {station.node}" for station in self.stations)
+        called = {node: f" (called {name})" for node, name in enumerate(self.called, start=1)}
+        stations = ", ".join(f"{s.name} at node {s.node}{called.get(s.node, '')}" for s in self.stations)
+        made_of = f"{len(self.elements)} elements" if self.elements else self.body.kind
         return (
-            f"<Rotor {self.title}: {len(self.elements)} elements, {self.nodes} nodes, {self.mass:.5g} kg, "
+            f"<Rotor {self.title}: {made_of}, {self.nodes} nodes, {self.mass:.5g} kg, "
             f"{self.positions()[-1]:.5g} m, stations: {stations or 'none'}>"
         )
 

@@ -59,3 +59,11 @@ def write_records(records: Iterable[Mapping[str, object]], path: Path) -> None:
         writer = csv.DictWriter(file, list(dict.fromkeys(key for row in rows for key in row)))
         writer.writeheader()
         writer.writerows(rows)
+
+
+def holds(path: Path, text: str) -> bool:
+    """Whether a file is what it is to become."""
+    try:
+        return path.read_text(encoding="utf-8") == text
+    except (OSError, UnicodeDecodeError):
+        return False

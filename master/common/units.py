@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from numbers import Integral, Real
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.modelkit import units
 
 Scale = tuple[float, float]  # factor and offset
+IN_HERTZ = ("bandwidth",)  # variables in rad/s that are no speeds
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -52,8 +55,46 @@ def to_si(value: object, unit: str | None, name: str) -> float:
     try:
         return units.to_si(value, unit, name)
     except units.UnitError as error:
-        raise TouchdownError(str(error)) from None
+        raise TouchdownError(f"{error}{_units_taken(value, unit)}") from None
     except OverflowError:  # an integer beyond what a real number can be
         raise TouchdownError(
             f"{name} is an integer of more than 308 digits; write a smaller number"
         ) from None
+
+
+def _units_taken(value: object, unit: str | None) -> str:
+    """How a quantity in `unit` may be written, where its `value` has another."""
+    match = units.NUMBER.match(str(value).strip())
+    written = str(value).strip()[match.end() :].strip() if match else ""
+    taken = units.units_of(unit) if unit else []
+    if not written or len(taken) < 2 or written in taken:
+        return ""
+    others = {si for _, si in units.SCALES.values()} | units.SCALES.keys()
+    near = [] if written in others else get_close_matches(written, taken, n=2)
+    hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
+    return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"
+
+
+def spoken(name: str, value: float) -> tuple[float, str]:
+    """A variable in rad/s as people speak of it: a speed in rpm, what a control follows in Hz.
+
+    >>> spoken("rotor.speed", 10.0 * math.pi), spoken("amb.bandwidth", 10.0 * math.pi)
+    ((300.0, 'rpm'), (5.0, 'Hz'))
+    """
+    turns = value / (2.0 * math.pi)
+    return (turns, "Hz") if name.endswith(IN_HERTZ) else (60.0 * turns, "rpm")
+
+
+def with_unit(value: object, unit: str | None, name: str = "") -> str:
+    """The setting `name` as it was given, for people, with its unit; text may have one in it.
+
+    >>> with_unit(20000, "rad/s", "rotor.speed"), with_unit("0.3 mm", "m"), with_unit("0.15", "1")
+    ('20000 rad/s (190986 rpm)', '0.3 mm', '0.15')
+    """
+    try:
+        number = float(str(value))
+    except ValueError:
+        return str(value)
+    turns, per = spoken(name, number)
+    beside = f" ({turns:.6g} {per})" if unit == "rad/s" and number else ""
+    return f"{number:g}" + (f" {unit}" if unit not in (None, "", "1") else "") + beside

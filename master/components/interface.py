@@ -14,6 +14,7 @@ from xml.parsers.expat import ExpatError
 from fmpy import platform as fmi_platform
 from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
 
+from touchdown.fmus.description.arrays import element
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import BASE, Unit
 from touchdown.master.components.component import Kind, Variable
@@ -100,7 +101,7 @@ def _check_script(path: Path, folder: Path) -> None:
 
 
 def variables_of(description: Any) -> dict[str, Variable]:
-    """Variables by name. An array of FMI 3.0 is one scalar for each element: x[1], x[2], or x[1,2]."""
+    """Variables by name. An array of FMI 3.0 is one scalar for each element (`element`)."""
     third = description.fmiVersion.startswith("3.")
     return {
         scalar.name: scalar
@@ -113,9 +114,9 @@ def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
     """What fmpy read of one variable of the description, as scalars."""
     known = v.causality if v.causality != STRUCTURAL else None  # it is set in a mode that is not entered
     starts = str(v.start).split() if v.shape and v.start is not None else [v.start]
-    for element, index in enumerate(product(*(range(1, size + 1) for size in v.shape or ()))):
+    for number, index in enumerate(product(*(range(1, size + 1) for size in v.shape or ()))):
         yield Variable(
-            name=f"{v.name}[{','.join(map(str, index))}]" if index else v.name,
+            name=element(v.name, index),
             reference=v.valueReference,
             kind=kind,
             causality=Causality(known or Causality.LOCAL),
@@ -123,9 +124,9 @@ def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
             unit=_unit(v) if kind is Kind.REAL else "1",
             minimum=_number(v.min),
             maximum=_number(v.max),
-            start=_number(starts[element] if element < len(starts) else starts[-1]),
+            start=_number(starts[number] if number < len(starts) else starts[-1]),
             description=v.description or "",
-            element=element,
+            element=number,
             choices=_choices(v) if kind is Kind.ENUMERATION else {},
         )
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.fmus.description import causality, fmi_type
+from touchdown.fmus.description.variables import causality, fmi_type
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import WHOLE, Call, Component, InMemory, Kind, Variable
 from touchdown.modelkit.instance import Instance, explanation

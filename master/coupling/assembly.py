@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 
-from touchdown.fmus.recipes import preset
+from touchdown.fmus.recipes import bore_of, preset
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.component import SETTABLE, Component, check_value, value_of
 from touchdown.master.coupling.bonds.bond import found
@@ -20,10 +20,13 @@ from touchdown.master.coupling.connections import (
     sensor_connections,
 )
 from touchdown.master.coupling.system import System
+from touchdown.master.scene.plausible import Seat, remarks
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.scene.schemes import Scheme
 from touchdown.modelkit.model import ModelError
+from touchdown.modelkit.variables import Causality
 
+PLAIN = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -66,8 +69,35 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     if scheme.lead:
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
+    seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     components = hear(components, attachments)
-    return System(components, attachments, connections, settings, every, left_out, bonds)
+    told = [*left_out, *remarks(seats)]
+    return System(components, attachments, connections, settings, every, told, bonds)
+
+
+def _seat(
+    a: Attachment,
+    scene: Scene,
+    components: Mapping[str, Component],
+    settings: Mapping[tuple[str, str], float],
+) -> Seat:
+    """A bearing and its journal as they were set, to be looked at beside each other."""
+
+    def values(name: str) -> dict[str, float]:
+        """Parameters in SI, where they are set or the component says its own."""
+        variables = components[name].variables.items()
+        own = {n: v.start for n, v in variables if v.causality is Causality.PARAMETER and v.unit in PLAIN}
+        return {n: settings.get((name, n), start) for n, start in own.items() if start is not None}
+
+    chosen = scene.components[a.bearing].preset
+    return Seat(
+        bearing=a.bearing,
+        values=values(a.bearing),
+        designation=chosen and chosen.rpartition(":")[2],
+        bore=bore_of(chosen) if chosen else None,
+        body=a.body,
+        speed=values(a.body).get("speed"),
+    )
 
 
 def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:

@@ -27,7 +27,7 @@ class System:
     connections: list[Connection]
     settings: dict[tuple[str, str], float]
     every: dict[str, int]  # macro steps of the run that each component takes in one
-    left_out: Sequence[str] = ()  # what swapped components do not take over, a line each
+    remarks: Sequence[str] = ()  # what is to be said of it before it runs, a line each
     bonds: Sequence[Bond] = ()
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import fromstring, tostring
 
+from touchdown.fmus.presentation.xml import document
 from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
@@ -128,4 +129,4 @@ def _mended(content: Mapping[str, bytes], about: str) -> bytes:
         if name != DESCRIPTION:
             digest.update(name.encode() + data)
     root.set("guid", digest.hexdigest()[:32])
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+    return document(root)

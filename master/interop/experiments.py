@@ -19,7 +19,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import NUMBERS, Component, Kind, Variable, check_value
+from touchdown.master.components.component import NUMBERS, Component, Kind, Variable, check_value, value_of
 from touchdown.master.interop.ssp import xml
 from touchdown.master.interop.ssp.bindings import parameters
 
@@ -58,7 +58,7 @@ class Experiment:
     stop: float
     step: float
     tolerance: float
-    parameters: Mapping[str, float]
+    parameters: Mapping[str, float | str]  # numbers, and words of enumerations
     stimuli: Table
     references: Table
 
@@ -139,7 +139,7 @@ def _experiment(element: Element, folder: Path, where: str) -> Experiment:
         stop=stop,
         step=step,
         tolerance=xml.number(element, "tolerance", what, TOLERANCE),
-        parameters={value.name: value.number for value in values},
+        parameters={value.name: value.given for value in values},
         stimuli=_table(element.find("Stimuli"), folder, where) or NO_STIMULI,
         references=references,
     )
@@ -213,9 +213,12 @@ def _shares(off: np.ndarray, scales: np.ndarray) -> np.ndarray:
 def _run(component: Component, experiment: Experiment) -> Iterator[list[float]]:
     """What the references name, at the start and after each step."""
     stimuli = experiment.stimuli
-    starts = {**experiment.parameters, **stimuli.at(experiment.start)}
-    for name, value in starts.items():
-        check_value(component, _settable(component, name), value)
+    given = {**experiment.parameters, **stimuli.at(experiment.start)}
+    starts: dict[str, float] = {}
+    for name, value in given.items():
+        variable = _settable(component, name)
+        starts[name] = value_of(component, variable, value)
+        check_value(component, variable, starts[name])
     fed = [n for n in stimuli.names if component.variable(n).kind is Kind.REAL]
     for index, name in enumerate(stimuli.names):
         if name not in fed and np.ptp(stimuli.values[:, index]) > 0.0:

@@ -88,21 +88,7 @@ def fixed(scene: Scene, system: System) -> list[str]:
 
 def changes(scene: Scene, system: System) -> list[str]:
     """What the user set beside the scene, for people, with units."""
-    told: list[str] = []
-    for name, spec in scene.components.items():
-        given = {"preset": spec.preset, **spec.set}
-        for key in spec.own:
-            unit = system.components[name].variable(key).unit if key in spec.set else None
-            told.append(f"{name}.{key} = {_told(given[key], unit)}")
-    return told
-
-
-def _told(value: object, unit: str | None) -> str:
-    """A setting with its unit; text may have another one in it."""
-    try:
-        return f"{float(str(value)):g}" + (f" {unit}" if unit not in (None, "", "1") else "")
-    except ValueError:
-        return str(value)
+    return scene.changes(lambda component, key: system.components[component].variable(key).unit)
 
 
 def _by_own_names(component: Component, values: Mapping[str, float]) -> dict[str, float]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
@@ -11,8 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.units import spoken, with_unit
+from touchdown.master.report.facts.labels import NODE, label
 from touchdown.master.report.facts.numbers import NONE, digits, quantity, share
-from touchdown.master.report.facts.subject import number
+from touchdown.master.report.facts.subject import FIRST_CONTACT, number
 from touchdown.master.report.page.blocks import (
     Absent,
     Block,
@@ -32,15 +36,17 @@ from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.figures.style import sized
 from touchdown.master.results.whirl.share import clopper_pearson
 from touchdown.master.results.whirl.told import has_verdict, whirling
+from touchdown.master.scene.titles import amended
 from touchdown.master.studies.sweep.definition import Column
 from touchdown.master.studies.sweep.journal import Member
-from touchdown.master.studies.sweep.report import failures, largest, picked, verdict_lines
+from touchdown.master.studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from touchdown.master.studies.sweep.results import Sweep
 
 FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
 DRAWN = "random"  # drops that stand for all that may be; those of other samples hang on each other
 MOST_ROWS = 300  # of the table of drops
 WORST = 10  # drops that are listed by their force
+MOST_DIGITS = 8
 MAPS = {
     "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
     "force": "Largest contact force of the drops at each place.",
@@ -51,9 +57,10 @@ MAPS = {
 def report_on_sweep(sweep: Sweep) -> Page:
     """The report of a sweep, whole or as far as it went."""
     scene = sweep.definition.scene
+    title = amended(str(scene["title"]), sweep.definition.changes)
     return Page(
         kind="Report on many drops",
-        title=f"{scene['title']}, over {', '.join(c.name for c in sweep.definition.columns)}",
+        title=f"{title}, over {', '.join(c.name for c in sweep.definition.columns)}",
         headline=headline(sweep),
         made=made_now(f"Sweep of scene {scene['name']}"),
         sections=[_section(*chapter, sweep) for chapter in CHAPTERS],
@@ -70,10 +77,45 @@ def headline(sweep: Sweep) -> str:
         return f"No drop of {len(sweep)} has a verdict.{unsaid}"
     count = sum(bool(whirling(member.summary)) for member in told)
     part = clopper_pearson(count, len(told))
-    said = share(part.value)
-    if _is_sample(sweep.definition.about):
-        said += f"; {share(part.low)} to {share(part.high)} of all with 95 % confidence"
-    return f"{count} of {len(told)} drops whirl ({said}).{unsaid}"
+    stand_for = "" if _is_sample(sweep.definition.about) else "as drops drawn one by one, "
+    reach = f"{stand_for}{share(part.low)} to {share(part.high)} of all with 95 % confidence"
+    said = f"{count} of {len(told)} drops whirl ({share(part.value)}; {reach})."
+    return f"{said} {_length(sweep)}{unsaid}"
+
+
+def _length(sweep: Sweep) -> str:
+    """How long the drops were followed, and how much of it after they touched."""
+    done = _done(sweep)
+    said = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
+    firsts = [(m, first) for m in done if (first := _first_contact(m)) is not None]
+    if not firsts:
+        return f"{said}, and none touches."
+    after = [_duration(sweep, member) - first for member, first in firsts]
+    some = "" if len(firsts) == len(done) else f" ({len(done) - len(firsts)} touch nothing)"
+    return (
+        f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not told."
+    )
+
+
+def _duration(sweep: Sweep, member: Member) -> float:
+    """Of a drop (s), from its shutdown on."""
+    row = sweep.definition.values[member.number - 1]
+    for column, value in zip(sweep.definition.columns, row, strict=True):
+        if "run.duration" in column.settings and (varied := number(value)) is not None:
+            return varied
+    return float(sweep.definition.scene["run"]["duration"])
+
+
+def _reach(values: Sequence[float], unit: str) -> str:
+    """From the least to the most, or what they all are, to three digits."""
+    ends = dict.fromkeys(quantity(value, unit, 3) for value in (min(values), max(values)))
+    return " to ".join(ends)
+
+
+def _first_contact(member: Member) -> float | None:
+    """When a drop touches first (s from the shutdown); None where it does not."""
+    found = [number(value) for key, value in member.summary.items() if key.startswith(FIRST_CONTACT)]
+    return min((time for time in found if time is not None), default=None)
 
 
 def _is_sample(about: str) -> bool:
@@ -112,7 +154,9 @@ def _summary(sweep: Sweep) -> list[Block]:
     blocks: list[Block] = [Tiles(tiles)]
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))
-    lines = [line.strip() for line in verdict_lines(sweep.members)]
+    if warnings := [line.strip() for line in warned(sweep.members)]:
+        blocks += [Remark("What drops warn of:", grave=True), Points(warnings)]
+    lines = [line.strip().removeprefix("whirl_") for line in verdict_lines(sweep.members)]
     return [*blocks, Text("Verdicts, seat by seat:"), Points(lines)] if lines else blocks
 
 
@@ -124,11 +168,20 @@ def _varied(sweep: Sweep) -> list[Block]:
     return [
         Text(f"How the drops were chosen: {sweep.definition.about}."),
         Table("What varies", head, rows, 1),
-        Text(
-            f"Each is followed for {quantity(float(run['duration']), 's')} from the shutdown on, in "
-            f"macro steps of {quantity(float(run['macro_step']), 's')}."
-        ),
+        Text(_else(sweep)),
+        Text(f"{_length(sweep)} Macro steps are {quantity(float(run['macro_step']), 's')} long."),
     ]
+
+
+def _else(sweep: Sweep) -> str:
+    """What is not as the scene has it, beside what varies."""
+    asked = sweep.definition
+    varied = {setting for column in asked.columns for setting in column.settings}
+    beside = [one for one in (*asked.changes, *asked.run_changes) if one.partition(" = ")[0] not in varied]
+    scene = f"as scene {asked.scene['name']} has it"
+    if not beside:
+        return f"All else is {scene}."
+    return f"All else is {scene}, but for what was set for the sweep: {'; '.join(beside)}."
 
 
 def _column(column: Column, given: Sequence[object]) -> list[str]:
@@ -137,8 +190,15 @@ def _column(column: Column, given: Sequence[object]) -> list[str]:
     numbers = [value for one in distinct if (value := number(one)) is not None]
     if not numbers:
         return [name, str(len(distinct)), str(distinct[0]), str(distinct[-1])]
-    ends = (quantity(end, column.unit or "1") for end in (min(numbers), max(numbers)))
-    return [name, str(len(distinct)), *ends]
+    return [name, str(len(distinct)), *(_setting(column, end) for end in (min(numbers), max(numbers)))]
+
+
+def _setting(column: Column, value: float) -> str:
+    """A value of a setting, a speed as it is spoken of."""
+    if column.unit == "rad/s":
+        turns, per = spoken(column.name, value)
+        return f"{digits(turns, 5)} {per}"
+    return quantity(value, column.unit or "1")
 
 
 def _maps(sweep: Sweep) -> list[Block]:
@@ -162,18 +222,48 @@ def _map(figure: Figure, draw: Callable[[Axes], object]) -> None:
 
 def _spread(sweep: Sweep) -> list[Block]:
     done = _done(sweep)
-    rows = []
-    for key in dict.fromkeys(key for member in done for key in member.summary):
-        found = [
-            v for member in done if (v := number(member.summary.get(key))) is not None and math.isfinite(v)
-        ]
-        if found and min(found) < max(found):
-            quartiles = np.percentile(found, [0, 25, 50, 75, 100])
-            rows.append([key, str(len(found)), *(digits(float(value)) for value in quartiles)])
-    if not rows:
+    told, others, places = list[list[str]](), list[list[str]](), list[list[str]]()
+    for key in keys(done):
+        found = [v for m in done if (v := number(m.summary.get(key))) is not None and math.isfinite(v)]
+        if not found or min(found) == max(found):
+            continue
+        known = label(key, sweep.definition.scene["components"])
+        if known is None:
+            others += [] if _is_place(key) else [[key, str(len(found)), *_quartiles(found)]]
+        elif known.unit == NODE:
+            places.append([f"{known.words}{known.place}", _counts(found)])
+        else:
+            told.append([known.head, str(len(found)), *_quartiles(found)])
+    if not (told or others or places):
         raise Absent("no figure differs from drop to drop.")
-    head = ["Figure, with its unit", "Drops", "least", "quarter below", "median", "quarter above", "most"]
-    return [Table("How figures spread over the drops", head, rows, 1)]
+    head = ["Drops", "least", "quarter below", "median", "quarter above", "most"]
+    blocks: list[Block] = []
+    if told:
+        blocks.append(Table("How figures spread over the drops", ["Figure", *head], told, 1))
+    if places:
+        blocks.append(Table("Where on the rotor", ["Figure", "Nodes"], places))
+    if others:
+        rest = Table("By their names in sweep.csv", ["Name", *head], others, 1)
+        blocks.append(Folded(f"{len(others)} figures more, of the coupling and of one instant", [rest]))
+    return blocks
+
+
+def _is_place(key: str) -> bool:
+    """Whether an unlabelled figure is a node, of which there is no mean."""
+    return re.search(r"_node(_|$)", key) is not None
+
+
+def _counts(found: Sequence[float]) -> str:
+    """How often each of some whole numbers comes, the most frequent first."""
+    counts = Counter(found).most_common()
+    return ", ".join(f"{value:.0f} in {count} drop{'s'[: count > 1]}" for value, count in counts)
+
+
+def _quartiles(found: Sequence[float]) -> list[str]:
+    """Least, quartiles and most, with so many digits that they can be told apart."""
+    size, spread = max(map(abs, found)), max(found) - min(found)
+    count = min(max(4, math.ceil(math.log10(size / spread)) + 2), MOST_DIGITS)
+    return [digits(float(value), count) for value in np.percentile(found, [0, 25, 50, 75, 100])]
 
 
 def _drops(sweep: Sweep) -> list[Block]:
@@ -181,18 +271,22 @@ def _drops(sweep: Sweep) -> list[Block]:
     hardest = sorted(_done(sweep), key=lambda m: -(largest(m.summary, FORCE) or 0.0))[:WORST]
     if not hardest:
         raise Absent("no drop ran to its end.")
-    every = list(_rows(sweep.members[:MOST_ROWS], figures))
+    every = list(_rows(sweep, sweep.members[:MOST_ROWS], figures))
     of = f"the first {MOST_ROWS} of {len(sweep)} drops" if len(sweep) > MOST_ROWS else "All drops"
-    head = ["Drop", *hardest[0].settings, *figures]
+    components = sweep.definition.scene["components"]
+    labels = [known.head if (known := label(key, components)) else key for key in figures]
+    head = ["Drop", *hardest[0].settings, *labels]
     return [
-        Table("The drops that hit hardest", head, list(_rows(hardest, figures))),
+        Table("The drops that hit hardest", head, list(_rows(sweep, hardest, figures))),
         Folded(f"{of}, {len(every)} rows", [Table(of, head, every)]),
     ]
 
 
-def _rows(members: Sequence[Member], figures: Sequence[str]) -> Iterator[list[str]]:
+def _rows(sweep: Sweep, members: Sequence[Member], figures: Sequence[str]) -> Iterator[list[str]]:
+    columns = sweep.definition.columns
     for member in members:
-        settings = (str(value) for value in member.settings.values())
+        given = zip(member.settings.values(), columns, strict=True)
+        settings = (with_unit(value, column.unit, column.name) for value, column in given)
         yield [str(member.number), *settings, *(_shown(member.summary.get(key)) for key in figures)]
 
 
@@ -200,7 +294,7 @@ def _shown(value: object) -> str:
     if value is None:
         return NONE
     known = number(value)
-    return str(value) if known is None else digits(known)
+    return str(value) if known is None else digits(known, 5)
 
 
 def _failed(sweep: Sweep) -> list[Block]:

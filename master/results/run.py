@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -22,6 +22,7 @@ from touchdown.master.results.folder.ending import write_ending
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
+from touchdown.master.results.whirl.evidence import CONTACT
 from touchdown.master.scene.scene import Scene
 
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
@@ -58,7 +59,7 @@ def run_scene(
             outcome = outcome.after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
-            warnings = [*system.left_out, *_warnings(outcome)]
+            warnings = [*system.remarks, *_early(summary), *_warnings(outcome)]
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:
@@ -112,6 +113,18 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
         return Recording(path, owner)
     except TouchdownError as error:
         raise TouchdownError(outcome.reason or str(error)) from None
+
+
+def _early(summary: Mapping[str, object]) -> list[str]:
+    """That a bearing was touched while the rotor was still levitated, which is no drop."""
+    times = [time for key, time in summary.items() if key.startswith(CONTACT)]
+    earliest = min((time for time in times if isinstance(time, float)), default=0.0)
+    if earliest >= 0.0:
+        return []
+    return [
+        f"a touchdown bearing was touched {-1e3 * earliest:.3g} ms before the shutdown: the magnetic "
+        "bearings do not hold the rotor clear of it; look at its weight, their stiffness and the clearance"
+    ]
 
 
 def _warnings(outcome: Outcome) -> list[str]:

@@ -37,12 +37,13 @@ gives takes the place of what stands there, table by table; a component that nam
 
 from __future__ import annotations
 
+import json
 import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.run_spec import RunSpec, with_changes
@@ -50,6 +51,8 @@ from touchdown.master.scene.scene import ComponentSpec, Scene, checked_preset
 from touchdown.master.scene.tables import (
     entries,
     flat,
+    is_rotor,
+    is_scene_file,
     pairs,
     reference,
     references,
@@ -57,11 +60,14 @@ from touchdown.master.scene.tables import (
     refuse_unusable,
     switch,
     table,
+    unquoted,
     whole,
 )
 from touchdown.master.scene.wires import bonds, wires
 
 SCENE_FILE = "scene.toml"  # of a folder that is a machine
+LEFT = "scene.json"  # what a run leaves
+TABLES = (".csv", ".tsv", ".txt")
 LARGEST = 16_000_000  # bytes of a TOML file
 SHIPPED = Path(__file__).parent / "shipped"
 
@@ -87,16 +93,47 @@ def locate(name: str) -> Path:
         return Path(name)
     if name not in shipped() and os.path.isfile(Path(name) / SCENE_FILE):
         return Path(name) / SCENE_FILE
-    try:
+    if name in shipped():
         return shipped()[name]
-    except KeyError:
-        raise TouchdownError(
-            f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
-        ) from None
+    raise TouchdownError(
+        _mistaken(Path(name))
+        or f"unknown scene {name}; {one_of(name, shipped())}, or give the path of a .toml or .ssp"
+    )
+
+
+def _mistaken(path: Path) -> str:
+    """What a path is that is no scene's, and what it is for; "" where nothing is known of it."""
+    if path.suffix.lower() in TABLES and os.path.isfile(path):
+        return (
+            f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
+            "`touchdown new` a machine with that"
+        )
+    if os.path.isfile(path / LEFT):
+        return f"{path} is what a run left; give {path / LEFT}, the scene as it was run"
+    return ""
+
+
+def is_scene(name: str) -> bool:
+    """Whether a name or path, which could be a rotor's as well, is of a scene, sound or not."""
+    if name.endswith(".ssp"):
+        return True
+    if name.endswith(".json"):
+        return _may_be_left(Path(name))
+    if not name.endswith(".toml"):
+        return name in shipped() or os.path.isfile(Path(name) / SCENE_FILE)
+    return is_scene_file(Path(name))
+
+
+def _may_be_left(path: Path) -> bool:
+    """Whether a JSON file is, or may have been, what a run left: not where it has no components."""
+    try:
+        return "components" in json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, TypeError, RecursionError):
+        return True
 
 
 def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
-    """A scene from the tables of its TOML file."""
+    """A scene from the tables of its TOML file, as `tables` gives them."""
     known = (
         "title",
         "about",
@@ -131,9 +168,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
     )
-    given = data.get("set", {})
-    layers = cast("list[_Shared]", given) if isinstance(given, list) else [_shared(data, f"scene {name}")]
-    return _with_shared(scene, layers)
+    return _with_shared(scene, data.get("set", ()))
 
 
 class _Shared(NamedTuple):
@@ -163,9 +198,8 @@ def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
     there = scene
     for layer in layers:
         for name, value in layer.settings.items():
-            head, dot, tail = name.partition(".")
-            settings = [f"{component}{dot}{tail}" for component in scene.matching(head)]
-            there = there.set({setting: value for setting in settings if setting not in layer.exact})
+            general = [setting for setting in scene.meant(name) if setting not in layer.exact]
+            there = there.set(dict.fromkeys(general, value))
     components = {name: replace(spec, own=()) for name, spec in there.components.items()}
     return replace(there, components=components, own=scene.own)
 
@@ -196,6 +230,11 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
     Their [set] are a list, that of the first file first.
     """
     data = _toml(path, "scene")
+    if is_rotor(data):
+        raise TouchdownError(
+            f"{path} is a rotor's file, no scene; `touchdown rotor {path}` describes it, and `touchdown "
+            f"new FOLDER --rotor {path} --bearings NAME` makes a machine with a scene of it"
+        )
     data["set"] = [_shared(data, f"scene {path}")]
     if "extends" not in data:
         return data
@@ -227,11 +266,15 @@ def _toml(path: Path, what: str) -> dict[str, Any]:
     if len(content) > LARGEST:
         raise TouchdownError(f"{where} is larger than {LARGEST / 1e6:.0f} MB; it must be something else")
     try:
-        data = tomllib.loads(content.decode("utf-8-sig"))  # some editors begin files with a mark
+        text = content.decode("utf-8-sig")  # some editors begin files with a mark
+    except ValueError as error:
+        raise TouchdownError(f"{where} is not valid TOML: {error}") from None
+    try:
+        data = tomllib.loads(text)
     except RecursionError:
         raise TouchdownError(f"{where} is not valid TOML: its values lie too deep in each other") from None
-    except ValueError as error:  # of TOML's syntax, of UTF-8, of an integer with thousands of digits
-        raise TouchdownError(f"{where} is not valid TOML: {error}") from None
+    except ValueError as error:  # of TOML's syntax, of an integer with thousands of digits
+        raise TouchdownError(f"{where} is not valid TOML: {error}{unquoted(error, text)}") from None
     refuse_unusable(data, where)
     return data
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import cast
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import plain
-from touchdown.master.scene.run_spec import RunSpec, with_changes
+from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
+from touchdown.master.common.units import plain, with_unit
+from touchdown.master.scene.run_spec import UNITS, RunSpec, with_changes
+from touchdown.master.scene.schemes import Scheme
 from touchdown.master.scene.tables import switch, whole
 from touchdown.master.scene.titles import retitled
 from touchdown.master.scene.wires import BondSpec, Wire
@@ -32,6 +34,11 @@ class ComponentSpec:
     native: bool = False  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
+
+    @property
+    def set_beside(self) -> dict[str, object]:
+        """What the user set in it beside the scene, by name."""
+        return {name: self.preset if name == "preset" else self.set[name] for name in self.own}
 
     def swapped(self, fmu: str) -> ComponentSpec:
         """What another FMU in its place starts from."""
@@ -92,10 +99,17 @@ class Scene:
         """
         scene = self
         for name, value in settings.items():
-            head, dot, tail = name.partition(".")
-            for component in self.matching(head):
-                scene = scene._with_setting(f"{component}{dot}{tail}", value)
+            for setting in self.meant(name):
+                scene = scene._with_setting(setting, value)
         return scene
+
+    def meant(self, name: str) -> list[str]:
+        """The settings that COMPONENT.VARIABLE means, of all components that match.
+
+        Raises TouchdownError where none matches.
+        """
+        head, dot, tail = name.partition(".")
+        return [f"{component}{dot}{tail}" for component in self.matching(head)]
 
     def matching(self, pattern: str) -> list[str]:
         """Components whose names match a `pattern` with * or ?; what is no pattern stands for itself.
@@ -174,6 +188,22 @@ class Scene:
                 f"scene {self.name} has no component {name}; {one_of(name, [*self.components, 'run'])}"
             ) from None
 
+    def changes(self, unit_of: Callable[[str, str], str | None]) -> list[str]:
+        """What the user set in components beside the scene, for people.
+
+        unit_of(component, variable): its SI unit.
+        """
+        return [
+            f"{name}.{key} = {with_unit(value, unit_of(name, key) if key in spec.set else None, key)}"
+            for name, spec in self.components.items()
+            for key, value in spec.set_beside.items()
+        ]
+
+    def run_changes(self) -> list[str]:
+        """What the user set in [run] beside the scene, for people."""
+        given = {key: getattr(self.run, key) for key in self.own}
+        return [f"run.{key} = {with_unit(_as_written(v), UNITS.get(key))}" for key, v in given.items()]
+
     def resolved(self) -> dict[str, object]:
         """All of it as plain values, for JSON."""
         values = asdict(self)
@@ -183,6 +213,13 @@ class Scene:
 
 def _with(names: tuple[str, ...], name: str) -> tuple[str, ...]:
     return names if name in names else (*names, name)
+
+
+def _as_written(value: object) -> object:
+    """A value of [run] as its file has it."""
+    if isinstance(value, Scheme):
+        return value.name
+    return ", ".join(cast(tuple[str, ...], value)) if isinstance(value, tuple) else value
 
 
 def is_file(fmu: str) -> bool:
@@ -208,5 +245,4 @@ def checked_preset(name: object, where: str, *folders: Path) -> str | None:
     try:
         return find_preset(str(name), *folders)
     except CatalogueError as error:
-        remedy = f"; {one_of(str(name), error.known)}" if error.known else ""
-        raise TouchdownError(f"{where}: {error}{remedy}") from None
+        raise TouchdownError(f"{where}: {with_remedy(error, str(name), error.known)}") from None

@@ -5,7 +5,10 @@ Every function raises TouchdownError with `where` the mistake stands and what to
 
 from __future__ import annotations
 
+import re
+import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, cast
 
 from touchdown.master.common.errors import TouchdownError, one_of
@@ -13,6 +16,9 @@ from touchdown.master.common.units import to_si
 from touchdown.modelkit.units import NUMBER
 
 DEEPEST = 32
+LINE = re.compile(r"at line (\d+)")  # of a mistake, as the library says it
+UNQUOTED = re.compile(r"=\s*([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*[A-Za-z%\u00b5\u03bc][^\s,}\]#\"']*)")
+OF_ROTORS = ("element", "superelement", "disc", "point_mass", "unbalance", "stations", "levitated_at")
 
 
 def entries(value: object) -> Mapping[str, Any] | None:
@@ -73,6 +79,47 @@ def refuse_unusable(table: Mapping[str, Any], where: str) -> None:
             return
         level = inner
     raise TouchdownError(f"{where}: values lie {DEEPEST} deep in each other; no scene needs that")
+
+
+def unquoted(error: Exception, text: str) -> str:
+    """The remedy for a `text` that is no TOML where a quantity stands without quotes; else "".
+
+    >>> unquoted(ValueError("Expected newline (at line 1, column 17)"), "clearance = 0.3 mm")
+    '; write "0.3 mm" in quotes'
+    """
+    place = LINE.search(str(error))
+    found = UNQUOTED.search(text.splitlines()[int(place[1]) - 1]) if place else None
+    return f'; write "{found[1]}" in quotes' if found else ""
+
+
+def mistake_in(path: Path, error: Exception) -> str:
+    """What is wrong in a TOML file, and the remedy of `unquoted`."""
+    try:
+        return f"{error}{unquoted(error, path.read_text(encoding='utf-8-sig'))}"
+    except (OSError, ValueError):
+        return str(error)
+
+
+def is_scene_file(path: Path) -> bool:
+    """Whether a TOML file is a scene's."""
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return "components" in data or "extends" in data
+
+
+def is_of_ross(path: Path) -> bool:
+    """Whether ROSS saved a TOML file."""
+    try:
+        return "ross_version" in tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+
+
+def is_rotor(table: Mapping[str, Any]) -> bool:
+    """Whether a file's table is a rotor's, not a scene's."""
+    return "components" not in table and any(key in table for key in OF_ROTORS)
 
 
 def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:

@@ -39,6 +39,8 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.results.run import run_scene
     from touchdown.master.results.summary import table
     from touchdown.master.results.whirl.evidence import evidence, hint
+    from touchdown.master.results.whirl.unbalance import unbalanced
+    from touchdown.master.studies.rotor.balance import balanced
 
     chosen = chosen_scene(options)
     files = [name for name, spec in chosen.components.items() if foreign(spec.fmu)]
@@ -58,7 +60,10 @@ def execute(options: argparse.Namespace) -> int:
         progress=not options.quiet,
     )
     print("\n".join([table(result.summary), *evidence(result.summary)]))
-    print("\n".join([*hint(options.scene, result.ending, result.summary), f"results in {result.folder}"]))
+    told = list(hint(options.scene, result.ending, result.summary))
+    if told and balanced(chosen, unbalanced(result.ending)):
+        told = ["the rotor has no unbalance, so the verdict hangs on no phase of it"]
+    print("\n".join([*told, f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")

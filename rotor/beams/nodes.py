@@ -26,7 +26,8 @@ def node_at(shaft: Shaft, position: float) -> int | None:
 def with_node(shaft: Shaft, position: float) -> Shaft:
     """The same rotor with a node at `position` (m from node 1), which cuts an element where there is none.
 
-    Raises ModelError where the position is beyond the shaft, or less than 0.1 mm from another node.
+    Raises ModelError where the position is beyond the shaft, less than 0.1 mm from another node, or not a
+    node of a superelement.
     """
     if node_at(shaft, position) is not None:
         return shaft
@@ -34,6 +35,12 @@ def with_node(shaft: Shaft, position: float) -> Shaft:
     if not 0.0 < position < z[-1]:
         raise ModelError(
             f"{1e3 * position:g} mm is not on the rotor {shaft.title}, which ends at {1e3 * z[-1]:g} mm"
+        )
+    if not shaft.elements:
+        near = int(np.argmin(np.abs(z - position)))
+        raise ModelError(
+            f"{1e3 * position:g} mm is no node of the rotor {shaft.title}, whose {shaft.body.kind} know "
+            f"nothing between nodes; the nearest is node {near + 1} at {1e3 * z[near]:g} mm"
         )
     cut = int(np.searchsorted(z, position)) - 1
     if min(position - z[cut], z[cut + 1] - position) < SHORTEST:

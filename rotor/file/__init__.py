@@ -45,6 +45,9 @@ cone (over all of its count), and layers, cylinders or cones around it that are 
 [[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an unbalance angle; [[support]] with
 node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a scene has bearings).
 Every physical quantity is text with a unit.
+
+In place of materials, elements, discs and point masses a rotor may have [superelement], the matrices of the
+whole in one plane (`rotor.file.superelement`), which `touchdown import-rotor` writes.
 """
 
 from touchdown.rotor.file.parser import parse

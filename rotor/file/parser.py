@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import keyword
 import tomllib
+from dataclasses import replace
 
 from touchdown.rotor.beams.shaft import MOST_STATIONS, PointMass, Shaft, Station, Support, Unbalance, disc
 from touchdown.rotor.file.elements import Material, diameters_of, elements_of, material_of, materials_of
+from touchdown.rotor.file.superelement import superelement_of
 from touchdown.rotor.file.table import RotorFileError, Table
 
+BEAMS = ("material", "element", "disc", "point_mass")
 SUPPORT = ("node", "stiffness", "stiffness_y", "damping", "damping_y")
 RESERVED = ("station", "sensor", "node", "stress", "energy", "mass", "modes")  # names of other variables
 
@@ -21,16 +24,12 @@ def parse(text: str, file: str) -> Shaft:
         raise RotorFileError(f"{file}: is not valid TOML: its values lie too deep in each other") from None
     except ValueError as error:  # of TOML's syntax, or of an integer with thousands of digits
         raise RotorFileError(f"{file}: is not valid TOML: {error}") from None
-    top.only("title", "about", "damping_ratio", "material", "element", "disc", "point_mass", "unbalance",
-             "support", "stations", "sensors", "levitated_at")  # fmt: skip
-    materials = materials_of(top)
-    elements = elements_of(top, materials)
-    nodes = len(elements) + 1
-    return Shaft(
-        title=top.text("title"),
-        about=top.text("about", ""),
-        elements=elements,
-        points=_points(top, materials, nodes),
+    top.only("title", "about", "damping_ratio", *BEAMS, "superelement", "unbalance", "support",
+             "stations", "sensors", "levitated_at")  # fmt: skip
+    made = _made(top)
+    nodes = made.nodes
+    return replace(
+        made,
         unbalances=tuple(
             Unbalance(
                 node=t.node("node", nodes),
@@ -43,8 +42,23 @@ def parse(text: str, file: str) -> Shaft:
         sensors=_stations(top, "sensors", nodes),
         levitated_at=_levitated(top),
         supports=tuple(_support(t, nodes) for t in top.tables("support", *SUPPORT)),
+    )
+
+
+def _made(top: Table) -> Shaft:
+    """What the rotor is made of, and how it is called."""
+    told = Shaft(
+        title=top.text("title"),
+        about=top.text("about", ""),
         damping_ratio=top.number("damping_ratio", 0.0, 1.0, default=0.003),
     )
+    if "superelement" not in top.values:
+        materials = materials_of(top)
+        elements = elements_of(top, materials)
+        return replace(told, elements=elements, points=_points(top, materials, len(elements) + 1))
+    if beams := [name for name in BEAMS if name in top.values]:
+        raise top.error(beams[0], "cannot stand beside superelement, whose matrices are those of the whole")
+    return replace(told, superelement=superelement_of(top.table("superelement")))
 
 
 def _points(top: Table, materials: dict[str, Material], nodes: int) -> tuple[PointMass, ...]:

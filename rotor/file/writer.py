@@ -16,6 +16,7 @@ from touchdown.modelkit.units import SCALES, to_si
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Support, Unbalance
 from touchdown.rotor.file.parser import parse
+from touchdown.rotor.file.superelement import superelement_lines
 from touchdown.rotor.file.table import RotorFileError
 
 PREFERRED = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
@@ -32,7 +33,8 @@ def written(shaft: Shaft, file: str = "the rotor") -> str:
     if parse(text, file) != shaft:
         raise RotorFileError(
             f"{file}: the rotor {shaft.title} cannot be written as a rotor file: it would be read as "
-            "another one; look for a sleeve's density or modulus without its diameter"
+            "another one; look for a sleeve's density or modulus without its diameter, or for elements "
+            "beside a superelement"
         )
     return text
 
@@ -54,6 +56,8 @@ def _lines(shaft: Shaft) -> Iterator[str]:
     yield from _elements(shaft.elements, cores, sleeves)
     for point in shaft.points:
         yield from _point(point)
+    if shaft.superelement:
+        yield from superelement_lines(shaft.superelement)
     for unbalance in shaft.unbalances:
         yield from _unbalance(unbalance)
     for support in shaft.supports:

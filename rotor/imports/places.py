@@ -21,10 +21,10 @@ def placed(
 ) -> Shaft:
     """`shaft` with stations: `seats` for touchdown bearings, and those it is `levitated` at.
 
-    A place is the number of a node, from 1, or a distance from node 1 as text with a unit ("120 mm"),
-    where a node is made if there is none. What is given replaces all that was there of its kind, and what
-    was there by its name; the others stay. Raises ImportedRotorError, and ModelError for
-    places that are not on the shaft.
+    A place is the number of a node, from 1, or what the node is `called`, or a distance from node 1 as
+    text with a unit ("120 mm"), where a node is made if there is none. What is given replaces all that was
+    there of its kind, and what was there by its name; the others stay. Raises ImportedRotorError, and
+    ModelError for places that are not on the shaft.
     """
     kinds = [dict(kind or {}) for kind in (seats, levitated, sensors)]
     names = [name for kind in kinds for name in kind]
@@ -49,14 +49,31 @@ def placed(
 def _position(shaft: Shaft, name: str, at: int | str) -> float:
     """Of a place (m from node 1)."""
     text = str(at).strip()
+    z = shaft.positions()
+    if text in shaft.called:
+        return float(z[_called(shaft, name, text)])
     if text.isdecimal():
         if not 1 <= int(text) <= shaft.nodes:
             raise ImportedRotorError(
                 f"{name} = {text} is not a node of the rotor {shaft.title}, which has nodes 1 to "
                 f"{shaft.nodes}; for a distance from node 1 write its unit, such as 120 mm"
             )
-        return float(shaft.positions()[int(text) - 1])
+        return float(z[int(text) - 1])
     try:
         return to_si(text, "m", name)
     except UnitError as error:
         raise ImportedRotorError(f"{error}; write a node's number, or a distance from node 1") from None
+
+
+def _called(shaft: Shaft, name: str, text: str) -> int:
+    """Which node (from 0) is called so, where no other has that number."""
+    named = shaft.called.index(text)
+    counted = int(text) - 1 if text.isdecimal() else named
+    if counted != named and 0 <= counted < shaft.nodes:
+        z = shaft.positions()
+        raise ImportedRotorError(
+            f"{name} = {text} may be the node called {text}, at {1e3 * z[named]:.9g} mm, or node {text} "
+            f"along the axis, called {shaft.called[counted]}, at {1e3 * z[counted]:.9g} mm; write the "
+            "distance"
+        )
+    return named

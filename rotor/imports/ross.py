@@ -262,10 +262,14 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
             continue
         k, ky, c, cy = (_coefficient(part, name, speed) for name in ("kxx", "kyy", "cxx", "cyy"))
         supports.append(Support(part.node() + 1, k, None if ky == k else ky, c, None if cy == c else cy))
-        given_at = np.atleast_1d(np.asarray(part.values.get("frequency") or 0.0, dtype=float))
-        if len(given_at) > 1 and speed is not None and not given_at[0] <= abs(speed) <= given_at[-1]:
+        several = any(np.size(part.values.get(name, 0.0)) > 1 for name in ("kxx", "kyy", "cxx", "cyy"))
+        if several and speed is not None:
+            given_at = _speeds(part)
             nearest = np.clip(abs(speed), given_at[0], given_at[-1])
-            remarks.append(f"{part.name}: taken at {nearest:.6g} rad/s, the nearest speed it is given at")
+            if nearest != abs(speed):
+                remarks.append(
+                    f"{part.name}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
+                )
         if any(
             abs(_coefficient(part, name, speed)) > LEAST_CROSS * abs(k or 1.0)
             for name in ("kxy", "kyx", "cxy", "cyx")
@@ -284,15 +288,20 @@ def _coefficient(part: Part, name: str, speed: float | None) -> float:
         if len(values) == 1 or speed is None:
             value = float(values[0])
         else:
-            given_at = np.asarray(part.values.get("frequency"), dtype=float)
-            if np.any(np.diff(given_at) <= 0.0):
-                raise ImportedRotorError(f"{part.where}: the speeds it is given at do not rise")
-            value = float(np.interp(abs(speed), given_at, values))
+            value = float(np.interp(abs(speed), _speeds(part), values))
     except (TypeError, ValueError):
         raise ImportedRotorError(f"{part.where}: {name} cannot be read as numbers over frequency") from None
     if not math.isfinite(value):
         raise ImportedRotorError(f"{part.where}: {name} = {value!r} is not a finite number")
     return value
+
+
+def _speeds(part: Part) -> np.ndarray:
+    """Those at which a bearing's coefficients are given, rising (n,), rad/s. Raises ImportedRotorError."""
+    given = np.asarray(part.values.get("frequency"), dtype=float)
+    if np.any(np.diff(given) <= 0.0):
+        raise ImportedRotorError(f"{part.where}: the speeds it is given at do not rise")
+    return given
 
 
 def _left_out(others: list[Part], *taken: list[Part]) -> Iterator[str]:

@@ -6,9 +6,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import optimize
 
-from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import Basis
+from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing, Whirl
+
+HEAVY = 0.95  # damping ratio from which a mode hardly swings: such as a controller's lag
+UNLIKE = 1.0  # of a mode and the next speed's: 1 less their likeness, and how far apart their roots are
+TURNED = 0.1  # of a root's size that another sense of whirl is worth
+EXACT = 1e-12  # of a critical speed
 
 
 def whirl_frequencies(
@@ -34,47 +40,129 @@ def whirl_frequencies(
 
 
 @dataclass(frozen=True)
-class Whirl:
-    """Modes of a spinning rotor on supports, by their size: one of each conjugate pair, M in all."""
+class Crossing:
+    """A damped critical speed: the whirl of a line is as fast as the spin."""
 
-    roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part not negative
-    sense: np.ndarray  # (M,), 1 circular forward whirl, -1 circular backward, 0 in a plane
-
-    @property
-    def frequencies(self) -> np.ndarray:
-        """Damped whirl frequencies (M,), Hz."""
-        return np.imag(self.roots) / (2.0 * np.pi)
-
-    @property
-    def damping_ratios(self) -> np.ndarray:
-        """Share of critical damping (M,); 0 for what does not swing and is not damped."""
-        size = np.abs(self.roots)
-        return np.divide(-np.real(self.roots), size, out=np.zeros_like(size), where=size > 0.0)
+    speed: float  # rad/s
+    root: complex  # 1/s, of the mode there
+    sense: float  # of its whirl: 1 circular, with the spin; -1 circular, against it; 0 in a plane
 
 
-def supported_whirl(basis: Basis, speed: float, supports: Sequence[Support]) -> Whirl:
-    """Modes at spin `speed` (rad/s) on `supports`, which may differ by plane and damp.
+@dataclass(frozen=True)
+class Lines:
+    """Modes of a rotor in bearings, followed over its spin speed.
 
-    With p = x + i y as in `Basis`: x'' + C_x x' + K_x x + speed G y' = 0, and y'' + C_y y' + K_y y -
-    speed G x' = 0. What is overdamped is left out.
+    Where a mode stops swinging, and beyond, its line is nan.
     """
-    n = len(basis.omega)
-    K, C = np.zeros((2 * n, 2 * n)), np.zeros((2 * n, 2 * n))
-    for plane in (slice(0, n), slice(n, 2 * n)):
-        K[plane, plane] = np.diag(basis.omega**2)
-    C[:n, n:], C[n:, :n] = speed * basis.gyroscopic, -speed * basis.gyroscopic
-    for s in supports:
-        shape = basis.deflections([s.node])[0]
-        tie = np.outer(shape, shape)
-        K[:n, :n] += s.stiffness * tie
-        K[n:, n:] += (s.stiffness if s.stiffness_y is None else s.stiffness_y) * tie
-        C[:n, :n] += s.damping * tie
-        C[n:, n:] += (s.damping if s.damping_y is None else s.damping_y) * tie
-    system = np.block([[np.zeros_like(K), np.eye(2 * n)], [-K, -C]])
-    roots, vectors = np.linalg.eig(system)
-    swinging = np.imag(roots) > 0.0
-    roots, x, y = roots[swinging], vectors[:n, swinging], vectors[n : 2 * n, swinging]
-    turning = -2.0 * np.imag(np.sum(np.conj(x) * y, axis=0))
-    sense = turning / np.sum(np.abs(x) ** 2 + np.abs(y) ** 2, axis=0)
-    order = np.argsort(np.abs(roots))
-    return Whirl(roots[order], sense[order])
+
+    speeds: np.ndarray  # (S,), rad/s, ascending, not negative
+    roots: np.ndarray  # (S, L), complex, 1/s
+    sense: np.ndarray  # (S, L), as `Crossing.sense`
+    stable: np.ndarray  # (S,), whether nothing grows, lines or not
+    crossings: tuple[Crossing, ...]  # by speed
+
+
+def followed(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Lines:
+    """The lowest `count` modes over `speeds` (rad/s, ascending, not negative), and where they are critical.
+
+    What hardly swings (a damping ratio of `HEAVY` or more) is left out.
+
+    A mode goes on as the one that looks most like it at the next speed. Lines are drawn from the highest
+    speed down: at rest, where both planes may be alike, any mix of two whirls is a mode.
+    """
+    speeds = np.asarray(speeds, dtype=float)
+    found = [rotor.whirl(speed) for speed in speeds]
+    lines: list[dict[int, int]] = []  # of each the mode by the number of the speed
+    for i in reversed(range(len(speeds))):
+        going = [line for line in lines if i + 1 in line]
+        pairs = _likest(found[i + 1], [line[i + 1] for line in going], found[i]) if going else {}
+        for number, mode in pairs.items():
+            going[number][i] = mode
+        taken = set(pairs.values())
+        lines += [{i: mode} for mode in _lowest(found[i], count) if mode not in taken]
+    roots = np.full((len(speeds), len(lines)), complex(np.nan, np.nan))
+    sense = np.full(roots.shape, np.nan)
+    for k, line in enumerate(lines):
+        for i, mode in line.items():
+            roots[i, k], sense[i, k] = found[i].roots[mode], found[i].sense[mode]
+    if len(speeds) > 1 and speeds[0] == 0.0:  # whirls of a rotor at rest have no sense of their own
+        sense[0] = sense[1]
+    stable = np.array([one.stable for one in found])
+    return Lines(speeds, roots, sense, stable, tuple(_crossings(rotor, speeds, roots, sense)))
+
+
+def _lowest(found: Whirl, count: int) -> list[int]:
+    """The lowest `count` modes but those that hardly swing."""
+    return np.flatnonzero(found.damping_ratios < HEAVY)[:count].tolist()
+
+
+def _likest(last: Whirl, modes: Sequence[int], found: Whirl) -> dict[int, int]:
+    """For each of the `modes`, by its place among them, the one of `found` that goes on with it, if any."""
+    alike = np.abs(np.conj(last.vectors[:, modes]).T @ found.vectors) ** 2
+    here, there = last.roots[modes][:, None], found.roots[None, :]
+    apart = np.abs(here - there) / np.maximum(np.abs(here), np.abs(there))
+    cost = 1.0 - alike + apart
+    rows, columns = optimize.linear_sum_assignment(cost)
+    return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < UNLIKE}
+
+
+def _crossings(
+    rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: np.ndarray
+) -> list[Crossing]:
+    """Where the lines cross the spin."""
+    above = np.imag(roots) - speeds[:, None]  # nan is neither above nor below
+    crossings: list[Crossing] = []
+    for i, k in zip(*np.nonzero((above[:-1] > 0.0) != (above[1:] > 0.0)), strict=True):
+        ends = slice(i, i + 2)
+        if np.isfinite(above[ends, k]).all():
+            crossings.append(_crossing(rotor, speeds[ends], roots[ends, k], float(sense[i + 1, k])))
+    return sorted(crossings, key=lambda one: one.speed)
+
+
+def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: float) -> Crossing:
+    """The critical speed between two `speeds` (2,), rad/s, of the mode that has the `roots` (2,) there."""
+
+    def at(speed: float) -> Crossing:
+        found = rotor.whirl(speed)
+        share = (speed - speeds[0]) / (speeds[1] - speeds[0])
+        guess = roots[0] + share * (roots[1] - roots[0])
+        off = np.abs(found.roots - guess) / abs(guess) + TURNED * np.abs(found.sense - sense)
+        nearest = int(np.argmin(off if speed > 0.0 else np.abs(found.roots - guess)))
+        return Crossing(speed, complex(found.roots[nearest]), float(found.sense[nearest]))
+
+    def ahead(speed: float) -> float:
+        return at(speed).root.imag - speed
+
+    if (ahead(speeds[0]) > 0.0) == (
+        ahead(speeds[1]) > 0.0
+    ):  # at an end another mode is as near: as they go
+        above = np.imag(roots) - speeds
+        share = above[0] / (above[0] - above[1])
+        return Crossing(
+            float(speeds[0] + share * np.diff(speeds)[0]),
+            complex(roots[0] + share * np.diff(roots)[0]),
+            sense,
+        )
+    found = optimize.root_scalar(ahead, bracket=speeds.tolist(), xtol=EXACT * speeds[1])
+    return at(float(found.root))
+
+
+@dataclass(frozen=True)
+class Held:
+    """A rotor in bearings: its modes at a speed, and its lines over the speeds of a Campbell diagram."""
+
+    bearings: tuple[LinearBearing, ...]
+    speed: float  # rad/s, not negative
+    whirl: Whirl  # there
+    lines: Lines
+
+    @property
+    def swinging(self) -> np.ndarray:
+        """Which of the modes at `speed` swing (their places): all but those that hardly do."""
+        return np.flatnonzero(self.whirl.damping_ratios < HEAVY)
+
+
+def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
+    """A rotor at the first of `speeds` (rad/s, not negative), its `count` lowest lines over the others."""
+    first, *others = speeds
+    return Held(tuple(rotor.bearings), first, rotor.whirl(first), followed(rotor, others, count))

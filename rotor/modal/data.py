@@ -111,7 +111,7 @@ def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
         inertia=shaft.polar_inertia,
         own_damping_ratio=shaft.damping_ratio,
         damping_ratio=0.0,
-        position=_room(shaft.positions()[np.array(watched(shaft)) - 1], MOST_WATCHED),
+        position=_room(shaft.positions()[np.array(watched(shaft), int) - 1], MOST_WATCHED),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),
         stress=_stress_rows(shaft, kept),
@@ -183,7 +183,7 @@ def _stress_rows(shaft: Shaft, kept: Basis) -> StressRows:
 
 def most_modes(shaft: Shaft) -> int:
     """How many modes per plane can be kept: all, or `MOST_SOLVED`."""
-    return min(2 * shaft.nodes, MOST_SOLVED)
+    return min(shaft.coordinates, MOST_SOLVED)
 
 
 def held_masses(shaft: Shaft) -> np.ndarray:

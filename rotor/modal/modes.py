@@ -16,15 +16,8 @@ from scipy.sparse import linalg as splinalg
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import (
-    TOO_UNLIKE,
-    Matrices,
-    assemble,
-    solve,
-    tilt,
-    translation,
-    unit_forces,
-)
+from touchdown.rotor.beams.assembly import TOO_UNLIKE, assemble, solve, unit_forces
+from touchdown.rotor.beams.body import Matrices
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft
 
@@ -62,7 +55,7 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
     modes leave nothing of, or what another node has brought already, is not added. Raises ModelError where
     there are not so many modes, or the elements are too unlike each other.
     """
-    most = min(2 * shaft.nodes, MOST_SOLVED)
+    most = min(shaft.coordinates, MOST_SOLVED)
     if modes != 0 and not RIGID <= modes <= most:
         raise ModelError(
             f"modes = {modes}: the rotor {shaft.title} has {most} modes per plane to keep; "
@@ -77,19 +70,12 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
         omega = np.concatenate((omega, extra_omega))
     gyroscopic = shapes.T @ matrices.polar @ shapes
     gyroscopic[0, :] = gyroscopic[:, 0] = 0.0  # translation turns no section
-    return Basis(shapes, omega, 0.5 * (gyroscopic + gyroscopic.T), kept)
+    return Basis(matrices.shapes @ shapes, omega, 0.5 * (gyroscopic + gyroscopic.T), kept)
 
 
 def fullest(shaft: Shaft, held_at: Sequence[int]) -> Basis:
     """All modes; of a rotor with more than are kept, also residual vectors at the nodes `held_at`."""
-    return basis(shaft, 0, held_at if 2 * shaft.nodes > MOST_SOLVED else ())
-
-
-def rigid_modes(shaft: Shaft) -> np.ndarray:
-    """Translation and tilt about the centre of mass, orthonormal in the mass matrix (2N, 2)."""
-    return np.stack(
-        (translation(shaft) / np.sqrt(shaft.mass), tilt(shaft) / np.sqrt(shaft.diametral_inertia)), axis=1
-    )
+    return basis(shaft, 0, held_at if shaft.coordinates > MOST_SOLVED else ())
 
 
 def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
@@ -98,7 +84,8 @@ def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
     By inertia relief: the force is balanced by the inertia of the rigid motion it causes, and the
     deflection holds no rigid motion.
     """
-    return _relieved(shaft, assemble(shaft), unit_forces(shaft, nodes))
+    matrices = assemble(shaft)
+    return matrices.shapes @ _relieved(shaft, matrices, nodes)
 
 
 def residual_flexibility(shaft: Shaft, kept: Basis, nodes: Sequence[int]) -> np.ndarray:
@@ -108,10 +95,16 @@ def residual_flexibility(shaft: Shaft, kept: Basis, nodes: Sequence[int]) -> np.
     return deflection - elastic @ (elastic.T @ unit_forces(shaft, nodes) / omega[:, None] ** 2)
 
 
-def _relieved(shaft: Shaft, matrices: Matrices, forces: np.ndarray) -> np.ndarray:
-    """Elastic deflection of the free rotor under `forces` (2N, k)."""
-    rigid = rigid_modes(shaft)
+def _rigid_modes(shaft: Shaft, matrices: Matrices) -> np.ndarray:
+    """Translation and tilt about the centre of mass, orthonormal in the mass matrix (n, 2)."""
+    return matrices.rigid / np.sqrt([shaft.mass, shaft.diametral_inertia])
+
+
+def _relieved(shaft: Shaft, matrices: Matrices, nodes: Sequence[int]) -> np.ndarray:
+    """Coordinates (n, len(nodes)) of the deflection that `flexibility` gives."""
+    rigid = _rigid_modes(shaft, matrices)
     inertia = matrices.mass @ rigid
+    forces = matrices.shapes.T @ unit_forces(shaft, nodes)
     balanced = forces - inertia @ (rigid.T @ forces)
     held = slice(2, None)  # balanced loads leave no reaction where node 1 is held
     deflection = np.zeros_like(balanced)
@@ -120,8 +113,8 @@ def _relieved(shaft: Shaft, matrices: Matrices, forces: np.ndarray) -> np.ndarra
 
 
 def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Shapes (2N, count) and frequencies (count,), the rigid ones built, not solved for."""
-    rigid = rigid_modes(shaft)
+    """Shapes (n, count) and frequencies (count,), the rigid ones built, not solved for."""
+    rigid = _rigid_modes(shaft, matrices)
     if count == RIGID:
         return rigid, np.zeros(RIGID)
     square, bending, highest = _lowest(shaft, matrices, count)
@@ -134,11 +127,11 @@ def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarra
 
 
 def _lowest(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, np.ndarray, float]:
-    """Squared frequencies, ascending, and vectors (2N, ...) of `count` modes or more; the highest square.
+    """Squared frequencies, ascending, and vectors (n, ...) of `count` modes or more; the highest square.
 
-    Of many nodes the highest is that of the stiffest element by itself, which bounds it from above.
+    Of many elements the highest is that of the stiffest by itself, which bounds it from above.
     """
-    if 2 * shaft.nodes <= MOST_SOLVED:
+    if shaft.coordinates <= MOST_SOLVED or not shaft.elements:
         square, vectors = linalg.eigh(matrices.stiffness, matrices.mass)
         return square, vectors, float(square[-1])
     K, M = (sparse.csc_array(matrix) for matrix in (matrices.stiffness, matrices.mass))
@@ -159,10 +152,10 @@ def _highest(element: Element) -> float:
 def _residual_vectors(
     shaft: Shaft, matrices: Matrices, shapes: np.ndarray, omega: np.ndarray, nodes: Sequence[int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Vectors (2N, k), k <= len(nodes), orthonormal to `shapes` and each other, and frequencies (k,)."""
-    deflection = flexibility(shaft, nodes)
-    modal = Basis(shapes, omega, np.zeros((0, 0)), len(omega))
-    vectors = residual_flexibility(shaft, modal, nodes)
+    """Vectors (n, k), k <= len(nodes), orthonormal to `shapes` and each other, and frequencies (k,)."""
+    deflection = _relieved(shaft, matrices, nodes)
+    elastic, forces = shapes[:, RIGID:], matrices.shapes.T @ unit_forces(shaft, nodes)
+    vectors = deflection - elastic @ (elastic.T @ forces / omega[RIGID:, None] ** 2)
     vectors = vectors - shapes @ (shapes.T @ (matrices.mass @ vectors))
     size = np.sqrt(np.sum(vectors * (matrices.mass @ vectors), axis=0))
     full = np.sqrt(np.sum(deflection * (matrices.mass @ deflection), axis=0))
@@ -175,17 +168,17 @@ def _residual_vectors(
 
 
 def _ritz(matrices: Matrices, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rayleigh-Ritz within the span of `vectors` (2N, k): mass-normalised shapes and frequencies (k,)."""
+    """Rayleigh-Ritz within the span of `vectors` (n, k): mass-normalised shapes and frequencies (k,)."""
     mass = vectors.T @ matrices.mass @ vectors
     stiffness = vectors.T @ matrices.stiffness @ vectors
     square, turns = linalg.eigh(0.5 * (stiffness + stiffness.T), 0.5 * (mass + mass.T))
-    return _signed(vectors @ turns), np.sqrt(square)
+    return _signed(vectors @ turns, matrices), np.sqrt(square)
 
 
-def _signed(shapes: np.ndarray) -> np.ndarray:
+def _signed(shapes: np.ndarray, matrices: Matrices) -> np.ndarray:
     """Each column turned so that the first node that moves appreciably moves to the positive side."""
     for column in shapes.T:
-        deflection = column[0::2]
+        deflection = (matrices.shapes @ column)[0::2]
         first = np.argmax(np.abs(deflection) > 0.1 * np.abs(deflection).max())
         if deflection[first] < 0.0:
             column *= -1.0

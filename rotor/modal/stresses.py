@@ -58,8 +58,8 @@ def recovery(shaft: Shaft, basis: Basis, loaded_nodes: Sequence[int] = ()) -> Re
 
 
 def end_nodes(shaft: Shaft) -> np.ndarray:
-    """Node (1-based) of every row of stresses (R,): 1, 2, 2, 3, 3, ..."""
-    first = np.arange(1, shaft.nodes)
+    """Node (1-based) of every row of stresses (R,): 1, 2, 2, 3, 3, ...; none without elements."""
+    first = np.arange(1, len(shaft.elements) + 1)
     return np.stack((first, first + 1), axis=1).ravel()
 
 

@@ -16,11 +16,13 @@ STEPS = 32  # of them at most where the section changes
 
 
 def watched(shaft: Shaft) -> tuple[int, ...]:
-    """Nodes, ascending from 1: all up to `MOST_WATCHED`.
+    """Nodes, ascending from 1: all up to `MOST_WATCHED`; none of a rotor without elements.
 
     Of more: the ends, the stations, the greatest changes of section, and then, one by one, the node in
     the middle of the longest stretch without one.
     """
+    if not shaft.elements:
+        return ()
     return tuple(range(1, shaft.nodes + 1)) if shaft.nodes <= MOST_WATCHED else _chosen(shaft)
 
 

@@ -9,10 +9,12 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from touchdown.fmus.recipes import names, recipe
+from touchdown.fmus.variants.modes import told_of
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, slots
+from touchdown.rotor.file import shipped
 
 MOST = 30  # connectors of a bearing without modes
 STEP = 2e-5  # s
@@ -26,12 +28,14 @@ def connectors(model: Model) -> list[str]:
 
 @pytest.mark.parametrize("name", [name for name in names() if "ca" in name or name == "bushing"])
 def test_a_bearing_without_modes_has_few_connectors(name: str):
-    assert len(connectors(recipe(name).with_modes(2).model)) <= MOST < len(connectors(recipe(name).model))
+    assert (
+        len(connectors(recipe(name).with_modes(2, 0).model)) <= MOST < len(connectors(recipe(name).model))
+    )
 
 
 def test_a_rotor_starts_with_them_and_its_seats_tell_of_as_many():
     for count, residual in ((2, 0), (5, 1), (12, 1)):
-        model = recipe("rotor_I").with_modes(count).model
+        model = recipe("rotor_I").with_modes(count, told_of(count, [recipe("rotor_I").model])).model
         starts = {s.variable.name: s.variable.default for s in slots(model)}
         assert (starts["modes"], starts["residual"]) == (count, residual)
         told = sum(name.startswith("A.mode[") and name.endswith(".inv_m") for name in starts)
@@ -41,17 +45,31 @@ def test_a_rotor_starts_with_them_and_its_seats_tell_of_as_many():
         assert instance.record["d"]["slots"].max() <= told
 
 
+def test_a_rotor_in_three_bearings_has_a_connector_more(tmp_path: Path):
+    """One residual vector for each seat; a bearing built beside it has it, too."""
+    text = shipped()["rotor_I"].read_text(encoding="utf-8")
+    assert "[stations]\n" in text
+    (tmp_path / "three.toml").write_text(text.replace("[stations]\n", "[stations]\nC = 10\n"))
+    assert (
+        main(["build", "bushing", str(tmp_path / "three.toml"), "--modes", "5", "-o", str(tmp_path)]) == 0
+    )
+    for name, port in (("three", "C"), ("bushing", "journal")):
+        variables = read_model_description(str(tmp_path / f"{name}.fmu")).modelVariables
+        told = {v.name.split("]")[0] for v in variables if v.name.startswith(f"{port}.mode[")}
+        assert len(told) == 6
+
+
 def test_value_references_stay():
     for name in ("rotor_I", "simplified_caged"):
         full = {s.variable.name: s.index for s in slots(recipe(name).model)}
-        few = {s.variable.name: s.index for s in slots(recipe(name).with_modes(5).model)}
+        few = {s.variable.name: s.index for s in slots(recipe(name).with_modes(5, 5).model)}
         assert few.items() < full.items()
 
 
 def test_numbers_stay_where_no_more_modes_are_in_use():
     """To the last bit."""
     ends = []
-    for chosen in (recipe("rotor_I"), recipe("rotor_I").with_modes(5)):
+    for chosen in (recipe("rotor_I"), recipe("rotor_I").with_modes(5, 5)):
         instance = Instance(chosen.model)
         instance.start(0.0)
         for k in range(5):

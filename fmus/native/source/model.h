@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 enum { REAL = 1, INTEGER = 2, PARAMETER = 4, INPUT = 8, OUTPUT = 16 }; /* a kind and a causality */
-enum { TUNABLE = 32 };                                                   /* of a parameter */
+enum { TUNABLE = 32, INDEPENDENT = 64 }; /* a parameter that may be set between steps; the time */
 
 typedef struct {
     const char *name, *unit; /* the unit with a space before it, or empty */
@@ -16,6 +16,10 @@ typedef struct {
     uint32_t index;
     uint8_t access;
 } Slot;
+
+typedef struct { /* where an array's elements lie: how many, and words from one to the next */
+    uint32_t count, stride;
+} Extent;
 
 typedef struct { /* a word that is not zero */
     uint32_t index;
@@ -37,6 +41,7 @@ typedef struct {
     const char *guid;
     const Slot *slots;
     const uint8_t *access;             /* of each word before `hidden` */
+    const Extent *extents;             /* of the same, of FMI 3.0 only */
     const Word *defaults;              /* of a fresh instance */
     const Word *begun;                 /* of outputs and hidden memory when it starts */
     const Problem *problems;           /* what `settle` finds, from number 1 on */

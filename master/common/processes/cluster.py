@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.processes.pool import INTERRUPTED, TaskOutcome, tried
+from touchdown.master.common.processes.pool import TaskOutcome, told_as_they_end, tried
 
 PATIENCE = 30.0  # s, for a scheduler to answer
 AHEAD = 2  # tasks that a worker's thread is given at a time: one waits while one runs
@@ -33,16 +33,14 @@ def run_on_cluster(
     The tasks of a worker that dies are done by others; one that several died of has DIED. Without any
     worker it waits for one. Raises TouchdownError where no scheduler answers, and where it goes away.
     """
-    ended: dict[int, TaskOutcome[Value]] = {}
     with _connected(address) as client:
-        try:
-            for place, outcome in _outcomes(client, work, tasks):
-                heard(place, outcome)
-                ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
-                done()
-        except KeyboardInterrupt:
-            pass
-    return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
+        return told_as_they_end(_outcomes(client, work, tasks), len(tasks), done, heard)
+
+
+def reach(address: str) -> None:
+    """See that a Dask scheduler answers at `address`. Raises TouchdownError where none does."""
+    with _connected(address):
+        pass
 
 
 @contextmanager

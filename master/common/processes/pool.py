@@ -8,7 +8,7 @@ import signal
 import sys
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import connection
@@ -61,18 +61,32 @@ def run_all(
     that calls it needs `if __name__ == "__main__":`.
     """
     _refuse_importing_script()
-    ended: dict[int, TaskOutcome[Value]] = {}
     crew = _Crew(work, tasks, max(1, min(jobs, len(tasks))))
     try:
-        for place, outcome in crew.outcomes():
+        return told_as_they_end(crew.outcomes(), len(tasks), done, heard)
+    finally:
+        crew.dismiss()
+
+
+def told_as_they_end(
+    outcomes: Iterable[tuple[int, TaskOutcome[Value]]],
+    count: int,
+    done: Callable[[], object],
+    heard: Callable[[int, TaskOutcome[Value]], object],
+) -> list[TaskOutcome[Value]]:
+    """`outcomes` of `count` tasks, with their places, in the tasks' order; each is told as it comes.
+
+    After Ctrl-C those that were not told are INTERRUPTED.
+    """
+    ended: dict[int, TaskOutcome[Value]] = {}
+    try:
+        for place, outcome in outcomes:
             heard(place, outcome)
             ended[place] = outcome  # behind it: what Ctrl-C kept from being heard is INTERRUPTED
             done()
     except KeyboardInterrupt:
         pass
-    finally:
-        crew.dismiss()
-    return [ended.get(place, INTERRUPTED) for place in range(len(tasks))]
+    return [ended.get(place, INTERRUPTED) for place in range(count)]
 
 
 def _refuse_importing_script() -> None:

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import parent_process
+from pathlib import Path
 from threading import Thread
 from typing import Any
 
@@ -39,7 +40,8 @@ class NewModel:
     """A model that was not compiled yet."""
 
     title: str
-    fmu: str  # absolute, where it is a file
+    fmu: str
+    folder: Path  # absolute, in which the fmu's path begins
     in_process: bool
     size: int  # bytes of its memory
 
@@ -79,10 +81,8 @@ def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
             if isinstance(source, Recipe) and not spec.native and _kind(source) not in kinds:
                 kinds.add(_kind(source))
                 if not _is_compiled(source, in_process):
-                    fmu = (
-                        str(scene.folder.absolute() / spec.fmu) if spec.fmu.endswith(".toml") else spec.fmu
-                    )
-                    yield NewModel(source.name, fmu, in_process, source.model.memory.itemsize)
+                    folder, size = scene.folder.absolute(), source.model.memory.itemsize
+                    yield NewModel(source.name, spec.fmu, folder, in_process, size)
 
 
 def _kind(recipe: Recipe) -> str:
@@ -104,7 +104,9 @@ def _have_compiled(models: Iterable[NewModel]) -> None:
         assert process.stdin is not None
         assert process.stdout is not None
         for model in models:
-            print(json.dumps([model.fmu, model.in_process]), file=process.stdin, flush=True)
+            print(
+                json.dumps([model.fmu, str(model.folder), model.in_process]), file=process.stdin, flush=True
+            )
             if not process.stdout.readline():
                 return
 
@@ -113,9 +115,9 @@ def compile_asked(parent: int) -> None:
     """In such a process: compile what each line of standard input names, and answer with a line."""
     die_with_parent(parent)
     for line in sys.stdin:
-        fmu, in_process = json.loads(line)
+        fmu, folder, in_process = json.loads(line)
         with suppress(TouchdownError):
-            component = load_component(fmu, fmu, stepping=Stepping(in_process))
+            component = load_component(fmu, fmu, Path(folder), Stepping(in_process))
             try:
                 component.enter(0.0)
                 component.exit()

@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from touchdown.fmus.build import cached
-from touchdown.fmus.recipes import Recipe, names, recipe
+from touchdown.fmus.recipes import Recipe, names, presets, recipe
 from touchdown.master.common.cache import tidy
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.scene import is_file
+from touchdown.master.scene.tables import mistake_in
 from touchdown.modelkit.model import ModelError
 
 
@@ -23,10 +24,14 @@ def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
         try:
             return recipe(str(folder / fmu))
         except ModelError as error:
-            raise TouchdownError(str(error)) from None
+            raise TouchdownError(mistake_in(folder / fmu, error)) from None
     if foreign(fmu):
         return folder / fmu
     known = names()
+    if fmu not in known and fmu in presets():
+        raise TouchdownError(
+            f"{fmu} is a bearing of the catalogue, no FMU; take it by --set COMPONENT.preset={fmu}"
+        )
     if fmu not in known:
         raise TouchdownError(
             f"there is no FMU called {fmu}; {one_of(fmu, known)}, or give the path of an .fmu or of a "

@@ -21,7 +21,7 @@ class Value:
     """A value a binding gives, as it stands there."""
 
     name: str
-    number: float
+    given: float | str  # a number, or one of an enumeration's words
     unit: str | None = None
     units: Mapping[str, Unit] | None = None  # that the parameter set defines
     convert: bool = True  # to the unit of the variable
@@ -78,9 +78,14 @@ def _value(parameter: Element, units: Mapping[str, Unit], where: str) -> Value:
         content = xml.child(parameter, f"ssv:{kind}")
         if content is not None:
             return Value(name, xml.number(content, "value", where), content.get("unit"), units)
+    content = xml.child(parameter, "ssv:Enumeration")
+    if content is not None:
+        return Value(name, xml.required(content, "value", where))
     content = xml.child(parameter, "ssv:Boolean")
     if content is None:
-        raise TouchdownError(f"{where}: only Real, Integer and Boolean parameters can be set; remove it")
+        raise TouchdownError(
+            f"{where}: only Real, Integer, Boolean and Enumeration parameters can be set; remove it"
+        )
     text = xml.required(content, "value", where)
     if text not in BOOLEANS:
         raise TouchdownError(f"{where}: {text!r} is neither true nor false")

@@ -84,7 +84,7 @@ def read(path: Path) -> Scene:
     return _with_run(scene, package)
 
 
-def _component(package: Package, name: str, settings: Mapping[str, float]) -> ComponentSpec:
+def _component(package: Package, name: str, settings: Mapping[str, object]) -> ComponentSpec:
     said = package.said
     given = {_here(said, name, variable): value for variable, value in settings.items()}
     given = {variable: value for variable, value in given.items() if variable not in SCHEME_SETS}
@@ -137,13 +137,13 @@ def _with_run(scene: Scene, package: Package) -> Scene:
 # -- values ------------------------------------------------------------------------------------------------
 
 
-def _settings(package: Package) -> dict[str, dict[str, float]]:
-    """By component: what the bindings set, in the units of its variables.
+def _settings(package: Package) -> dict[str, dict[str, float | str]]:
+    """By component: what the bindings set, in the units of its variables; of enumerations also words.
 
     A system's bindings are above those of what is in it. Start values of inputs that another component
     feeds are left out: initialisation hands them over.
     """
-    settings: dict[str, dict[str, float]] = {name: {} for name in package.flat.parts}
+    settings: dict[str, dict[str, float | str]] = {name: {} for name in package.flat.parts}
     fed = {(link.end, link.input) for link in package.flat.links}
     for bound in package.flat.bound:
         if (bound.component, bound.variable) not in fed:
@@ -153,7 +153,14 @@ def _settings(package: Package) -> dict[str, dict[str, float]]:
             definitions = (bound.value.units or {}, package.said.units, side.units)
             start, end = _unit(bound.value.unit, definitions), _unit(unit, (side.units, package.said.units))
             scale = _along(start, bound.legs, end, package, what)
-            settings[bound.component][bound.variable] = scaled(bound.value.number, scale)
+            given = bound.value.given
+            if isinstance(given, str) and not side.variable(bound.variable, what).choices:
+                raise TouchdownError(
+                    f"{what} = {given!r} is an enumeration's word, and the variable is none"
+                )
+            settings[bound.component][bound.variable] = (
+                given if isinstance(given, str) else scaled(given, scale)
+            )
     return settings
 
 

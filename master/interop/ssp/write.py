@@ -14,8 +14,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from xml.etree.ElementTree import indent, tostring
+from xml.etree.ElementTree import indent
 
+from touchdown.fmus.presentation.xml import document
 from touchdown.master.common.archives import write_archive
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.interop.packing import AS_IN_SCENE, Making, fixed, packed_fmus
@@ -54,8 +55,7 @@ def write_package(
         fmus = dict(sorted(places.values()))
         written = Written(path, len(sources), len(connected), tuple(fixed(scene, system)))
     indent(root)
-    text = b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
-    write_archive(path, {HEART: text, **fmus})
+    write_archive(path, {HEART: document(root), **fmus})
     return written
 
 

@@ -21,8 +21,7 @@ from touchdown.master.report.pictures.machine import (
 )
 from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.stresses import stressed
-from touchdown.master.scene.scene import ComponentSpec
-from touchdown.master.studies.rotor.report import find_rotor
+from touchdown.master.studies.rotor.situations import scene_shaft
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import Shaft
 
@@ -59,11 +58,10 @@ def _view(subject: Subject) -> tuple[SideView, str]:
     if not subject.run.system.attachments:
         raise TouchdownError("nothing is attached to a rotor")
     body = subject.rotor if subject.seats else subject.run.system.attachments[0].body
-    spec = subject.result.scene.components[body]
     if "stress.peak_bending" in subject.run.system.components[body].variables or stressed(
         subject.run.system
     ):
-        shaft = _shaft(subject, spec)
+        shaft = scene_shaft(subject.result.scene, body)
         return _flexible(subject, body, shaft), (
             f"{shaft.title}: {len(shaft.elements)} beam elements, {quantity(shaft.mass, 'kg')}, "
             f"{quantity(float(shaft.positions()[-1]), 'm')} long. Blue: touchdown bearings; orange: "
@@ -71,12 +69,6 @@ def _view(subject: Subject) -> tuple[SideView, str]:
             "unbalances. Where a part states no size, its outline is a symbol."
         )
     return _rigid(subject, body)
-
-
-def _shaft(subject: Subject, spec: ComponentSpec) -> Shaft:
-    """The rotor's file. Raises TouchdownError where it is not there any more."""
-    path = subject.result.scene.folder / spec.fmu
-    return find_rotor(str(path) if spec.fmu.endswith(".toml") and path.is_file() else spec.fmu)
 
 
 def _flexible(subject: Subject, body: str, shaft: Shaft) -> SideView:

@@ -59,8 +59,7 @@ def command_of(scene: Scene) -> str | None:
         for key, value in (("every", spec.every), ("isolate", spec.isolate), ("native", spec.native)):
             if value != getattr(ComponentSpec, key):  # said again where the scene's file says it, too
                 words += ["--set", f"{component}.{key}={str(value).lower()}"]
-        for variable in spec.own:
-            value = spec.preset if variable == "preset" else spec.set[variable]
+        for variable, value in spec.set_beside.items():
             words += ["--set", f"{component}.{variable}={value}"]
     return shlex.join(words)
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 
+from touchdown.master.common.units import spoken
 from touchdown.master.components.component import Variable
-from touchdown.master.report.facts.numbers import RPM, digits, quantity
+from touchdown.master.report.facts.numbers import digits, quantity
 from touchdown.master.report.facts.origins import Origin, origin_of, run_origin
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Block, Folded, Table, Text
+from touchdown.master.scene.run_spec import UNITS
 from touchdown.modelkit.variables import Causality
 
-RUN_UNITS = {"duration": "s", "macro_step": "s", "tolerance": "m", "call_timeout": "s", "impact_step": "s"}
 HEAD = ["Setting", "Value", "Origin", "Meaning"]
 
 
@@ -46,7 +47,7 @@ def _run_value(key: str, value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, (int, float)):
-        return quantity(float(value), RUN_UNITS.get(key, "1"), 6)
+        return quantity(float(value), UNITS.get(key, "1"), 6)
     if isinstance(value, (tuple, list)):
         return ", ".join(str(part) for part in value) or "–"
     return str(value)
@@ -73,4 +74,5 @@ def _component(subject: Subject, name: str, variables: Mapping[str, Variable]) -
 def shown(variable: Variable, value: float) -> str:
     """A setting's value with its unit."""
     text = quantity(float(value), variable.unit or "1", 6)
-    return f"{text} ({digits(RPM * value, 6)} rpm)" if variable.unit == "rad/s" and value else text
+    turns, per = spoken(variable.name, value)
+    return f"{text} ({digits(turns, 6)} {per})" if variable.unit == "rad/s" and value else text

@@ -19,7 +19,6 @@ from touchdown.master.report.contents import CHAPTERS, section
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.page.blocks import Section
 from touchdown.master.results.result import Result
-from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.titles import amended
 
 HERE = Path(__file__).parent
@@ -47,7 +46,7 @@ def report_on(result: Result) -> Page:
     subject = Subject(result)
     return Page(
         kind="Report on a rotor drop",
-        title=amended(result.scene.title, _changes(result.scene)),
+        title=amended(result.scene.title, _changes(subject)),
         headline=headline(subject),
         made=made_now(f"Scene {result.scene.name}"),
         sections=[section(chapter, subject) for chapter in CHAPTERS],
@@ -55,13 +54,12 @@ def report_on(result: Result) -> Page:
     )
 
 
-def _changes(scene: Scene) -> list[str]:
+def _changes(subject: Subject) -> list[str]:
     """What was set beside the scene, which its title may deny."""
-    return [
-        f"{name}.{key} = {spec.preset if key == 'preset' else spec.set[key]}"
-        for name, spec in scene.components.items()
-        for key in spec.own
-    ]
+    components = subject.run.system.components
+    return subject.result.scene.changes(
+        lambda name, key: found.unit if (found := components[name].variables.get(key)) else None
+    )
 
 
 def made_now(of: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import RECORDING, Result
 from touchdown.master.scene.file import SCENE_FILE
 from touchdown.master.scene.restored import restored
+from touchdown.master.scene.tables import is_scene_file
 
 
 def reopened(folder: Path) -> Result:
@@ -21,19 +23,35 @@ def reopened(folder: Path) -> Result:
 
     Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
     """
-    if not folder.is_dir():
+    if os.path.isfile(folder):
+        if is_scene_file(folder) and not (folder.parent / SUMMARY).exists():
+            raise TouchdownError(
+                f"{folder} is a scene; `touchdown run {folder}` first, and give the folder it names"
+            )
+        raise TouchdownError(f"{folder} is a file; give the folder that it lies in, {folder.parent}")
+    if not os.path.isdir(folder):
         raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
     if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
         raise TouchdownError(
             f"{folder} is a machine's folder; `touchdown run {folder}` first, and give the folder it names"
         )
+    runs = sorted(path.parent for path in folder.glob(f"*/{SUMMARY}"))
+    if runs and not (folder / SUMMARY).exists():
+        raise TouchdownError(
+            f"{folder} is no run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
+        )
     summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
     told = _values(folder, ENDING, "an earlier version left it; run the scene again")
     scene = _values(folder, SCENE, "run the scene again")
+    if not (folder / RECORDING).is_file():
+        raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
     try:
         ending, warnings = read_ending(told)
+        ran = restored(scene)
+        if ran.components.keys() != ending.components.keys():
+            raise ValueError(f"{SCENE} has other components than {ENDING}")
         return Result(
-            restored(scene),
+            ran,
             Recording(folder / RECORDING),
             folder,
             summary,
@@ -42,7 +60,9 @@ def reopened(folder: Path) -> Result:
             summary.get("stopped_because", ""),
             warnings,
         )
-    except (KeyError, TypeError, ValueError) as error:
+    except TouchdownError as error:
+        raise TouchdownError(f"{folder}: {error}") from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise TouchdownError(
             f"{folder} is not as a run leaves it ({type(error).__name__}: {error}); run the scene again"
         ) from None

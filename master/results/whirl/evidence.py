@@ -2,29 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 
 from touchdown.master.results.ending import Readable
+from touchdown.master.results.whirl.swings import SWING
+from touchdown.master.results.whirl.told import short_of_one
 from touchdown.master.results.whirl.unbalance import unbalanced
+from touchdown.master.results.whirl.verdict import Verdict
 
 NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn is a hop or two more or less
 MARCHED = "_most_turns_one_way"  # behind the key of a verdict
 CONTACT = "first_contact_time_s"  # begins the key of a bearing's; no value: not yet
+SWUNG = math.degrees(SWING)  # of a pendulum, either way in contact
 SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a whirl nor brakes it
 
 
 def evidence(summary: Mapping[str, object]) -> list[str]:
     """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
-    contacts = [time for key, time in summary.items() if key.startswith(CONTACT)]
-    if contacts and not any(isinstance(time, float) for time in contacts):
+    if not _touched(summary):
         return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
+
+
+def _touched(summary: Mapping[str, object]) -> bool:
+    """Whether any bearing was, as far as bearings tell."""
+    contacts = [time for key, time in summary.items() if key.startswith(CONTACT)]
+    return not contacts or any(isinstance(time, float) for time in contacts)
 
 
 def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
-    if verdicts and unbalanced(system):
+    if verdicts and _touched(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
 
 
@@ -35,10 +45,23 @@ def _rests_on(summary: Mapping[str, object], seat: str) -> str:
     if turns > 0.0:
         said = f"the contact went round {turns:.3g} times{_driven(summary[f'{seat}_force_phase_deg'])}"
     else:
-        resting = "" if marched < 1.0 else " and back, or with rests"
-        said = f"the contact went {marched:.2g} of a turn one way at most{resting}; a whirl takes 1"
+        said = f"{_swings(str(summary[seat]))}; {_went(marched)}, and a whirl takes 1"
     edge = ", so it is near the edge" if NEAR[0] <= (turns or marched) <= NEAR[1] else ""
     return f"{seat}: {summary[seat]}: {said}{edge}"
+
+
+def _swings(words: str) -> str:
+    """What makes a pendulum, or that it is not there: a contact that goes far one way may not come back."""
+    if words.startswith(Verdict.PENDULUM):
+        return f"the contact swung either way by {SWUNG:g} deg or more"
+    return f"the contact did not swing either way by {SWUNG:g} deg"
+
+
+def _went(marched: float) -> str:
+    """How far the contact went one way."""
+    if marched < 1.0:
+        return f"it went {short_of_one(marched)} of a turn one way at most"
+    return f"it went {marched:.3g} turns one way at most and back, or with rests"
 
 
 def _driven(phase: object) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from touchdown.master.results.whirl.contacts import FOLLOWED, TURN, March, Orbit, wrapped
 from touchdown.master.results.whirl.stretches import stretches
+from touchdown.master.results.whirl.told import short_of_one
 from touchdown.master.results.whirl.turning import BACK, Turning
 
 LOOPS = 2.0 * TURN  # a bounce or two may chance to circle the centre once
@@ -22,7 +22,7 @@ def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
     best = max((t for t in turnings if not t.creeps), key=lambda t: t.turns, default=None)
     if best is None:
         return ""
-    return f"near miss: {math.floor(10.0 * best.turns) / 10.0:.1f} turn {best.direction(spin)}"
+    return f"near miss: {short_of_one(best.turns)} turn {best.direction(spin)}"
 
 
 def on_circling(orbit: Orbit, marches: Sequence[March]) -> str:

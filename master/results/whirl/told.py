@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from enum import StrEnum
 
@@ -14,6 +15,15 @@ class Kind(StrEnum):
     SETTLES = "settles"
     TRANSIENT = "transient whirl"
     SUSTAINED = "sustained whirl"
+
+
+def short_of_one(turns: float) -> str:
+    """Turns below one, two digits behind the point, rounded down: never told as the whole one of a whirl.
+
+    >>> short_of_one(0.996), short_of_one(0.29)
+    ('0.99', '0.29')
+    """
+    return f"{math.floor(100.0 * turns + 1e-9) / 100.0:.2f}"
 
 
 def whirling(summary: Mapping[str, object]) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
-from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
 
-SHOWN = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (57.29577951308232, "deg"), "1": (1.0, "")}
+SHOWN = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
 MICRO = ("play",)  # in um
 CLOSE = 1e-6  # m, of a bore asked for
 
@@ -28,8 +29,11 @@ def find_bearing(name: str, folder: Path) -> Bearing:
     try:
         return catalogue.bearing(catalogue.reference(name, folder))
     except CatalogueError as error:
-        remedy = f"; {one_of(name, error.known)}" if error.known else ""
-        raise TouchdownError(f"{error}{remedy}") from None
+        if error.known and ":" not in name:
+            raise TouchdownError(
+                f"there is no bearing {name}; {one_of(name, error.known)}; `touchdown catalogue` lists them"
+            ) from None
+        raise TouchdownError(with_remedy(error, name, error.known)) from None
 
 
 def described(bearing: Bearing) -> str:

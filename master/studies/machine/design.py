@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from touchdown.bearings.catalogue import Bearing
 from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.scene.plausible import FAST, MOST_BORE_SPEED, RPM
 from touchdown.master.studies.rotor.report import pulling
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft
@@ -19,13 +20,10 @@ from touchdown.rotor.modal.modes import RIGID, basis
 from touchdown.rotor.statics import at_rest
 
 GRAVITY = 9.81  # m/s2
-RPM = 2.0 * math.pi / 60.0
 LEVITATION = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
 LEVITATION_DAMPING = 0.3  # ratio
 FORCE = 6.0  # limit of a magnetic bearing's force over the static load
-FAST = 1.5  # times the speed of the rule; above, it is said
 BELOW_BENDING = 0.7  # speed over the first bending frequency
-MOST_BORE_SPEED = 1e3  # m rpm, bore times speed
 CONTACT = 6e10  # N/m^(10/9) per m of width, journal in ring
 HOUSING_SHARE = 0.15  # housing over what it carries
 LEAST_HOUSING = 2.0  # kg
@@ -73,11 +71,17 @@ class Design:
     def notes(self) -> list[str]:
         """What the user is to know of it, one line each."""
         told = pulling({f"at rest {s.component}": s.load for s in self.touchdown})
+        for s, bearing in zip(self.touchdown, self.bearings, strict=True):
+            if abs(s.load) > (limit := bearing.capacity().static):
+                told.append(
+                    f"{s.component} bears {1e-3 * abs(s.load):.3g} kN at rest, more than the static rating "
+                    f"of {bearing.designation}, C0 = {1e-3 * limit:.3g} kN"
+                )
         usual = sensible_speed(self.bending, self.bearings)
         if self.speed > FAST * usual:
             told.append(
-                f"speed = {self.speed / RPM:.5g} rpm is more than such a machine runs "
-                f"({usual / RPM:.5g} rpm by the rule); a number without a unit is in rad/s"
+                f"speed = {self.speed / RPM:.0f} rpm is more than such a machine runs "
+                f"({usual / RPM:.0f} rpm by the rule); a number without a unit is in rad/s"
             )
         return told
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue import OWN_FILE, Bearing, CatalogueError
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
+from touchdown.master.common.files import holds, writing_to
 from touchdown.master.scene.file import SCENE_FILE
 from touchdown.master.studies.machine.bearings import find_bearing
 from touchdown.master.studies.machine.design import (
@@ -77,7 +77,7 @@ def machine(wanted: Wanted, title: str) -> Machine:
     if wanted.mass is None:
         raise TouchdownError('--rotor FILE.toml, or --mass such as "60 kg" of a rigid one, is missing')
     design = _rigid(wanted, wanted.mass, title, places)
-    return Machine(places.files | {SCENE_FILE: scene_text(design)})
+    return Machine(places.files | {SCENE_FILE: scene_text(design)}, design.notes())
 
 
 def write(made: Machine, folder: Path, force: bool) -> Path:
@@ -88,21 +88,16 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
     if folder.exists() and not folder.is_dir():
         raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
     for name, text in made.files.items():
-        if not force and (folder / name).exists() and not _holds(folder / name, text):
-            raise TouchdownError(f"{folder / name} is there already; choose another folder, or --force")
+        if not force and (folder / name).exists() and not holds(folder / name, text):
+            raise TouchdownError(
+                f"{folder / name} is there already; choose another folder, or --force (in Python, "
+                "force=True)"
+            )
     with writing_to(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in made.files.items():
             (folder / name).write_text(text, encoding="utf-8")
     return folder / SCENE_FILE
-
-
-def _holds(path: Path, text: str) -> bool:
-    """Whether a file is what it is to become."""
-    try:
-        return path.read_text(encoding="utf-8") == text
-    except (OSError, UnicodeDecodeError):
-        return False
 
 
 class _Bearings:
@@ -158,7 +153,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         title=shaft.title,
         mass=shaft.mass,
         inertia=None,
-        modes=min(MOST_KEPT, 2 * shaft.nodes),
+        modes=min(MOST_KEPT, shaft.coordinates),
         bending=bending,
         speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
         clearance=_checked_clearance(wanted.clearance, kinds),
@@ -215,9 +210,16 @@ def _of_rotor(shaft: Shaft, design: Design) -> list[str]:
     for support, bearing in zip(design.touchdown, design.bearings, strict=True):
         node = shaft.node(support.station)
         around = shaft.elements[max(node - 2, 0) : node]
-        thickest = max(element.widest for element in around)
+        widths = [element.widest for element in around] or [0.0]  # a superelement's are not known
+        thickest, thinnest = max(widths), min(widths)
         room = bearing.bore - 2.0 * design.clearance
-        if thickest > room + ROUNDING:
+        if thinnest > bearing.bore + ROUNDING:
+            notes.append(
+                f"{bearing.designation} cannot be mounted at {support.station}: its bore is "
+                f"{1e3 * bearing.bore:g} mm, the rotor {1e3 * thinnest:g} mm thick there; choose a wider "
+                "one (`touchdown catalogue`), or turn the shaft down"
+            )
+        elif thickest > room + ROUNDING:
             notes.append(
                 f"the rotor is {1e3 * thickest:g} mm thick at {support.station}, more than the bore of "
                 f"{bearing.designation} less the clearance, {1e3 * room:g} mm; its journal is taken to fit"

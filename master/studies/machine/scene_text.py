@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 
 from touchdown.bearings.catalogue import Bearing
+from touchdown.master.scene.plausible import MOST_BORE_SPEED, RPM
 from touchdown.master.studies.machine.design import (
     BELOW_BENDING,
     CONTACT,
@@ -18,8 +19,6 @@ from touchdown.master.studies.machine.design import (
     LEAST_HOUSING,
     LEVITATION,
     LEVITATION_DAMPING,
-    MOST_BORE_SPEED,
-    RPM,
     Design,
     rounded,
 )

@@ -179,7 +179,8 @@ def _rotor(scene: Scene) -> str:
         rotors = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
     if not rotors:
         raise TouchdownError(
-            f"scene {scene.name} has no flexible rotor: no component has the parameters modes and residual"
+            f"scene {scene.name} has no flexible rotor with stresses: no component has the parameters "
+            f"{', '.join(BASIS)}"
         )
     if len(rotors) > 1:
         raise TouchdownError(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +15,10 @@ from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from touchdown.master.studies.rotor.held_figure import held_campbell
 from touchdown.rotor.beams.element import Element
 from touchdown.rotor.beams.shaft import PointMass, Shaft
+from touchdown.rotor.modal.campbell import Held
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait
 
@@ -31,17 +35,22 @@ FLATTEST, HIGHEST = 0.2, 0.4  # height over width of a side view
 SHAPE = 0.78  # of a side view's half height: a shape's 1
 
 
-def draw_pictures(portrait: Portrait, folder: Path) -> list[Path]:
-    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`."""
+def draw_pictures(portrait: Portrait, folder: Path, held: Mapping[str, tuple[Held, str]]) -> list[Path]:
+    """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`.
+
+    held: Campbell diagrams in bearings and their titles, by the names of their pictures.
+    """
     pictures = {"campbell": campbell, "modes": modes}
     if portrait.critical:
         pictures["critical"] = critical
     if portrait.rest is not None:
         pictures["rest"] = rest
+    drawn = {name: partial(picture, portrait=portrait) for name, picture in pictures.items()}
+    drawn |= {name: partial(held_campbell, held=one, title=title) for name, (one, title) in held.items()}
     made: list[Path] = []
-    for name, picture in pictures.items():
+    for name, picture in drawn.items():
         figure = sheet()
-        picture(figure, portrait)
+        picture(figure)
         made.append(folder / f"{name}.png")
         figure.savefig(made[-1], dpi=110)
     return made
@@ -76,8 +85,8 @@ def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
 def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Undamped critical speeds [rpm] over the stiffness of the supports [N/m], for each way it is held.
 
-    Dashed: the shaft's own supports there, with dots for its critical speeds on them; grey: the first of
-    the portrait's speeds.
+    Dashed: the shaft's own supports there, with dots for its critical speeds on them, or dotted lines where
+    the planes differ; grey: the first of the portrait's speeds.
     """
     panels = sized(figure, 9.0, 1.0 + 4.2 * len(portrait.critical)).subplots(
         len(portrait.critical), 1, squeeze=False
@@ -90,9 +99,13 @@ def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
             for value in {support.stiffness, support.stiffness_y or support.stiffness}:
                 label = f"{where}: {value:.3g} N/m"
                 axes.axvline(value, color=ORANGE, lw=1.0, ls="--", label=label)
-        if len(found.own):
+        label = "critical speeds on these supports"
+        if any(s.stiffness_y not in (None, s.stiffness) for s in found.marked):  # no place on the scale
+            for number, own in enumerate(found.own):
+                given = label if number == 0 else None
+                axes.axhline(RPM * own, color=ORANGE, lw=1.0, ls=":", label=given)
+        elif len(found.own):
             middle = math.exp(np.mean([math.log(s.stiffness) for s in found.marked]))
-            label = "critical speeds on these supports"
             axes.plot(
                 np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
             )
@@ -138,31 +151,32 @@ def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
 def rest(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats.
 
-    Only for a portrait with `rest`.
+    Only for a portrait with `rest`; a superelement has no stress.
     """
     shaft, lying = portrait.shaft, portrait.rest
     assert lying is not None
     position = MM * shaft.positions()
     view_height = _window(shaft).height
-    sized(figure, WIDTH, 7.0 + view_height)
-    ratios = (view_height, 2.8, 2.8)
-    view, deflection, bending = figure.subplots(3, 1, sharex=True, height_ratios=ratios)
+    curves = [("deflection, upwards [µm]", position, 1e6 * lying.deflection, BLUE)]
+    title = f"{shaft.title} at rest on its touchdown seats, rigidly held"
+    if len(lying.bending):
+        curves.append(("bending stress [MPa]", MM * lying.position, 1e-6 * lying.bending, ORANGE))
+        title += "; sagging is positive stress"
+    sized(figure, WIDTH, 1.4 + 2.8 * len(curves) + view_height)
+    ratios = (view_height, *(2.8 for _ in curves))
+    view, *panels = figure.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)
     side_view(view, shaft, named=True)
     _supports(view, shaft)
     _to_scale(view, shaft)
-    deflection.plot(position, 1e6 * lying.deflection, ".-", color=BLUE, lw=1.4, ms=4)
-    deflection.set_ylabel("deflection, upwards [µm]")
-    bending.plot(MM * lying.position, 1e-6 * lying.bending, ".-", color=ORANGE, lw=1.4, ms=4)
-    bending.set_ylabel("bending stress [MPa]")
-    bending.set_xlabel(AXIS)
-    for axes in (deflection, bending):
+    for axes, (label, places, values, colour) in zip(panels, curves, strict=True):
+        axes.plot(places, values, ".-", color=colour, lw=1.4, ms=4)
+        axes.set_ylabel(label)
         axes.axhline(0.0, color=GREY, lw=0.5)
         for node in sorted(set(seats(shaft))):
             axes.axvline(position[node - 1], color=GREY, lw=0.6, ls="--")
-    figure.suptitle(
-        f"{shaft.title} at rest on its touchdown seats, rigidly held; sagging is positive stress"
-    )
-    return [view, deflection, bending]
+    panels[-1].set_xlabel(AXIS)
+    figure.suptitle(title)
+    return [view, *panels]
 
 
 @dataclass(frozen=True)
@@ -181,7 +195,7 @@ class _Window:
 
 def _window(shaft: Shaft) -> _Window:
     length = MM * float(shaft.positions()[-1])
-    radius = 0.5 * MM * max(e.widest for e in shaft.elements)
+    radius = 0.5 * MM * max((e.widest for e in shaft.elements), default=0.0)
     radius = max(radius, *(0.5 * MM * _disc(point, shaft)[0] for point in shaft.points), 0.0)
     half = max(0.52 * length, BEYOND * radius / HIGHEST)
     reach = max(BEYOND * radius, FLATTEST * half)
@@ -195,7 +209,10 @@ def _stack(figure: FigureBase, shaft: Shaft, count: int) -> list[Axes]:
 
 
 def side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
-    """Outlines of the elements and discs in mm, to scale; places by name."""
+    """Outlines of the elements and discs in mm, to scale; places by name.
+
+    Of a superelement, which has no outline, the nodes on the axis.
+    """
     position = MM * shaft.positions()
     for at, e in zip(position, shaft.elements, strict=False):
         for layer in reversed(e.layers):
@@ -207,7 +224,12 @@ def side_view(axes: Axes, shaft: Shaft, named: bool) -> None:
             _cone(axes, at, e, 1, "white")
     _draw_points(axes, shaft)
     axes.axhline(0.0, color=EDGE, lw=0.5, ls="-.")
-    axes.set_ylabel("radius [mm]")
+    if shaft.elements:
+        axes.set_ylabel("radius [mm]")
+    else:
+        axes.plot(position, np.zeros_like(position), ".", color=EDGE, ms=4)
+        axes.set_yticks([])
+        axes.set_ylabel("no outline")
     if named:
         _names(axes, shaft)
 
@@ -250,7 +272,7 @@ def _supports(axes: Axes, shaft: Shaft) -> None:
     position = MM * shaft.positions()
     for node in sorted(set(seats(shaft))):
         touching = shaft.elements[max(node - 2, 0) : node]
-        radius = 0.5 * MM * max(e.widest for e in touching)
+        radius = 0.5 * MM * max((e.widest for e in touching), default=0.0)
         axes.plot(position[node - 1], -radius, marker=6, color=GREEN, ms=11)
 
 

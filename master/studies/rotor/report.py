@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -11,6 +12,9 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.results.run import make_writable
+from touchdown.master.scene.file import shipped as scenes
+from touchdown.master.scene.tables import is_of_ross, is_scene_file, mistake_in
+from touchdown.master.studies.rotor.held_table import held_lines
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find, shipped
@@ -24,8 +28,13 @@ SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 BEYOND = 2.0  # times the speed asked for: its end
-HELD = 8  # modes told of on supports
-PLANAR = 0.1  # of a circle's turning; below, a whirl is told as planar
+FOREIGN = {  # what files of others hold
+    **dict.fromkeys((".csv", ".tsv", ".txt"), "a table of sections"),
+    **dict.fromkeys((".toml", ".json"), "ROSS's files"),
+    ".npz": "matrices or modal data",
+    ".mtx": "the matrices in that folder",
+}
+ANY = "a table of sections, of ROSS's files, of matrices or modal data"
 TO_REST = (
     "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
 )
@@ -56,7 +65,11 @@ def report(
     make_writable(folder)
     from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
 
-    return Report(report_text(portrait), draw_pictures(portrait, folder))
+    held = {}
+    if portrait.held is not None:
+        title = f"{portrait.shaft.title} {on_supports(portrait)}"
+        held["campbell_supports"] = portrait.held, title
+    return Report(report_text(portrait), draw_pictures(portrait, folder, held))
 
 
 def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
@@ -87,12 +100,45 @@ def find_rotor(name: str) -> Shaft:
     try:
         return find(name)
     except ModelError as error:
-        raise TouchdownError(str(error)) from None
+        path = Path(name)
+        if is_scene_file(path):
+            raise TouchdownError(
+                f"{path} is a scene, no rotor's file; `touchdown scenes {path}` says which its rotor is"
+            ) from None
+        raise TouchdownError(_foreign(path) or mistake_in(path, error)) from None
     except LookupError:
-        known = shipped()
+        if name in scenes():
+            raise TouchdownError(
+                f"{name} is a scene, no rotor; `touchdown scenes {name}` says which its rotor is; rotors: "
+                f"{', '.join(shipped())}"
+            ) from None
+        if told := _foreign(Path(name)):
+            raise TouchdownError(told) from None
+        known = _nearest(name)
         raise TouchdownError(
             f"there is no rotor called {name}; {one_of(name, known)}, or give the path of a rotor's .toml"
         ) from None
+
+
+def _nearest(name: str) -> list[str]:
+    """Rotors that begin so; or all, and the scenes where a name is like one of theirs."""
+    if begun := [rotor for rotor in shipped() if rotor.startswith(name)]:
+        return begun
+    like = one_of(name, scenes()).startswith("did you mean")
+    return [*shipped(), *(scenes() if like else ())]
+
+
+def _foreign(path: Path) -> str:
+    """What to do with a file or folder that `import-rotor` may read; "" of others."""
+    kind, source = path.suffix.lower(), path
+    if not os.path.exists(path) or (kind == ".toml" and not is_of_ross(path)):
+        return ""
+    if path.is_dir() and not any(path.glob("*.mtx")):
+        return ""
+    of = "its matrices" if path.is_dir() else FOREIGN.get(kind, ANY)
+    if kind == ".mtx":
+        source = path.parent
+    return f"{path} is no rotor's file; `touchdown import-rotor {source}` makes one of {of}"
 
 
 def report_text(portrait: Portrait) -> str:
@@ -120,10 +166,20 @@ def _body(shaft: Shaft) -> list[tuple[str, str]]:
         ("centre of mass", f"{1e3 * shaft.centre_of_mass:.5g} mm from node 1"),
         ("polar inertia", f"{shaft.polar_inertia:.5g} kg.m2"),
         ("diametral inertia", f"{shaft.diametral_inertia:.5g} kg.m2, about the centre of mass"),
-        ("elements", f"{len(shaft.elements)}"),
-        ("nodes", f"{shaft.nodes}"),
-        ("discs and point masses", f"{len(shaft.points)}"),
+        *_made_of(shaft),
         ("damping ratio", f"{shaft.damping_ratio:g}"),
+    ]
+
+
+def _made_of(shaft: Shaft) -> list[tuple[str, str]]:
+    """Elements and what sits on them, or the superelement in their place."""
+    nodes = ("nodes", f"{shaft.nodes}")
+    if not shaft.elements:
+        return [("made of", f"{shaft.body.kind}; no diameters, so no stresses and no outline"), nodes]
+    return [
+        ("elements", f"{len(shaft.elements)}"),
+        nodes,
+        ("discs and point masses", f"{len(shaft.points)}"),
     ]
 
 
@@ -160,18 +216,12 @@ def _frequencies(portrait: Portrait) -> list[str]:
 
 def _held(portrait: Portrait) -> list[str]:
     """Modes on the shaft's own supports."""
-    if portrait.held is None:
-        return []
-    lines = [f"  on its {len(portrait.shaft.supports)} supports at {RPM * portrait.speeds[0]:.6g} rpm",
-             f"  {'mode':<12}  {'[Hz]':>12}  {'damping ratio':>14}  {'whirl':>14}"]  # fmt: skip
-    held = portrait.held
-    for k in range(min(HELD, len(held.roots))):
-        sense = (
-            "planar" if abs(held.sense[k]) < PLANAR else "forward" if held.sense[k] > 0.0 else "backward"
-        )
-        damping = round(held.damping_ratios[k], 4) + 0.0  # never -0
-        lines.append(f"  {k + 1:<12}  {held.frequencies[k]:12.2f}  {damping:14.4f}  {sense:>14}")
-    return [*lines, ""]
+    return [] if portrait.held is None else list(held_lines(portrait.held, on_supports(portrait)))
+
+
+def on_supports(portrait: Portrait) -> str:
+    """How the rotor is held by its own supports, in words."""
+    return f"on its {len(portrait.shaft.supports)} supports"
 
 
 def _critical(found: CriticalMap) -> list[str]:
@@ -194,7 +244,6 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
              for node in sorted(set(seats(shaft)))]  # fmt: skip
     forces = ", ".join(f"{n} {f:.4g} N" for n, f in zip(names, rest.reactions, strict=True))
     lowest, highest = int(np.argmin(rest.deflection)), int(np.argmax(rest.deflection))
-    worst = int(np.argmax(np.abs(rest.bending)))
     return [
         "  lying on its seats, rigidly held",
         *_two_columns(
@@ -202,12 +251,22 @@ def _rest(shaft: Shaft, rest: Rest | None) -> list[str]:
                 ("reactions", forces),
                 ("deflection up", f"{1e6 * rest.deflection[lowest]:.3g} µm at node {lowest + 1} to "
                                f"{1e6 * rest.deflection[highest]:.3g} µm at node {highest + 1}"),
-                ("bending stress", f"{1e-6 * rest.bending[worst]:.3g} MPa at node {rest.node[worst]}"),
-                ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
+                *_lying_stresses(rest),
             ]
         ),
         *(f"  {line}" for line in pulling(dict(zip(names, rest.reactions.tolist(), strict=True)))),
     ]  # fmt: skip
+
+
+def _lying_stresses(rest: Rest) -> list[tuple[str, str]]:
+    """The largest, where there are any."""
+    if not len(rest.bending):
+        return []
+    worst = int(np.argmax(np.abs(rest.bending)))
+    return [
+        ("bending stress", f"{1e-6 * rest.bending[worst]:.3g} MPa at node {rest.node[worst]}"),
+        ("shear stress", f"up to {1e-6 * np.max(np.abs(rest.shear)):.3g} MPa"),
+    ]
 
 
 def pulling(reactions: Mapping[str, float]) -> list[str]:

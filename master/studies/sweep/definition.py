@@ -24,10 +24,12 @@ from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import UNITS
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.design import Design
+from touchdown.master.studies.sweep.design import Design, numbers_of
 
 FILE = "sweep.json"
-UNSAID = ("name", "title", "about", "folder")  # of a scene: they change no number
+UNSAID = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
+TOLD = ("about", "values", "changes", "run_changes")  # of a definition: the same
+NEEDED = ("name", "title", "run", "components")  # of a scene, by what reads a sweep
 OF_COMPONENT = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
 SAID = 3  # differences that are told
 
@@ -55,11 +57,13 @@ class Definition:
     points: Sequence[Sequence[object]]  # as they were given, by column
     values: Sequence[Sequence[object]]  # the same in SI, or as words
     part: tuple[int, int]  # (2, 8): it runs every eighth point from the second on
+    changes: tuple[str, ...]  # what was set in components beside the scene, for people
+    run_changes: tuple[str, ...]  # the same, in [run]
 
     @property
     def numbers(self) -> range:
         """Of the points that it runs, from 1."""
-        return range(self.part[0], len(self.points) + 1, self.part[1])
+        return numbers_of(self.part, len(self.points))
 
     @property
     def whole(self) -> Definition:
@@ -96,6 +100,7 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
             for name, settings in zip(design.names, targets, strict=True)
         ]
         values = _values(first, system, columns, design)
+        changes = scene.changes(lambda component, key: system.components[component].variable(key).unit)
     plain = json.loads(json.dumps(scene.resolved(), default=str))
     return Definition(
         version=VERSION,
@@ -108,6 +113,8 @@ def define(scene: Scene, design: Design, in_process: bool) -> Definition:
         points=design.points,
         values=values,
         part=design.part,
+        changes=tuple(changes),
+        run_changes=tuple(scene.run_changes()),
     )
 
 
@@ -117,9 +124,7 @@ def origins(scene: Scene) -> dict[str, str]:
     for name, spec in scene.components.items():
         source = locate(spec.fmu, scene.folder)
         found[name] = _content(source) if isinstance(source, Path) else source.content
-        file, _, _ = (spec.preset or "").rpartition(":")  # a catalogue of the user's own
-        if file:
-            found[name] += _content(scene.folder / file)
+        found[name] += "".join(_own_catalogue(scene, spec.preset).values())
     return found
 
 
@@ -130,11 +135,15 @@ def _varied_catalogues(scene: Scene, columns: Sequence[Column], design: Design) 
         component, _, variable = column.settings[0].partition(".")
         if variable == "preset":
             for value in dict.fromkeys(str(point[place]) for point in design.points):
-                preset = scene.set({f"{component}.preset": value}).components[component].preset or ""
-                file, _, _ = preset.rpartition(":")
-                if file:
-                    found[Path(file).name] = _content(scene.folder / file)
+                varied = scene.set({f"{component}.preset": value}).components[component]
+                found |= _own_catalogue(scene, varied.preset)
     return found
+
+
+def _own_catalogue(scene: Scene, preset: str | None) -> dict[str, str]:
+    """By name, a hash over the user's own catalogue that a preset is from; nothing of another one."""
+    file, _, _ = (preset or "").rpartition(":")
+    return {Path(file).name: _content(scene.folder / file)} if file else {}
 
 
 def _content(path: Path) -> str:
@@ -158,10 +167,10 @@ def _targets(scene: Scene, design: Design) -> list[tuple[str, ...]]:
 
 def _matching(scene: Scene, name: str) -> list[str]:
     """The settings that a name with * or ? means; another name means itself."""
-    component, dot, variable = name.partition(".")
-    components = scene.matching(component)
+    component, _, variable = name.partition(".")
     if not any(sign in variable for sign in "*?"):
-        return [f"{one}{dot}{variable}" for one in components]
+        return scene.meant(name)
+    components = scene.matching(component)
     known = [full for full in _settable(scene) if full.partition(".")[0] in components]
     found = fnmatch.filter(known, name)
     if not found:
@@ -228,7 +237,10 @@ def read_definition(folder: Path) -> Definition:
     try:
         given = json.loads(path.read_text(encoding="utf-8"))
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
-        return Definition(**{**given, "columns": tuple(columns), "part": tuple(given["part"])})
+        if absent := [key for key in NEEDED if key not in given["scene"]]:
+            raise KeyError(absent[0])
+        lists = {key: tuple(given[key]) for key in ("part", "changes", "run_changes")}
+        return Definition(**{**given, **lists, "columns": tuple(columns)})
     except FileNotFoundError:
         raise TouchdownError(f"there is no sweep in {folder}: it has no {FILE}") from None
     except OSError as error:
@@ -262,7 +274,8 @@ def _compared(definition: Definition) -> dict[str, Any]:
     """All of it that changes a number, as JSON has it."""
     plain = cast(dict[str, Any], json.loads(json.dumps(asdict(definition), default=str)))
     scene, columns = plain.pop("scene"), plain.pop("columns")
-    del plain["about"], plain["values"]
+    for told in TOLD:
+        del plain[told]
     points, part = plain.pop("points"), plain.pop("part")
     for component in scene["components"].values():
         del component["own"]  # where a value was given changes no number

@@ -108,7 +108,8 @@ class Design:
     def shard(self, number: int, of: int) -> Design:
         """Every point whose turn it is when `of` take turns, for the one of that `number`, from 1."""
         if not 1 <= number <= of:
-            raise TouchdownError(f"shard {number} of {of}: write 1 to {of}, such as 3/8")
+            numbers = f"1/{of} to {of}/{of}" if of > 0 else "K/N with N above 0"
+            raise TouchdownError(f"shard {number} of {of}: write {numbers}, such as 3/8")
         if number > len(self.points):
             raise TouchdownError(f"shard {number} of {of} has no point: there are {len(self.points)}")
         return replace(self, part=(number, of))
@@ -116,8 +117,7 @@ class Design:
     @property
     def numbers(self) -> range:
         """Of the points that are its own, from 1."""
-        number, of = self.part
-        return range(number, len(self.points) + 1, of)
+        return numbers_of(self.part, len(self.points))
 
     def point(self, number: int) -> dict[str, object]:
         """Values by setting."""
@@ -133,6 +133,12 @@ class Design:
         _refuse_too_many(len(self.points) * len(other.points))
         points = tuple(mine + theirs for mine in self.points for theirs in other.points)
         return Design(self.names + other.names, points, f"{self.about}; {other.about}")
+
+
+def numbers_of(part: tuple[int, int], count: int) -> range:
+    """Of the points, from 1, that a part such as (2, 8) has of `count` points."""
+    number, of = part
+    return range(number, count + 1, of)
 
 
 def designed(variations: Design | Mapping[str, object] | Iterable[Mapping[str, object]]) -> Design:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,7 @@ class Member:
     ended: Ended = Ended.COMPLETED
     kept: bool = False  # whether it had ended before, and was not run again
     seconds: float | None = None  # wall time of its run
+    warnings: Sequence[str] = ()  # what is to be said beside its figures
 
 
 @dataclass(frozen=True)
@@ -97,6 +98,7 @@ def _line(member: Member) -> bytes:
         "failed": member.failed,
         "figures": dict(member.summary),
         "seconds": member.seconds,
+        "warnings": list(member.warnings),
     }
     return (json.dumps(given) + "\n").encode()
 
@@ -126,6 +128,7 @@ def _member(line: bytes, settings: Mapping[int, Mapping[str, object]]) -> Member
             Ended(given["ended"]),
             kept=True,
             seconds=given["seconds"],
+            warnings=tuple(given.get("warnings", ())),  # earlier versions did not write them
         )
     except (ValueError, TypeError, KeyError):
         return None

@@ -15,7 +15,7 @@ from touchdown.master.studies.sweep.journal import Member
 from touchdown.master.studies.sweep.variation import number_and_unit
 
 MOST_ROWS = 40  # shown; all are in the file
-MOST_REASONS = 5  # why members failed
+MOST_REASONS = 5  # why members failed, or are warned of
 
 PICKS = (  # shown beside the verdicts where none are asked for
     "whirl_*_revolutions",
@@ -44,7 +44,8 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
     """How many members have each verdict, the most frequent first."""
     lines = []
     for key in verdict_keys(members):
-        counts = Counter(str(m.summary[key]) for m in members if m.summary.get(key) is not None)
+        words = (str(m.summary[key]) for m in members if m.summary.get(key) is not None)
+        counts = Counter(said.partition(":")[0] for said in words)  # near misses, whatever they miss by
         lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
     return lines
 
@@ -69,14 +70,26 @@ def report_lines(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[
     lines = [table(members, figures), *verdict_lines(members)]
     if why := failures(members):
         lines += ["failed:", *why]
+    if said := warned(members):
+        lines += ["warnings:", *said]
     return lines, complaints
 
 
 def failures(members: Sequence[Member]) -> list[str]:
     """Why members failed, the most frequent reasons first, each with the first member that has it."""
-    counts = Counter(m.failed for m in members if m.failed)
-    first = {m.failed: m.number for m in reversed(members)}
-    lines = [f"  {n} x {why} (member {first[why]})" for why, n in counts.most_common(MOST_REASONS)]
+    return _most_frequent([(m.number, m.failed) for m in members if m.failed])
+
+
+def warned(members: Sequence[Member]) -> list[str]:
+    """What runs warn of, the most frequent first, each with the first member that does."""
+    return _most_frequent([(m.number, warning) for m in members for warning in m.warnings])
+
+
+def _most_frequent(said: Sequence[tuple[int, str]]) -> list[str]:
+    """Of members' numbers and what is said of them: a line each, how often, and of whom first."""
+    counts = Counter(what for _, what in said)
+    first = {what: number for number, what in reversed(said)}
+    lines = [f"  {n} x {what} (member {first[what]})" for what, n in counts.most_common(MOST_REASONS)]
     return (
         lines
         if len(counts) <= MOST_REASONS

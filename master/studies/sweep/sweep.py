@@ -87,6 +87,10 @@ def sweep(
         raise TouchdownError(f"a sweep needs at least one job, not {running.jobs}")
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     asked = define(scene, design, running.in_process)
+    if running.cluster:  # before there is anything of the sweep in its folder
+        from touchdown.master.common.processes.cluster import reach
+
+        reach(running.cluster)
     with claimed(folder):
         lines = _opened(folder, asked, running)
         tasks = _Tasks(asked, scene, folder, running, [])
@@ -214,5 +218,11 @@ def _run_task(task: Task) -> Member:
         (folder / RECORDING).unlink(missing_ok=True)
     seconds = time.perf_counter() - begun
     return Member(
-        task.number, task.settings, result.summary, result.stopped_because, result.ended, seconds=seconds
+        task.number,
+        task.settings,
+        result.summary,
+        result.stopped_because,
+        result.ended,
+        seconds=seconds,
+        warnings=tuple(result.warnings),
     )

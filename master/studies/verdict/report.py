@@ -131,7 +131,7 @@ def _nearest(circle: Circle, phase: float, spacing: float) -> str:
     if phase in strays(circle.verdicts):
         return "a stray, alone among others"
     if not known:
-        return "and no edge anywhere"
+        return f"and no edge between the phases run, {spacing:g} deg apart"
     edge = min(known, key=lambda e: distance(e.middle, phase))
     away = distance(edge.middle, phase)
     if away < spacing:

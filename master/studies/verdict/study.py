@@ -47,8 +47,11 @@ class Plan:
     def __post_init__(self) -> None:
         for name, value in (("grid", self.spacing), ("resolution", self.resolution)):
             if not LEAST <= value <= 0.5 * CIRCLE:
+                meant = math.radians(value)  # what a number without a unit was
+                if value < LEAST or meant > 0.5 * CIRCLE:
+                    meant = GRID
                 raise TouchdownError(
-                    f'{name} = {value:g} deg must be from {LEAST} to 180 deg; write "12 deg"'
+                    f'{name} = {value:g} deg must be from {LEAST} to 180 deg; write "{meant:g} deg"'
                 )
         if self.resolution > self.spacing:
             raise TouchdownError(
@@ -72,6 +75,7 @@ class Study:
     plan: Plan
     phase: float  # deg, the scene's own: the angle of the first rotor's unbalance at the start
     circles: Sequence[Circle]
+    remarks: Sequence[str] = ()  # what is to be said of the scene before it runs
 
     @property
     def reference(self) -> Circle | None:
@@ -109,7 +113,7 @@ def study_verdict(
     """
     if running.jobs < 1:
         raise TouchdownError(f"a study needs at least one job, not {running.jobs}")
-    angles = _angles(scene)
+    angles, remarks = _looked_at(scene)
     own = turned(next(iter(angles.values())), 0.0)
     stepped = [_with_step(scene, step) for step in plan.macro_steps or (scene.run.macro_step,)]
     if plan.reference is not None:
@@ -131,11 +135,14 @@ def study_verdict(
         if any(circle.interrupted for circle in circles):
             break
         wanted = [refinement(c.verdicts, c.members, plan.resolution) for c in circles]
-    return Study(scene, plan, own, circles)
+    return Study(scene, plan, own, circles, remarks)
 
 
-def _angles(scene: Scene) -> dict[str, float]:
-    """The angle (deg) of every unbalanced rotor. Raises TouchdownError where a study makes no sense."""
+def _looked_at(scene: Scene) -> tuple[dict[str, float], Sequence[str]]:
+    """The angle (deg) of every unbalanced rotor, and what is to be said of the scene.
+
+    Raises TouchdownError where a study makes no sense.
+    """
     with opened(scene, in_process=True) as system:
         if not any(f"{a.bearing}.clearance" in system for a in touchdown_seats(system)):
             raise TouchdownError(
@@ -146,7 +153,7 @@ def _angles(scene: Scene) -> dict[str, float]:
     if angles:
         with opened(scene.set(_turned(angles, 0.25 * CIRCLE)), in_process=True) as system:
             if not np.array_equal(before, _start(system)):
-                return angles
+                return angles, system.remarks
     raise TouchdownError(
         f"{scene.name} has no rotor with an unbalance: nothing to turn; give it one, such as "
         f'--set "rotor.eccentricity=1 um" or an [[unbalance]] in the rotor\'s file'

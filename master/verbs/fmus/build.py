@@ -18,6 +18,7 @@ EXAMPLES = (
     "touchdown build simplified_caged rotor_I --modes 5 -o build/five-modes",
     "touchdown build --native -o build/native",
     "touchdown build housing --native --target linux-x86_64 windows-x86_64 -o build/native",
+    "touchdown build housing --native --fmi 3 -o build/fmi3",
     "touchdown build --native examples/rubber_ring.py -o build/native",
 )
 
@@ -37,6 +38,13 @@ def declare(verb: argparse.ArgumentParser) -> None:
         help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
     )
     verb.add_argument("--native", action="store_true", help="FMUs that need no Python anywhere")
+    verb.add_argument(
+        "--fmi",
+        type=int,
+        choices=(2, 3),
+        default=2,
+        help="version of FMI; 3.0 with --native only (default: 2)",
+    )
     targets = verb.add_argument(
         "--target",
         nargs="+",
@@ -49,8 +57,9 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--modes",
         metavar="N",
-        help="modes per plane that rotors start with, the two rigid ones included, and that seats have "
-        "connectors for (2: none); native rotors hold constants for several, N,N,... (default: 2,5,10)",
+        help="modes per plane that rotors start with, the two rigid ones included; seats have connectors "
+        "for what they then carry (2: none); native rotors hold constants for several, N,N,... "
+        "(default: 2,5,10)",
     )
 
 
@@ -67,6 +76,7 @@ def execute(options: argparse.Namespace) -> int:
         native=options.native,
         targets=options.target,
         modes=None if options.modes is None else _counts(options.modes),
+        fmi=options.fmi,
     )
     for path in made:
         print(path, flush=True)

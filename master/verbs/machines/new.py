@@ -33,7 +33,11 @@ def declare(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--amb", metavar="STATION,...", help="where magnetic bearings do (default: its levitated_at)"
     )
-    verb.add_argument("--speed", help="at the start (default: 0.7 of the first bending frequency)")
+    verb.add_argument(
+        "--speed",
+        help="at the start (default: the lower of 0.7 of the first bending frequency and 1,000,000 mm rpm "
+        "over the bore)",
+    )
     verb.add_argument("--clearance", default="0.25 mm", help='radial (default: "0.25 mm")')
     verb.add_argument("--mass", help="of a rigid rotor, instead of --rotor")
     verb.add_argument(
@@ -45,7 +49,6 @@ def declare(verb: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from touchdown.master.common.units import to_si
     from touchdown.master.scene.file import SCENE_FILE
     from touchdown.master.studies.machine.new import Wanted, machine, write
 
@@ -54,19 +57,18 @@ def execute(options: argparse.Namespace) -> int:
         bearings=_names(options.bearings) or (),
         at=_names(options.at),
         amb=_names(options.amb),
-        speed=None if options.speed is None else to_si(options.speed, "rad/s", "--speed"),
+        speed=above_zero(options.speed, "rad/s", "--speed"),
         clearance=above_zero(options.clearance, "m", "--clearance") or 0.0,
         mass=above_zero(options.mass, "kg", "--mass"),
         inertia=above_zero(options.inertia, "kg.m2", "--inertia"),
     )
     made = machine(wanted, options.folder.resolve().name)
+    notes = "".join(f"note: {note}\n" for note in made.notes)
     if options.dry_run:
-        print(made.files[SCENE_FILE], end="")
+        print(f"{made.files[SCENE_FILE]}{notes}", end="")
     else:
         written = write(made, options.folder, options.force)
-        print(f"{written}: now run it with\n  touchdown run {options.folder}")
-    for note in made.notes:
-        print(f"note: {note}")
+        print(f"{notes}{written}: now run it with\n  touchdown run {options.folder}")
     return 0
 
 

@@ -34,7 +34,7 @@ EXAMPLES = (
     'touchdown sweep rotor1-9000 --sobol 64 --range "bearing_*.clearance=0.2:0.3 mm" --in-process',
     'touchdown sweep rotor1-9000 --vary "rotor.unbalance_angle=0:345:24 deg" --shard 3/8 -o runs/part-3',
 )
-SAMPLES = ("random", "latin", "sobol")
+SAMPLES = {"random": "drawn at random", "latin": "Latin hypercube", "sobol": "Sobol, 2^k"}
 
 
 def declare(verb: argparse.ArgumentParser) -> None:
@@ -83,11 +83,7 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="CSV: a column NAME [UNIT] per setting, a line per point",
     )
-    for name, what in (
-        ("random", "drawn at random"),
-        ("latin", "Latin hypercube"),
-        ("sobol", "Sobol, 2^k"),
-    ):
+    for name, what in SAMPLES.items():
         points.add_argument(f"--{name}", metavar="N", help=f"N points of the --range settings: {what}")
     points.add_argument(
         "--range", action="append", default=[], metavar="NAME=LOW:HIGH UNIT", help="to draw points from"

@@ -20,7 +20,7 @@ from touchdown.master.verbs.arguments import (
     settings,
     several_above_zero,
 )
-from touchdown.master.verbs.screen import broken_off, complain
+from touchdown.master.verbs.screen import broken_off, complain, warn
 from touchdown.master.verbs.verb import Verb
 
 EXAMPLES = (
@@ -71,6 +71,7 @@ def execute(options: argparse.Namespace) -> int:
     write_report(study, folder)
     print("\n".join(report_lines(study)))
     print(f"results in {folder}")
+    warn(study.remarks)
     if study.interrupted:
         return broken_off()
     if failed := sum(len(circle.failed) for circle in study.circles):

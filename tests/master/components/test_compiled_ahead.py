@@ -52,7 +52,7 @@ def test_one_processor_compiles_as_it_goes(
 def test_what_is_compiled_is_not_new(own_cache: Path) -> None:
     housing = recipe("housing")
     assert not ahead._is_compiled(housing, in_process=True)
-    ahead._have_compiled(iter([ahead.NewModel("housing", "housing", in_process=True, size=0)]))
+    ahead._have_compiled(iter([ahead.NewModel("housing", "housing", Path(), in_process=True, size=0)]))
     assert ahead._is_compiled(housing, in_process=True)
     assert not ahead._is_compiled(housing, in_process=False)
 

@@ -70,6 +70,23 @@ def test_a_changed_model_is_found(built: Mapping[str, Path], tmp_path: Path):
     assert "1e-06 is allowed" in problem
 
 
+@pytest.mark.parametrize(("word", "said"), [("makkar", ""), ("dry", "none of its choices: coulomb (0)")])
+def test_enumerations_are_set_by_their_words(
+    word: str, said: str, built: Mapping[str, Path], tmp_path: Path
+) -> None:
+    law = r'(<ssv:Parameter name="friction.kind">\s*)<ssv:Integer value="2" />'
+
+    def worded(text: str) -> str:
+        changed, count = re.subn(law, rf'\g<1><ssv:Enumeration value="{word}" />', text)
+        assert count == 1
+        return changed
+
+    path = spoiled(built["bushing"], tmp_path, {f"{FOLDER}/default.ssv": worded})
+    problems = check_fmu(str(path)).problems
+    assert bool(problems) == bool(said)
+    assert said in "".join(problems)
+
+
 @pytest.mark.parametrize(
     ("file", "change", "said"),
     [

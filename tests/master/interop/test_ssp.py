@@ -251,6 +251,26 @@ def test_bindings_mappings_and_units_of_other_tools_are_applied(pack: Pack) -> N
         system.close()
 
 
+def friction(pack: Pack, value: str) -> Scene:
+    """The foreign package with a bushing whose law of friction a parameter set names."""
+    inside = f"""<ssd:ParameterBindings><ssd:ParameterBinding><ssd:ParameterValues>
+<ssv:ParameterSet version="1.0" name="law"><ssv:Parameters><ssv:Parameter name="friction.kind">{value}
+</ssv:Parameter></ssv:Parameters></ssv:ParameterSet></ssd:ParameterValues></ssd:ParameterBinding>
+</ssd:ParameterBindings>"""
+    bushing = 'source="resources/bushing.fmu"'
+    return find_scene(str(pack(foreign().replace(f"{bushing}/>", f"{bushing}>{inside}</ssd:Component>"))))
+
+
+def test_enumerations_are_set_by_their_words(pack: Pack) -> None:
+    scene = friction(pack, '<ssv:Enumeration value="coulomb" name="FrictionLaw"/>')
+    assert scene.components["bearing"].set == {"friction.kind": "coulomb"}
+    brief = {"run.duration": 4e-5, "run.macro_step": 2e-5}
+    _, values, _ = history(scene.set(brief), ["bearing.friction.kind"], in_process=False)
+    assert set(values["bearing.friction.kind"]) == {0.0}
+    with pytest.raises(TouchdownError, match="none of its choices: coulomb"):
+        open_system(friction(pack, '<ssv:Enumeration value="dry"/>'))
+
+
 def test_the_outer_binding_wins(pack: Pack) -> None:
     outer = SYSTEM_VALUES.replace('"gravity"', '"mass"')
     assert find_scene(str(pack(foreign(system=outer)))).components["rotor"].set["mass"] == 1.62
@@ -349,7 +369,7 @@ def test_what_cannot_be_run_is_refused_in_one_line(pack: Pack, expected: str) ->
     [
         ("ssv", 'unit="g"', 'unit="stone"', "cannot convert stone to kg"),
         ("ssv", '"1650"', '"much"', "'much' is not a number"),
-        ("ssv", '<ssv:Real value="1"/>', '<ssv:String value="a"/>', "only Real, Integer and Boolean"),
+        ("ssv", '<ssv:Real value="1"/>', '<ssv:String value="a"/>', "only Real, Integer, Boolean and"),
         ("ssm", '"mass"', '"wight"', "its FMU has no variable wight"),
         ("ssm", "MappingEntry source", "MappingEntry sorce", "a MappingEntry has no source"),
     ],

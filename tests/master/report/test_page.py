@@ -6,6 +6,7 @@ import base64
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,11 +14,14 @@ from commands import Command
 
 import touchdown
 from touchdown.master.report.contents import CHAPTERS, section
+from touchdown.master.report.facts.labels import label
 from touchdown.master.report.facts.numbers import digits, listed, quantity
 from touchdown.master.report.facts.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
 from touchdown.master.report.facts.subject import Subject
-from touchdown.master.report.page.blocks import Table
-from touchdown.master.report.sweeps import _is_sample
+from touchdown.master.report.page.blocks import Folded, Table
+from touchdown.master.report.sweeps import _is_sample, _spread
+from touchdown.master.studies.sweep.journal import Member
+from touchdown.master.studies.sweep.results import Sweep
 
 
 def test_a_run_is_read_back_as_it_was(dropped: Path) -> None:
@@ -44,7 +48,7 @@ def test_every_chapter_is_there_or_says_why_not(page: Path) -> None:
         assert f'<section id="{chapter.name}"' in text
     lacking = re.findall(r'<p class="lacking">Not in this report: (.*)</p>', text)
     assert len(lacking) == 5  # requirements, environment, spectra, stresses, inspection
-    assert "the rotor is rigid" in " ".join(lacking)
+    assert "the rotor tells of none: it is rigid" in " ".join(lacking)
 
 
 def test_the_page_asks_for_nothing_beside_it(page: Path) -> None:
@@ -86,14 +90,65 @@ def test_what_touches_nothing_is_reported(tmp_path: Path) -> None:
 
 
 def test_a_sweep_is_reported(command: Command, tmp_path: Path) -> None:
-    scene = touchdown.load("disk-caged-simplified").set({"run.duration": "9 ms"})
+    changes = {"run.duration": "9 ms", "rotor.speed": 1000}
+    scene = touchdown.load("disk-caged-simplified").set(changes)
     varied = {"bearing.clearance": ["0.2 mm", "0.25 mm"]}
     touchdown.sweep(scene, varied, tmp_path / "sweep", jobs=1, in_process=True)
     assert command("report", tmp_path / "sweep").status == 0
     text = (tmp_path / "sweep" / "report.html").read_text(encoding="utf-8")
-    assert "0 of 2 drops whirl (0\N{NO-BREAK SPACE}%)" in text.replace("0 %", "0\N{NO-BREAK SPACE}%")
+    text = text.replace("\N{NO-BREAK SPACE}", " ")
+    assert "0 of 2 drops whirl (0 %; as drops drawn one by one, 0 % to 84 % of all with 95 %" in text
+    assert "Each is followed for 9 ms from the shutdown on, 1" in text
+    assert "All else is as scene disk-caged-simplified has it, but for what was set for the sweep: " in text
+    assert "rotor.speed = 1000 rad/s (9549.3 rpm); run.duration = 0.009 s.</p>" in text
+    assert ", but with rotor.speed = 1000 rad/s (9549.3 rpm), over bearing.clearance</h1>" in text
+    assert ">Largest contact force [N]</th>" in text
+    assert ">peak_contact_force_N</th>" not in text
     assert "The map of stress: not in this report" in text
     assert "all drops ran to their end" in text
+
+
+def test_figures_go_by_words() -> None:
+    components = ("rotor", "bearing", "bearing_A")
+    heads = {
+        "peak_contact_force_N_bearing_A": "Largest contact force [N], bearing_A",
+        "rotor_speed_end_rpm": "Rotor at the end [rpm]",
+        "whirl_A": "Verdict, A",
+        "whirl_rotor_A_force_phase_deg": "Phase by which the force drives the whirl [deg], rotor_A",
+    }
+    for key, head in heads.items():
+        known = label(key, components)
+        assert known is not None
+        assert known.head == head
+    assert label("energy_made_J", components) is None
+    assert label("peak_contact_force_N_bearing_C", components) is None
+
+
+def test_a_spread_can_be_told_apart_and_has_no_mean_of_nodes(
+    tmp_path: Path,
+) -> None:
+    """Speeds that differ by little keep the difference; of nodes and their like there are no quartiles."""
+    summaries = [
+        {
+            "rotor_speed_end_rpm": 19995.5 + n,
+            "peak_shear_stress_node": 3 + 8 * (n > 1),
+            "kept_bending_x_node": 3 + n,
+            "energy_made_J": 1.0 + n,
+        }
+        for n in range(3)
+    ]
+    members = tuple(Member(n, {}, summary) for n, summary in enumerate(summaries, start=1))
+    definition = SimpleNamespace(scene={"components": {}})
+    blocks = _spread(Sweep(definition, members, tmp_path))  # type: ignore[arg-type]
+    (told, places, folded) = blocks
+    assert isinstance(told, Table)
+    assert isinstance(places, Table)
+    assert isinstance(folded, Folded)
+    assert [row[1:] for row in told.rows] == [["3", "19995.5", "19996", "19996.5", "19997", "19997.5"]]
+    assert places.rows == [["Largest shear stress", "3 in 2 drops, 11 in 1 drop"]]
+    (rest,) = folded.blocks
+    assert isinstance(rest, Table)
+    assert [row[0] for row in rest.rows] == ["energy_made_J"]
 
 
 def test_only_drops_drawn_one_by_one_tell_of_all() -> None:

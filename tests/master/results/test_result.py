@@ -192,6 +192,16 @@ def test_it_tells_how_the_run_ended(detailed: Result) -> None:
     assert html.count("<tr>") == len(detailed.summary)
 
 
+def test_a_bearing_that_is_touched_before_the_shutdown_is_said() -> None:
+    """A disk pushed down at 0.1 m/s, which a magnetic bearing without stiffness does not hold back."""
+    brief = {"run.duration": "1 ms", "run.macro_step": "100 us", "amb.shutdown_time": "20 ms"}
+    scene = load_scene("disk-caged-simplified").set(brief)
+    pushed = {"amb.stiffness": 0.0, "amb.damping": 0.0, "rotor.vy": -0.1}
+    for more, said in ((pushed, True), ({}, False)):
+        warnings = run_scene(scene.set(more), None, in_process=True, pictures=False).warnings
+        assert any("before the shutdown: the magnetic bearings do not hold" in w for w in warnings) == said
+
+
 def test_a_stopped_run_says_why() -> None:
     scene = load_scene("disk-caged-simplified")
     scene = scene.set({"run.duration": 0.01, "run.warn_residual": 1e-9, "run.stop_residual": 1e-9})

@@ -19,13 +19,25 @@ from orbits import (
     turns,
 )
 
+from touchdown.master.coupling.connections import Attachment
+from touchdown.master.results.ending import Ending
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
-from touchdown.master.results.whirl.evidence import evidence
+from touchdown.master.results.whirl.evidence import evidence, hint
 
 SLIDING = math.atan(FRICTION)
 STANDS_OFF = replace(circle(-60.0, centre=0.4 - 0.2j), bore=0.4 - 0.2j)
 HIGHEST = math.sqrt(4.0 * 9.81 / CLEARANCE)  # rad/s at the bottom, of a pendulum that just reaches the top
+
+
+class Unbalanced(Ending):
+    """A rotor in a bearing, as far as a hint asks for it."""
+
+    def __init__(self) -> None:
+        super().__init__({}, [Attachment("bearing", "journal", "rotor", "A")], [])
+
+    def __contains__(self, name: str) -> bool:
+        return name == "rotor.unbalance_angle"
 
 
 def phases(made: Made, factor: complex = 1.0) -> list[float | None]:
@@ -112,9 +124,16 @@ def test_the_screen_says_what_a_verdict_rests_on() -> None:
     assert told("transient forward whirl", 3.0, 3.0, 0.4).endswith("went round 3 times")
     assert told("transient forward whirl", 3.0, 3.0).endswith("went round 3 times")
     assert told("pendulum", 0.0, 0.187) == (
-        "whirl_A: pendulum: the contact went 0.19 of a turn one way at most; a whirl takes 1"
+        "whirl_A: pendulum: the contact swung either way by 10 deg or more; it went 0.18 of a turn one "
+        "way at most, and a whirl takes 1"
     )
-    assert "1.4 of a turn one way at most and back, or with rests; a whirl" in told("pendulum", 0.0, 1.4)
+    assert "1.4 turns one way at most and back, or with rests, and a whirl" in told("pendulum", 0.0, 1.4)
+
+
+def test_what_swings_not_is_no_pendulum_however_far_it_goes() -> None:
+    """And what is short of a turn is never told as one, in the words or beside them."""
+    line = told("no whirl, near miss: 0.99 turn backward", 0.0, 0.997)
+    assert "did not swing either way by 10 deg; it went 0.99 of a turn" in line
 
 
 @pytest.mark.parametrize(
@@ -133,9 +152,12 @@ def test_a_run_that_ends_before_contact_says_so() -> None:
         assert [line.partition(":")[0] for line in evidence(none | untouched)] == [
             "no bearing has been touched"
         ]
+        assert not list(hint("mine", Unbalanced(), none | untouched))
+        assert list(hint("mine", Unbalanced(), untouched))
     one = {"first_contact_time_s_bearing_A": None, "first_contact_time_s_bearing_B": 0.0079}
     assert evidence(one | untouched) == [
-        "whirl_A: no whirl: the contact went 0 of a turn one way at most; a whirl takes 1"
+        "whirl_A: no whirl: the contact did not swing either way by 10 deg; it went 0.00 of a turn one way "
+        "at most, and a whirl takes 1"
     ]
 
 

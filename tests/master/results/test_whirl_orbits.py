@@ -146,9 +146,9 @@ def short_of_a_whirl() -> list[Case]:
     """Near misses, what creeps, bounces or rests."""
     cases = [
         Case(
-            f"{count:g} turn at {f:g} Hz", turns(count, f), f"no whirl, near miss: {said:.1f} turn {sense}"
+            f"{count:g} turn at {f:g} Hz", turns(count, f), f"no whirl, near miss: {said:.2f} turn {sense}"
         )
-        for count, said in ((0.82, 0.8), (0.88, 0.8), (0.91, 0.9), (0.95, 0.9))
+        for count, said in ((0.82, 0.82), (0.88, 0.88), (0.91, 0.91), (0.95, 0.95))
         for f, sense in ((50.0, "forward"), (-80.0, "backward"))
     ]
     cases += [Case("half a turn", turns(0.5, 50.0), NO_WHIRL)]

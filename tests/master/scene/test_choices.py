@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.cli import main
+from touchdown.master.common.errors import TouchdownError, one_of
+from touchdown.master.common.units import with_unit
 from touchdown.master.components.component import Component
 from touchdown.master.components.interface import interface
 from touchdown.master.components.library.loading import Stepping, load_component
@@ -60,3 +62,30 @@ def test_an_fmu_tells_the_same(bearing: Component, built: Mapping[str, Path]):
     }
     assert described["friction.kind"].told(2.0) == "makkar"
     assert described["balls.count"].told(9.0) == "9"
+
+
+def test_what_can_be_set_is_listed_in_units_that_people_use(capsys: pytest.CaptureFixture[str]) -> None:
+    """A choice has neither unit nor bounds beside its word; a control's bandwidth is no speed."""
+    shown: dict[str, list[str]] = {}
+    for component in ("bearing", "rotor", "amb"):
+        assert main(["scenes", "disk-caged-simplified", "--variables", component]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        shown |= {f"{component}.{words[0]}": words for line in lines if (words := line.split())}
+    assert shown["bearing.clearance"][1:5] == ["300", "um", "from", "0"]
+    assert shown["bearing.interface.order"][1:3] == ["model", "motion"]
+    assert shown["rotor.speed"][1:3] == ["9000", "rpm"]
+    assert shown["amb.bandwidth"][1:3] == ["0", "rad/s"]
+
+
+def test_a_name_that_is_begun_is_answered_by_those_it_begins() -> None:
+    """Before those that merely look alike."""
+    known = ("friction.dynamic", "friction.static", "fraction", "mass")
+    assert one_of("frict", known) == "did you mean friction.dynamic or friction.static"
+    assert one_of("masss", known) == "did you mean mass"
+
+
+def test_angular_frequencies_go_by_what_they_are() -> None:
+    assert with_unit(20000, "rad/s", "speed") == "20000 rad/s (190986 rpm)"
+    assert with_unit("12566", "rad/s", "bandwidth") == "12566 rad/s (1999.94 Hz)"
+    assert with_unit("9000 rpm", "rad/s", "speed") == "9000 rpm"
+    assert with_unit(0.15, "1") == "0.15"

@@ -19,9 +19,10 @@ from touchdown.rotor.beams.shaft import Shaft, Station, Support
 from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import ImportedRotorError, from_ross, read
 from touchdown.rotor.imports.ross import of_elements
-from touchdown.rotor.modal.campbell import supported_whirl, whirl_frequencies
+from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
 
 SAVED = Path(__file__).parent / "saved"
 THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
@@ -57,7 +58,9 @@ def test_six_modes_of_a_published_example(name: str, kind: str) -> None:
             found = bent(np.abs(whirl_frequencies(basis(shaft, 0), [speed])[0]) / (2.0 * math.pi), shaft)
         else:
             springs = [Support(s.node, s.stiffness, s.stiffness_y) for s in shaft.supports]
-            found = supported_whirl(basis(shaft, 0), speed, springs).frequencies
+            found = (
+                HeldRotor(basis(shaft, 0), [LinearBearing.of(s) for s in springs]).whirl(speed).frequencies
+            )
         ours = np.sort(found)
         assert len(theirs) >= 10
         assert ours[: len(theirs)] == pytest.approx(theirs, rel=AGREE)
@@ -118,7 +121,7 @@ def test_json_says_the_same(tmp_path: Path) -> None:
 
 def test_an_object_says_the_same() -> None:
     def element(key: str) -> SimpleNamespace:
-        values = dict(OLD[key])
+        values = {n: np.array(v) if isinstance(v, list) else v for n, v in OLD[key].items()}
         if "material" in values:
             values["material"] = SimpleNamespace(**values["material"])
         return SimpleNamespace(**{"tag": key.partition("_")[2], **values})
@@ -129,6 +132,12 @@ def test_an_object_says_the_same() -> None:
     expected = old()
     assert (shaft.elements, shaft.points) == (expected.elements, expected.points)
     assert (shaft.supports, shaft.stations) == (expected.supports, expected.stations)
+
+
+@pytest.mark.parametrize(("speed", "said"), [(50.0, False), (100.0, False), (120.0, True)])
+def test_coefficients_at_a_speed_beyond_theirs_are_said(speed: float, said: bool) -> None:
+    shaft = of_elements(deepcopy(OLD), "old.toml", "old", speed)
+    assert ("Bearing 1: taken at 100 rad/s, the nearest" in shaft.about) == said
 
 
 def test_what_is_otherwise_is_said() -> None:
@@ -155,6 +164,7 @@ def test_what_is_otherwise_is_said() -> None:
         ({"Element_1": {"odl": 0.0}}, "odl = 0 must be above 0"),
         ({"Element_1": {"material": {**STEEL, "G_s": 0.0}}}, "material: G_s = 0 must be above 0"),
         ({"Bearing_1": {"frequency": None}}, "kxx cannot be read as numbers over frequency"),
+        ({"Bearing_1": {"frequency": [100.0, 0.0]}}, "the speeds it is given at do not rise"),
     ],
 )
 def test_what_cannot_be_imported_is_named(changes: dict[str, Any], says: str) -> None:
@@ -172,8 +182,10 @@ def test_what_is_no_rotor_of_ross(tmp_path: Path) -> None:
     path.write_text("[", encoding="utf-8")
     with pytest.raises(ImportedRotorError, match="cannot be read"):
         read(path)
+    sheet = tmp_path / "rotor.xls"
+    sheet.touch()
     with pytest.raises(ImportedRotorError, match="imported from ROSS's files"):
-        read(tmp_path / "rotor.xls")
+        read(sheet)
     with pytest.raises(ImportedRotorError, match=r"gone\.csv: cannot be read: No such file"):
         read(tmp_path / "gone.csv")
     with pytest.raises(ImportedRotorError, match="a str is no"):

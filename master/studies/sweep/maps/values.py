@@ -16,6 +16,7 @@ from touchdown.master.studies.sweep.maps.paper import cells, labelled
 from touchdown.master.studies.sweep.report import largest
 
 SCALE = "cividis"  # even for eyes that tell no red from green, and in grey
+ROOM = 1.08  # of the largest value, up to the frame
 MOST_TOLD = 100  # cells with their numbers in words
 
 Values = list[float]  # of the drops at one place
@@ -82,5 +83,5 @@ def _line(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
     largests, smallests = ([pick(field.spots[(x,)]) for x in places] for pick in (max, min))
     axes.plot(places, largests, "-o", color=BLUE, ms=4)
     axes.fill_between(places, smallests, largests, color=BLUE, alpha=0.18, lw=0)
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, ROOM * max(largests) or 1.0)
     axes.set_ylabel(quantity.label)

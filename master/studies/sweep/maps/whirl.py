@@ -21,6 +21,7 @@ HATCHES = {Kind.SUSTAINED: "////"}  # told apart in grey, too
 MARKERS = {Kind.SETTLES: "o", Kind.TRANSIENT: "s", Kind.SUSTAINED: "^"}
 FILLED = 0.96  # of a cell; the rest parts it from the next
 MOST_TOLD = 100  # cells with their numbers in words
+MARGIN = 4.0  # % beyond none and all
 
 Kinds = Counter[Kind]  # how many drops of each
 
@@ -104,15 +105,19 @@ def _marks(axes: Axes, field: Field[Kinds]) -> None:
 
 
 def _lines(axes: Axes, field: Field[Kinds]) -> None:
-    """Parts over one setting, with their intervals as bands."""
+    """Parts over one setting, with their intervals as bars: bands of both would hide each other."""
     for sustained, one, style in ((False, Kind.TRANSIENT, "-o"), (True, Kind.SUSTAINED, "--^")):
         places = [x for x in field.along(0) if field.spots[(x,)].total()]
         parts = [_share(field.spots[(x,)], sustained) for x in places]
-        label = one.value if sustained else "any whirl"
-        axes.plot(places, [100.0 * p.value for p in parts], style, color=COLOURS[one], ms=4, label=label)
-        bounds = [100.0 * p.low for p in parts], [100.0 * p.high for p in parts]
-        axes.fill_between(places, *bounds, color=COLOURS[one], alpha=0.18, lw=0)
-    axes.set_ylim(0.0, 100.0)
+        label = f"{one.value if sustained else 'any whirl'}, {100.0 * CONFIDENCE:.0f} % interval as a bar"
+        values = [100.0 * p.value for p in parts]
+        below = [100.0 * (p.value - p.low) for p in parts]
+        above = [100.0 * (p.high - p.value) for p in parts]
+        caps = 2.0 if sustained else 4.0  # both are seen where they are the same
+        axes.errorbar(
+            places, values, (below, above), fmt=style, color=COLOURS[one], ms=4, capsize=caps, label=label
+        )
+    axes.set_ylim(-MARGIN, 100.0 + MARGIN)  # marks at none and at all are whole
     axes.set_ylabel("part of the drops [%]")
     axes.legend()
 

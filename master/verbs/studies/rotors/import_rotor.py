@@ -12,13 +12,19 @@ from touchdown.master.verbs.verb import Verb
 EXAMPLES = (
     "touchdown import-rotor examples/pump_sections.csv -o runs/pump.toml",
     'touchdown import-rotor examples/pump_sections.csv --at "A=50 mm,B=17" --amb amb_A=7,amb_B=15',
+    "touchdown import-rotor examples/spindle_matrices -o runs/fe.toml --at A=2,B=16 --amb amb_A=4,amb_B=14",
     'touchdown import-rotor saved-by-ross.toml -o my-rotor.toml --speed "6000 rpm"',
 )
 
 
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
-    verb.add_argument("file", type=Path, help="saved by ROSS (.toml, .json), or a table of sections (.csv)")
+    verb.add_argument(
+        "file",
+        type=Path,
+        help="saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), "
+        "or a folder of matrices (.mtx)",
+    )
     add_output(verb, "FILE-rotor.toml in this folder", "rotor file")
     for option, meaning in (
         ("--at", "stations that touchdown bearings hold"),
@@ -30,8 +36,10 @@ def declare(verb: argparse.ArgumentParser) -> None:
             action="append",
             default=[],
             metavar="NAME=PLACE,...",
-            help=f"{meaning}; a PLACE is a node, from 1, or a distance from node 1 such as 120 mm",
+            help=f"{meaning}; a PLACE is a node, from 1, or its name in the file, or a distance from node "
+            "1 such as 120 mm",
         )
+    verb.add_argument("--force", action="store_true", help="replace a file that is there")
     verb.add_argument("--speed", help="at which ROSS's bearings are taken, where they hang on the speed")
 
 
@@ -51,7 +59,7 @@ def execute(options: argparse.Namespace) -> int:
     )
     path = options.output or Path(f"{options.file.stem}-rotor.toml")
     make_writable(path.parent)
-    rotor.save(path)
+    rotor.save(path, options.force)
     print(rotor)
     print(rotor.about)
     print(f"written to {path}; what it is like: touchdown rotor {path}")
@@ -70,5 +78,9 @@ def _places(given: list[str], option: str) -> dict[str, str]:
 
 
 VERB = Verb(
-    "import-rotor", "import a rotor from ROSS or from a table of its sections", EXAMPLES, declare, execute
+    "import-rotor",
+    "import a rotor from ROSS, a table of its sections, matrices or modal data",
+    EXAMPLES,
+    declare,
+    execute,
 )

@@ -197,8 +197,8 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
     notes = [line for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")]
     assert [note.split()[1:4] for note in notes] == [
         ["at", "rest", "bearing_B"],
-        ["the", "rotor", "is"],
-        ["the", "rotor", "is"],
+        ["6012", "cannot", "be"],
+        ["6012", "cannot", "be"],
         ["the", "rotor", "has"],
     ]
     with pytest.warns(match="would have to pull the rotor down"), pytest.warns(match="no unbalance"):
@@ -215,7 +215,7 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
             ["--amb", ""],
             "does not tell which stations are meant (levitated_at does); give --amb and two of A, B",
         ),
-        (["--bearings", "7999"], "there is no preset 7999"),
+        (["--bearings", "7999"], "there is no bearing 7999; did you mean"),
         (["--bearings", "7014,7014,7014"], "names 3 bearings for 2 places"),
         (["--bearings", ","], "--bearings is missing"),
         (["--rotor", "no.toml"], "no.toml: cannot be read"),
@@ -223,6 +223,7 @@ def test_what_to_know_of_the_rotor_is_said(here: Path, capsys: pytest.CaptureFix
         (["--clearance", "20 mm"], "leaves no journal in the bore of 7014, 70 mm"),
         (["--clearance", "0 mm"], "--clearance 0 mm must be above 0"),
         (["--speed", "9000 rpx"], "--speed = '9000 rpx' has the unit rpx"),
+        (["--speed", "-9000 rpm"], "--speed -9000 rpm must be above 0"),
         (["--mass", "60 kg"], "are of a rigid rotor"),
     ],
 )
@@ -234,6 +235,29 @@ def test_a_mistake_is_one_line(
     assert says in said
     assert "\n" not in said
     assert not (here / "mine").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (
+            ["--rotor", "rotor.toml", "--amb", "A,B", "--bearings", "7004"],
+            "note: 7004 cannot be mounted at A: its bore is 20 mm, the rotor 68 mm thick there; choose",
+        ),
+        (
+            ["--mass", "12000 kg", "--bearings", "6004"],
+            "note: bearing bears 118 kN at rest, more than the static rating of 6004, C0 = ",
+        ),
+        (["--mass", "2 kg", "--bearings", "6004", "--speed", "20000"], "note: speed = 190986 rpm"),
+    ],
+)
+def test_what_cannot_be_meant_is_said_before_how_to_run_it(
+    options: list[str], says: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", "mine", *options]) == 0
+    told = capsys.readouterr().out
+    assert says in told
+    assert told.index(says) < told.index("now run it with")
 
 
 def test_without_a_rotor_places_and_mass_are_asked_for() -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -110,3 +111,21 @@ def test_drops_that_all_failed_have_no_maps(tmp_path: Path) -> None:
     assert plot.save(tmp_path) == []
     with pytest.raises(TouchdownError, match="no drop has a whirl verdict"):
         plot.whirl(Figure().add_subplot())
+
+
+def test_over_one_setting_all_marks_lie_inside_and_all_that_is_drawn_is_named() -> None:
+    """Also where no drop whirls, whose interval is wide; the largest force is below the frame."""
+    asked, members = pretended({**SPEEDS, **PHASES})
+    still = [
+        Member(m.number, m.settings, {**m.summary, "whirl_A": "pendulum", "whirl_A_revolutions": 0.0})
+        for m in members
+    ]
+    axes = MapPlot(asked, still).whirl(Figure().add_subplot())
+    low, high = axes.get_ylim()
+    assert low < 0.0
+    assert high > 100.0
+    assert not [filled for filled in axes.collections if isinstance(filled, PolyCollection)]
+    _, labels = axes.get_legend_handles_labels()
+    assert all("95 % interval as a bar" in label for label in labels)
+    forces = MapPlot(asked, still).force(Figure().add_subplot())
+    assert forces.get_ylim()[1] > 1.05 * 100.0 * len(members)

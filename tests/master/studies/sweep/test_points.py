@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,10 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import define
+from touchdown.master.studies.sweep.definition import define, differences, read_definition
 from touchdown.master.studies.sweep.design import Design, designed
 from touchdown.master.studies.sweep.listing import read_points
+from touchdown.master.studies.sweep.sweep import Running, sweep
 from touchdown.master.studies.sweep.variation import parse, parse_all
 
 ANGLE = "bearing.balls.first_angle"
@@ -171,3 +173,38 @@ def test_names_that_mean_several_settings() -> None:
     twice = Design.grid({"bearing_*.clearance": ["0.2 mm"], "bearing_A.clearance": ["0.3 mm"]})
     with pytest.raises(TouchdownError, match=r"bearing_A\.clearance varies twice"):
         define(scene, twice, in_process=True)
+
+
+def test_how_a_value_came_to_be_makes_no_other_sweep() -> None:
+    """A duration that is the scene's own may be given or not; another one is another sweep."""
+    scene = load_scene("disk-caged-simplified")
+    design = Design.grid({"rotor.mass": [1.0, 2.0]})
+    plain = define(scene, design, in_process=True)
+    same = scene.set({"run.duration": scene.run.duration})
+    assert differences(plain, define(same, design, in_process=True)) == []
+    other = scene.set({"run.duration": 2.0 * scene.run.duration})
+    (said,) = differences(plain, define(other, design, in_process=True))
+    assert said.startswith("run.duration is")
+
+
+def test_a_cluster_that_does_not_answer_leaves_nothing(tmp_path: Path) -> None:
+    """Else the next command in the folder would be another sweep."""
+    pytest.importorskip("distributed")
+    design = Design.grid({"rotor.mass": [1.0, 2.0]})
+    with pytest.raises(TouchdownError, match="no Dask scheduler answers at nowhere"):
+        sweep(load_scene(SCENE), design, tmp_path / "out", Running(cluster="nowhere", in_process=True))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_definition_without_what_reads_a_sweep_is_damaged(tmp_path: Path) -> None:
+    """Here its scene's title, which reports and tables print."""
+    asked = define(load_scene(SCENE), Design.grid({"rotor.mass": [1.0, 2.0]}), in_process=True)
+    asked.write(tmp_path)
+    assert read_definition(tmp_path).columns == asked.columns
+    replace(asked, scene={"name": SCENE}).write(tmp_path)
+    with pytest.raises(
+        TouchdownError, match=r"sweep\.json cannot be read; it is of another version, or dam"
+    ):
+        read_definition(tmp_path)
+    with pytest.raises(TouchdownError, match="write K/N with N above 0"):
+        Design.grid({"rotor.mass": [1.0, 2.0]}).shard(1, 0)

@@ -16,6 +16,7 @@ from touchdown.master.common.progress import Progress
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation import fig_14
+from touchdown.master.studies.rotor.balance import balanced
 from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Task
 from touchdown.master.studies.verdict import study as verdict_study
@@ -124,7 +125,8 @@ def test_a_run_that_fails_has_no_verdict_and_is_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, scene: Scene
 ) -> None:
     pretended(monkeypatch, lambda phase, step: 100.0 < phase < 200.0, failing=(2.0, 98.0))
-    study = study_verdict(scene, Plan(), tmp_path)
+    study = study_verdict(scene.set({"rotor.speed": 9000}), Plan(), tmp_path)
+    assert [remark.partition(" rpm")[0] for remark in study.remarks] == ["rotor.speed = 85944"]
     (circle,) = study.circles
     assert circle.failed == {2.0: "it broke", 98.0: "it broke"}
     assert len(windows(circle.verdicts)) == 1
@@ -225,13 +227,17 @@ def test_a_shaft_without_any_unbalance_has_nothing_to_turn(tmp_path: Path) -> No
     scene = load_scene("rotor1-9000").swap(rotor=str(file))
     with pytest.raises(TouchdownError, match="nothing to turn"):
         study_verdict(scene, Plan(), tmp_path / "out")
+    assert balanced(scene, ["rotor"])
+    assert not balanced(load_scene("rotor1-9000"), ["rotor"])
+    assert not balanced(load_scene("disk-caged-simplified"), ["rotor"])  # rigid
 
 
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
         (["--grid", "0 deg"], "grid = 0 deg must be from 0.1 to 180 deg"),
-        (["--grid", "12"], "grid = 687.549 deg must be from 0.1 to 180 deg"),
+        (["--grid", "12"], 'grid = 687.549 deg must be from 0.1 to 180 deg; write "12 deg"'),
+        (["--grid", "90"], 'must be from 0.1 to 180 deg; write "90 deg"'),
         (["--grid", "2 deg"], "resolution = 4 deg must not be coarser than grid = 2 deg"),
         (["--resolution", "4 mm"], "it is measured in rad"),
         (["--macro-steps", "0 us"], "--macro-steps 0 us must be above 0"),
@@ -260,7 +266,10 @@ def test_the_command_on_a_disk_that_settles(capsys: pytest.CaptureFixture[str], 
     assert "macro step 100 us: 3 runs" in shown
     assert "no window whirls" in shown
     assert "share of phases that whirl: 0.0% (95% interval 0.0% to 70.8%)" in shown
-    assert "phase 0 deg, the scene's own, with macro step 100 us: no whirl, and no edge anywhere" in shown
+    assert (
+        "phase 0 deg, the scene's own, with macro step 100 us: no whirl, and no edge between the phases run"
+        in shown
+    )
     summaries = sorted(tmp_path.glob("100us/*/summary.json"))
     assert [path.parent.name for path in summaries] == ["000.000", "120.000", "240.000"]
     forces = {json.loads(path.read_text())["peak_contact_force_N"] for path in summaries}

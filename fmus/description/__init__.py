@@ -1,0 +1,1 @@
+"""modelDescription.xml, derived from a model's declarations."""

@@ -1,0 +1,114 @@
+"""Whether what a scene says can be a machine: what cannot is refused, what hardly can is said.
+
+Each number may lie within its own bounds and make no machine beside the others, or be of another unit
+than was meant. Whatever runs a scene looks at it once its components are set, before the first step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from touchdown.master.common.errors import TouchdownError
+
+RPM = 2.0 * math.pi / 60.0
+MOST_BORE_SPEED = 1e3  # m rpm, bore times speed: what grease-lubricated ball bearings run
+FAST = 1.5  # times the speed of a rule; above, it is said
+WIDE = 0.1  # clearance over the journal's radius; usual is 0.01 to 0.03
+LOOSE = 0.7  # of the bore that journal and clearance fill at least, where no sleeve is between
+ROUGH = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
+NO_FRICTION = 5.0  # above which nothing rubs
+BALLS = "balls."  # begins the names of what a ball bearing says of its balls
+COEFFICIENTS = ("friction.dynamic", "friction.static")
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A touchdown bearing and the journal that it is around; lengths in m."""
+
+    bearing: str  # component
+    values: Mapping[str, float]  # its parameters in SI, by name
+    designation: str | None  # in the catalogue
+    bore: float | None  # of that bearing
+    body: str  # component that the journal is of
+    speed: float | None  # rad/s, at the start
+
+    @property
+    def width(self) -> float | None:
+        """Diameter (m) that the rule of speed counts: the bore, or what the journal leaves to guess."""
+        radius = self.values.get("journal_radius")
+        return self.bore or (None if radius is None else 2.0 * radius)
+
+
+def remarks(seats: Iterable[Seat]) -> list[str]:
+    """What the user is to know of a machine before it runs, a line each.
+
+    Raises TouchdownError for what cannot be.
+    """
+    return list(dict.fromkeys(line for seat in seats for line in _of_seat(seat)))
+
+
+def _of_seat(seat: Seat) -> Iterator[str]:
+    for look in (_fit, _clearance, _friction, _speed):
+        yield from look(seat)
+
+
+def _fit(seat: Seat) -> Iterator[str]:
+    """Of the journal in the bore."""
+    radius, bore = seat.values.get("journal_radius"), seat.bore
+    if radius is None or bore is None:
+        return
+    what = f"{seat.bearing}.journal_radius = {_mm(radius)}"
+    if 2.0 * radius > bore:
+        raise TouchdownError(
+            f"{what} does not go into {seat.designation}, whose bore is {_mm(bore)} wide; take a bearing "
+            f"with a bore above {_mm(2.0 * radius)} (`touchdown catalogue` lists them), or set the radius "
+            "of the journal that belongs to it"
+        )
+    filled = 2.0 * (radius + seat.values.get("clearance", 0.0))
+    if filled < LOOSE * bore:
+        yield (
+            f"{what} and its clearance fill {_mm(filled)} of the bore of {seat.designation}, {_mm(bore)}; "
+            "a sleeve is taken to fill the rest"
+        )
+
+
+def _clearance(seat: Seat) -> Iterator[str]:
+    radius, clearance = seat.values.get("journal_radius"), seat.values.get("clearance")
+    if radius and clearance and clearance > WIDE * radius:
+        yield (
+            f"{seat.bearing}.clearance = {_mm(clearance)} is {100.0 * clearance / radius:.0f} % of the "
+            f"journal's radius of {_mm(radius)}, and most are 1 to 3 %; it is radial, and a number without "
+            "a unit is in m"
+        )
+
+
+def _friction(seat: Seat) -> Iterator[str]:
+    for name in COEFFICIENTS:
+        value = seat.values.get(name, 0.0)
+        what = f"{seat.bearing}.{name} = {value:g}"
+        if value > NO_FRICTION:
+            raise TouchdownError(
+                f"{what} is no coefficient of friction: dry steel has 0.1 to 0.5; write "
+                f'"{value:g} %" where per cent are meant'
+            )
+        if value > ROUGH:
+            yield f"{what} is more than solids rub with; dry steel has 0.1 to 0.5"
+
+
+def _speed(seat: Seat) -> Iterator[str]:
+    rolls = seat.bore is not None or any(name.startswith(BALLS) for name in seat.values)
+    if not rolls or seat.speed is None or seat.width is None:
+        return
+    usual = MOST_BORE_SPEED / seat.width * RPM
+    if abs(seat.speed) > FAST * usual:
+        yield (
+            f"{seat.body}.speed = {seat.speed / RPM:.0f} rpm is more than a bearing of {_mm(seat.width)} "
+            f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MOST_BORE_SPEED:,.0f} mm rpm); "
+            "a number without a unit is in rad/s"
+        )
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.4g} mm"

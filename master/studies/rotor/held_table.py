@@ -1,0 +1,76 @@
+"""A rotor in bearings, as text: modes at a speed, damped critical speeds, whether it is stable."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from touchdown.rotor.modal.campbell import Held
+from touchdown.rotor.modal.whirl import DAMPED, damping_ratios, log_decrements
+
+RPM = 60.0 / (2.0 * math.pi)
+TOLD = 8  # modes
+PLANAR = 0.1  # of a circle's turning; below, a whirl is told as planar
+HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>14}  {'whirl':>10}"
+
+
+def held_lines(held: Held, title: str) -> Iterator[str]:
+    """A table of the modes under `title`, and one of the critical speeds."""
+    verdict = "stable" if held.whirl.stable else "UNSTABLE"
+    if held.whirl.free:
+        verdict += ", but not held everywhere: it may drift"
+    yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
+    yield f"  {'mode':<10}{HEAD}"
+    for number, k in enumerate(held.swinging[:TOLD], 1):
+        root = complex(held.whirl.roots[k])
+        grows = "  grows" if held.whirl.damping_ratios[k] < -DAMPED else ""
+        yield f"  {number:<10}{_row(root, float(held.whirl.sense[k]))}{grows}"
+    slow = len(held.whirl.roots) - len(held.swinging)
+    if slow:
+        yield f"  {slow} more hardly swing (damping ratio of 0.95 or more)"
+    yield from _falling(held)
+    yield ""
+    yield from _critical(held)
+    yield ""
+
+
+def whirl_name(sense: float) -> str:
+    """Which way a mode turns, in a word."""
+    return "planar" if abs(sense) < PLANAR else "forward" if sense > 0.0 else "backward"
+
+
+def _row(root: complex, sense: float) -> str:
+    roots = np.array([root])
+    hertz = root.imag / (2.0 * math.pi)
+    ratio, decrement = (round(float(told(roots)[0]), 4) + 0.0 for told in (damping_ratios, log_decrements))
+    return f"{hertz:12.2f}  {60.0 * hertz:10.0f}  {ratio:14.4f}  {decrement:14.4f}  {whirl_name(sense):>10}"
+
+
+def _falling(held: Held) -> Iterator[str]:
+    """What grows without a swing, and at which of the diagram's speeds anything grows."""
+    if held.whirl.pushed_away:
+        yield "  it is pushed away from where it stands, without a swing"
+    ranges = [
+        f"{rpm[0]:.0f} and {rpm[-1]:.0f}" for rpm in _stretches(RPM * held.lines.speeds, ~held.lines.stable)
+    ]
+    if ranges:
+        yield f"  something grows between {', '.join(ranges)} rpm of the diagram"
+
+
+def _stretches(values: np.ndarray, where: np.ndarray) -> list[np.ndarray]:
+    """Runs of neighbouring `values` for which `where` holds."""
+    runs = np.split(np.arange(len(values)), np.flatnonzero(np.diff(where)) + 1)
+    return [values[run] for run in runs if len(run) and where[run[0]]]
+
+
+def _critical(held: Held) -> Iterator[str]:
+    end = RPM * held.lines.speeds[-1]
+    if not held.lines.crossings:
+        yield f"  no critical speed up to {end:.0f} rpm"
+        return
+    yield f"  critical speeds up to {end:.0f} rpm, where a damped whirl is as fast as the spin"
+    yield f"  {'':<10}{HEAD}"
+    for number, one in enumerate(held.lines.crossings, 1):
+        yield f"  {number:<10}{_row(one.root, one.sense)}"

@@ -1,0 +1,228 @@
+"""A bearing alone on a rig that moves its journal as asked and reads its force: stiffness and damping.
+
+It is stepped as in a run, through the variables of the contract, so that a bearing of others is measured
+as one of the project's own. Its housing stands still.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.component import Component
+from touchdown.master.components.contract import FORCE, MOUNTED, POSITION
+
+FREQUENCIES = (10.0, 40.0, 160.0, 640.0)  # Hz, at which a bearing is shaken
+STEPS = 256  # macro steps of a period, of what takes any
+FEWEST = 8  # of what takes only its own; at frequencies for which there are less it is not shaken
+PERIODS = 40  # at most, until one is as the last
+ALIKE, NEARLY = 1e-8, 1e-3  # of a period's answer to the last one's: aimed at, and told all the same
+NO_FORCE = 1e-9  # N
+AT_REST = np.zeros(2)
+SPIN = "omega"  # at a journal's port
+
+DESCENT = 0.01  # m/s, of a journal that is lowered onto its bearing
+DEEPEST = 0.002  # m that it is lowered at most
+FINE = 20e-6  # s, macro step of that
+SETTLING, LISTENING = 4e-3, 2e-3  # s, until a bearing has come to rest, and over which its force is read
+PRESSES = 25  # at most, until the load is met
+MET = 1e-3  # of the load
+NEAR = 0.02  # of the load, by which a pressed journal is moved on for the slope
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where everything is before it is moved, (x, y) in m."""
+
+    journal: np.ndarray
+    housing: np.ndarray
+    sensors: dict[str, np.ndarray]  # by port
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """A journal lying on its bearing under a load, downwards."""
+
+    depth: float  # m, from the middle of the bearing
+    across: float  # N/m, stiffness to the side, once the bearing has come to rest
+    along: float  # N/m, vertically
+    damping: float  # N s/m, vertically
+
+
+class Rig:
+    """Moves the journal of a bearing, and what senses it; all forces are those on the journal, N."""
+
+    def __init__(self, component: Component, port: str, place: Place, macro_step: float) -> None:
+        """`component` is loaded and set, not initialised; macro_step: s, for what takes no other."""
+        self._component, self._place, self._port = component, place, port
+        self._own_step = None if component.any_step else macro_step
+        self.spin = 0.0  # rad/s, of the journal, counter-clockwise
+        names = [f"{port}.{SPIN}"] + [
+            f"{one}.{name}" for one in (port, *place.sensors, MOUNTED) for axis in POSITION
+            for name in (axis, f"v{axis}", f"a{axis}_free")
+        ]  # fmt: skip
+        self._names = [name for name in names if name in component.variables]
+        self._force = np.zeros(2)
+        component.bind(self._names, self._force, [f"{port}.{f}" for f in FORCE])
+        self._time = 0.0
+        component.enter(0.0)
+        self._set(AT_REST, AT_REST, AT_REST, True)
+        component.pull()
+        component.exit()
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """At which it is shaken (F,), Hz: whole macro steps to a period. Raises TouchdownError for none."""
+        if self._own_step is None:
+            return np.array(FREQUENCIES)
+        counts = np.array([round(1.0 / (f * self._own_step)) for f in FREQUENCIES])
+        counts = counts[counts >= FEWEST]
+        if not len(counts):
+            raise TouchdownError(
+                f"{self._component.name} takes steps of {self._own_step:g} s, too long to be shaken at "
+                f"{FREQUENCIES[0]:g} Hz; set a shorter run.macro_step"
+            )
+        return 1.0 / (counts * self._own_step)
+
+    def sagitta(self) -> np.ndarray:
+        """Of a swing, what a chord leaves out that lasts a macro step (F,), by frequency."""
+        steps = np.array([self._step_of(1.0 / (STEPS * f)) for f in self.frequencies])
+        return (2.0 * math.pi * self.frequencies * steps) ** 2 / 8.0
+
+    def dynamic_stiffness(
+        self,
+        frequency: float,
+        direction: np.ndarray,
+        amplitude: float,
+        about: np.ndarray = AT_REST,
+        alike: float = ALIKE,
+        sensed: bool = True,
+    ) -> np.ndarray:
+        """Force against the motion over it (2,), complex, N/m, in a swing (m) along `direction` (2,).
+
+        frequency: Hz, one of `frequencies`; alike: of two periods' answers, over their size; sensed: by its
+        sensors, too. Raises TouchdownError where answers do not become `NEARLY` alike.
+        """
+        step = self._step_of(1.0 / (STEPS * frequency))
+        count = round(1.0 / (frequency * step))
+        omega = 2.0 * math.pi / (count * step)
+        turn = np.exp(1j * omega * step * np.arange(count + 1))
+        here, rate = amplitude * np.real(turn), -amplitude * omega * np.imag(turn)
+        if not sensed:  # along its chords: beside it what its sensors see goes on in straight lines
+            rate = np.append(np.diff(here) / step, 0.0)
+        bend = 2.0 * (np.diff(here) - step * rate[:-1]) / step**2  # parabolas that end where the swing does
+        middle = np.conj(turn[:-1]) * np.exp(-0.5j * omega * step) / np.sinc(1.0 / count)
+        last = np.full(2, np.nan + 0j)
+        for _ in range(PERIODS):
+            forces = np.empty((count, 2))
+            for k in range(count):
+                forces[k] = self._take(
+                    about + here[k] * direction, rate[k] * direction, bend[k] * direction, step, sensed
+                )
+            answer = -2.0 / count * (middle @ forces) / amplitude
+            apart = np.max(np.abs(answer - last))
+            if apart <= alike * np.max(np.abs(answer)) + NO_FORCE / amplitude:
+                return answer
+            last = answer
+        if apart <= NEARLY * np.max(np.abs(answer)):
+            return answer
+        raise TouchdownError(
+            f"{self._component.name}: its force does not follow a swing of {amplitude:.3g} m at "
+            f"{frequency:g} Hz, so that it is no linear bearing there"
+        )
+
+    def pressed(self, load: float) -> Pressed | None:
+        """The journal, without spin, lowered until the bearing carries `load` (N); None: it sinks on."""
+        self.spin = 0.0
+        depth = self._lowered(load)
+        if depth is None:
+            return None
+        depth, slope = self._met(load, depth)
+        move, down = NEAR * load / slope, self._below(depth)
+        side, up = np.eye(2)
+        across, along = (self._slope(down, move * axis) for axis in (side, up))
+        self._listen(down)
+        highest = self.frequencies[-2:]
+        swings = [self.dynamic_stiffness(f, up, move, down, NEARLY)[1] for f in highest]
+        rates = 2.0 * math.pi * highest
+        return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
+
+    def _slope(self, off: np.ndarray, move: np.ndarray) -> float:
+        """Stiffness (N/m) at rest about `off` (2,), by central differences over `move` (2,), m."""
+        ahead, back = (self._listen(off + sign * move) for sign in (1.0, -1.0))
+        return float((back - ahead) @ move / (2.0 * move @ move))
+
+    def _lowered(self, load: float) -> float | None:
+        """How deep (m) the journal is once the bearing first carries `load`."""
+        step = self._step_of(FINE)
+        rate = np.array([0.0, -DESCENT])
+        for k in range(round(DEEPEST / (DESCENT * step))):
+            if self._take(self._below(k * step * DESCENT), rate, AT_REST, step)[1] > load:
+                return (k + 1) * step * DESCENT
+        return None
+
+    def _met(self, load: float, depth: float) -> tuple[float, float]:
+        """The depth (m) at which the bearing, come to rest, carries `load`, and the force's slope (N/m)."""
+        force = self._listen(self._below(depth))[1]
+        other, slope = depth - 0.25 * self._step_of(FINE) * DESCENT, 0.0
+        for _ in range(PRESSES):
+            there = self._listen(self._below(other))[1]
+            if (
+                slope == 0.0 or abs(there - force) > NEAR * load
+            ):  # nearer, what is left of rattling would tell
+                slope = (there - force) / (other - depth)
+            if not slope > 0.0:
+                break
+            depth, force = other, there
+            if abs(load - force) <= MET * load:
+                return depth, slope
+            other = depth + (load - force) / slope
+        raise TouchdownError(
+            f"{self._component.name} does not settle under its load of {load:.4g} N: {force:.4g} N at "
+            f"{1e6 * depth:.4g} um below the middle"
+        )
+
+    def _below(self, depth: float) -> np.ndarray:
+        """How far a journal `depth` (m) below the middle of the bearing is off its place (2,)."""
+        return self._place.housing - self._place.journal - [0.0, depth]
+
+    def _listen(self, off: np.ndarray) -> np.ndarray:
+        """Mean force (2,) once the journal has stood `off` (2,) its place (m) for a while."""
+        step = self._step_of(FINE)
+        for _ in range(round(SETTLING / step)):
+            self._take(off, AT_REST, AT_REST, step)
+        heard = [self._take(off, AT_REST, AT_REST, step) for _ in range(max(1, round(LISTENING / step)))]
+        return np.mean(heard, axis=0)
+
+    def _step_of(self, wanted: float) -> float:
+        """The macro step to take (s)."""
+        return self._own_step or wanted
+
+    def _take(
+        self, off: np.ndarray, rate: np.ndarray, bend: np.ndarray, step: float, sensed: bool = True
+    ) -> np.ndarray:
+        """Mean force (2,) over a macro step that begins `off` (m) with `rate` (m/s) and `bend` (m/s2)."""
+        self._set(off, rate, bend, sensed)
+        self._component.step(self._time, step)
+        self._time += step
+        self._component.pull()
+        return self._force.copy()
+
+    def _set(self, off: np.ndarray, rate: np.ndarray, bend: np.ndarray, sensed: bool) -> None:
+        """Hand the motion over."""
+        moving = {self._port: (self._place.journal + off, rate, bend)}
+        moving[MOUNTED] = self._place.housing, AT_REST, AT_REST
+        for sensor, place in self._place.sensors.items():
+            moving[sensor] = (place + off, rate, bend) if sensed else (place, AT_REST, AT_REST)
+        for i, name in enumerate(self._names):
+            port, _, variable = name.rpartition(".")
+            if variable == SPIN:
+                self._component.inputs[i] = self.spin
+                continue
+            axis = POSITION.index(variable.removesuffix("_free")[-1])
+            order = {"x": 0, "y": 0, "v": 1, "a": 2}[variable[0]]
+            self._component.inputs[i] = moving[port][order][axis]
+        self._component.push()

@@ -1,0 +1,161 @@
+"""A scene's rotor described: free, levitated, and resting on its touchdown bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from touchdown.master.results.run import make_writable
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.rotor.held_table import held_lines
+from touchdown.master.studies.rotor.linear import Answer
+from touchdown.master.studies.rotor.report import MODES, SPEED, Report, described, report_text
+from touchdown.master.studies.rotor.situations import Bearing, Seen, Situation, seen_in, situations
+from touchdown.rotor.beams.shaft import Shaft, Support
+from touchdown.rotor.modal.critical import CriticalMap, critical_map
+from touchdown.rotor.modal.modes import fullest
+from touchdown.rotor.modal.whirl import static_stiffness
+from touchdown.rotor.portrait import Portrait
+
+MISFIT = 1e-2  # of a law; above, it is said
+ALIKE = 1e-6  # directions of a support that differ by less are the same
+SPEEDS = 41  # speeds of a Campbell diagram
+BEYOND = 2.0  # times the speed asked for: its end
+
+
+@dataclass(frozen=True)
+class SceneRotor:
+    """All that is known of a scene's rotor before it is dropped."""
+
+    scene: Scene
+    portrait: Portrait  # free; its maps of critical speeds mark what the situations' bearings have
+    situations: tuple[Situation, ...]
+    unheld: tuple[str, ...]  # a line for each situation that there is not
+
+
+def described_in(
+    scene: Scene, speed: float | None = None, modes: int = MODES, load: float = 1.0
+) -> SceneRotor:
+    """The rotor of `scene` at `speed` (rad/s, signed; None: the scene's own), free and on what holds it.
+
+    modes: told of the free rotor, per plane; load: of the touchdown bearings, over what they carry of its
+    weight. Raises TouchdownError where the scene has no rotor of elements, or nothing that holds it.
+    """
+    seen = seen_in(scene)
+    seen = seen if speed is None else replace(seen, speed=speed)
+    asked = abs(seen.speed)
+    end = BEYOND * (asked or SPEED)
+    found, unheld = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
+    free = described(replace(seen.shaft, supports=()), asked, modes)
+    maps = [one for situation in found if (one := _map(seen, situation)) is not None]
+    return SceneRotor(scene, replace(free, critical=tuple(maps)), tuple(found), tuple(unheld))
+
+
+def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, load: float) -> Report:
+    """`described_in` as text and as pictures in `folder`."""
+    found = described_in(scene, speed, modes, load)
+    make_writable(folder)
+    from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
+
+    held = {one.name: (one.held, title_of(found, one)) for one in found.situations}
+    return Report(scene_text(found), draw_pictures(found.portrait, folder, held))
+
+
+def title_of(found: SceneRotor, situation: Situation) -> str:
+    """Of a situation's Campbell diagram."""
+    return f"{found.portrait.shaft.title} in {found.scene.name}: {situation.name}"
+
+
+def scene_text(found: SceneRotor) -> str:
+    """All figures as text."""
+    lines = [report_text(found.portrait)]
+    for situation in found.situations:
+        lines += ["", *_situation(situation)]
+    return "\n".join([*lines, *(f"  {line}" for line in found.unheld)])
+
+
+def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
+    """Critical speeds over the stiffness of a situation's bearings, theirs marked; None: at one node."""
+    nodes = dict.fromkeys(b.node for b in situation.bearings)
+    if len(nodes) < 2:
+        return None
+    supports = tuple(_support(node, [b for b in situation.bearings if b.node == node]) for node in nodes)
+    shaft: Shaft = replace(seen.shaft, supports=supports)
+    held_by = {b.station for b in situation.bearings}
+    places = [s for s in shaft.stations if s.name in held_by]
+    return critical_map(shaft, fullest(shaft, list(nodes)), places)
+
+
+def _support(node: int, bearings: list[Bearing]) -> Support:
+    """The springs that bearings at a node are."""
+    across, upright = np.diag(static_stiffness(p for b in bearings for p in b.parts)).tolist()
+    alike = abs(across - upright) <= ALIKE * max(abs(across), abs(upright))
+    return Support(node, across, None if alike else upright)
+
+
+# -- as text -----------------------------------------------------------------------------------------
+
+
+def _situation(situation: Situation) -> Iterator[str]:
+    yield f"  {situation.name}"
+    for bearing in situation.bearings:
+        yield from _pressed(bearing) if bearing.pressed is not None else _floating(bearing)
+    for line in situation.left_out:
+        yield f"    {line}"
+    yield ""
+    yield from held_lines(situation.held, situation.name)
+
+
+def _floating(b: Bearing) -> Iterator[str]:
+    """One that holds the rotor where it starts: its laws, and what they are at each frequency."""
+    several = len(b.answers) > 1
+    looks = f", sees the rotor at {b.sensor}" if b.sensor else ""
+    yield f"    {b.name} at {b.station}{looks}{_on(b)}"
+    for answer in b.answers:
+        if several:
+            yield f"      as the rotor moves at {b.sensor if answer.sensed else b.station}:"
+        yield from _law(answer)
+
+
+def _law(answer: Answer) -> Iterator[str]:
+    """What a bearing answers to one motion."""
+    law, response = answer.law, answer.response
+    lag = f", behind a lag of {1e6 * law.lag:.4g} us ({1.0 / law.lag:.5g} rad/s)" if law.lag else ""
+    yield f"      {_both(law.stiffness, 'N/m')}, {_both(law.damping, 'N s/m')}{lag}"
+    if law.misfit > MISFIT:
+        yield f"      off by up to {100.0 * law.misfit:.2g} % of what it answers, as the modes may be"
+    if law.lag or law.misfit > MISFIT:
+        yield "      at " + "".join(f"{f:11.0f} Hz" for f in response.frequencies)
+        yield "      N/m" + "".join(f"{k:13.4g} " for k in response.real[:, 0])[1:]
+        yield "      N s/m" + "".join(f"{c:13.4g} " for c in response.damping[:, 0])[3:]
+
+
+def _both(matrix: np.ndarray, unit: str) -> str:
+    """A matrix (2, 2) in words."""
+    (a, b), (c, d) = matrix
+    told = f"{a:.4g} {unit}" if a == d else f"{a:.4g} {unit} horizontally, {d:.4g} {unit} vertically"
+    return told if b == c == 0.0 else f"{told} (across: {b:.4g}, {c:.4g} {unit})"
+
+
+def _pressed(b: Bearing) -> Iterator[str]:
+    """One that the rotor lies on."""
+    assert b.pressed is not None
+    depth = f"{1e6 * b.pressed.depth:.4g} um below its middle"
+    yield f"    {b.name} at {b.station}, pressed with {b.load:.4g} N, {depth}{_on(b)}"
+    yield (
+        f"      {b.pressed.along:.4g} N/m and {b.pressed.damping:.4g} N s/m vertically, "
+        f"{b.pressed.across:.4g} N/m to the side, where the bore rises; friction left out"
+    )
+    if b.foundation is not None:
+        yield f"      with what it stands on in series: {b.statically[1, 1]:.4g} N/m vertically"
+
+
+def _on(b: Bearing) -> str:
+    """What it stands on."""
+    f = b.foundation
+    if f is None:
+        return ""
+    return f", on {b.mount} ({f.mass:.4g} kg, {f.stiffness:.4g} N/m, {f.damping:.4g} N s/m)"

@@ -1,0 +1,159 @@
+"""Rotors as arrays: in a NumPy archive (.npz), in a folder of Matrix Market files, or a mapping in Python.
+
+A folder holds M.mtx, K.mtx, G.mtx, if there is one C.mtx, and nodes.csv, whose header is
+
+    node, x [mm], y [mm], z [mm]
+
+with a row for each node, and dofs.csv with the header `node, dof` and a row for each row of the matrices,
+or with the header `dof` and a row for each degree of freedom of a node, the same at all of them.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from touchdown.modelkit.units import UnitError, to_si
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.imports.matrices import of_matrices
+from touchdown.rotor.imports.mistakes import ImportedRotorError
+from touchdown.rotor.imports.modes import of_modes
+
+MATRICES = ("M", "K", "G", "C")
+HEAD = re.compile(r"^\s*([^\[(]+?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*$")
+
+
+def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
+    """The rotor that arrays by name describe: matrices, or modal data. Raises ImportedRotorError.
+
+    `file` is what to call them in messages. Which arrays there are, and their units:
+    `rotor.imports.matrices` and `rotor.imports.modes`.
+    """
+    if "M" in data or "K" in data:
+        return of_matrices(data, file, title)
+    if "frequencies" in data:
+        return of_modes(data, file, title)
+    there = ", ".join(map(str, data)) or "nothing"
+    raise ImportedRotorError(
+        f"{file}: holds neither matrices (M, K, G) nor modal data (frequencies, deflections, slopes); "
+        f"there are: {there}"
+    )
+
+
+def from_archive(path: Path) -> Shaft:
+    """The rotor in a NumPy archive. Raises ImportedRotorError."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            data = {name: archive[name] for name in archive.files}
+    except OSError as error:
+        raise ImportedRotorError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except (ValueError, AttributeError, EOFError, zipfile.BadZipFile, MemoryError) as error:
+        raise ImportedRotorError(
+            f"{path}: cannot be read: {error}; write it by numpy.savez, of numbers and texts"
+        ) from None
+    return of_arrays(data, str(path), path.stem)
+
+
+def from_folder(folder: Path) -> Shaft:
+    """The rotor in a folder of Matrix Market files. Raises ImportedRotorError."""
+    data: dict[str, Any] = {}
+    for name in MATRICES:
+        path = folder / f"{name}.mtx"
+        if path.is_file():
+            data[name] = _market(path)
+        elif name != "C":
+            raise ImportedRotorError(f"{folder}: has no {name}.mtx; there must be M.mtx, K.mtx and G.mtx")
+    data["nodes"], data["coordinates"] = _nodes(folder / "nodes.csv")
+    data["dofs"] = _dofs(folder / "dofs.csv")
+    return of_matrices(data, str(folder), folder.name)
+
+
+def _market(path: Path) -> np.ndarray:
+    """A matrix, full (n, n)."""
+    from scipy import io, sparse
+
+    try:
+        found: Any = io.mmread(path)
+    except (OSError, ValueError, OverflowError, MemoryError) as error:
+        raise ImportedRotorError(
+            f"{path}: cannot be read: {error}; it must be Matrix Market text"
+        ) from None
+    return found.toarray() if sparse.issparse(found) else np.asarray(found)
+
+
+def _nodes(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Names (N,) and coordinates (N, 3), m, of the nodes."""
+    head, *rows = _table(path)
+    columns = [_column(path, name) for name in head]
+    if sorted(name for name, _ in columns) != ["node", "x", "y", "z"]:
+        raise ImportedRotorError(
+            f"{path}: has the columns {', '.join(head)}; it needs node, x, y and z, lengths with their "
+            "unit as in x [mm]"
+        )
+    names, places = [], []
+    for number, row in enumerate(rows, 2):
+        cells = dict(zip((name for name, _ in columns), row, strict=True))
+        units = dict(columns)
+        names.append(cells["node"])
+        places.append([_length(cells[a], units[a], f"{path}, row {number}: {a}") for a in "xyz"])
+    return np.array(names), np.array(places)
+
+
+def _column(path: Path, text: str) -> tuple[str, str]:
+    """Name and unit of a column."""
+    match = HEAD.match(text)
+    name, unit = (match[1].lower(), match[2] or "") if match else (text, "")
+    if name in ("x", "y", "z") and not unit:
+        raise ImportedRotorError(f"{path}: the column {text} has no unit; write {name} [mm], for example")
+    return name, unit
+
+
+def _length(text: str, unit: str, where: str) -> float:
+    try:
+        value = to_si(f"{text} {unit}", "m", where)
+    except UnitError as error:
+        raise ImportedRotorError(str(error)) from None
+    if not math.isfinite(value):
+        raise ImportedRotorError(f"{where} = {text} is no finite number")
+    return value
+
+
+def _dofs(path: Path) -> np.ndarray:
+    """(n, 2) node and degree of freedom of each row; or (d,), those of each node."""
+    head, *rows = _table(path)
+    names = [name.lower() for name in head]
+    if names == ["dof"]:
+        return np.array([row[0] for row in rows])
+    if names != ["node", "dof"]:
+        raise ImportedRotorError(
+            f"{path}: has the columns {', '.join(head)}; it needs node and dof, or dof"
+        )
+    return np.array(rows)
+
+
+def _table(path: Path) -> list[list[str]]:
+    """Header and rows of a .csv, all as long as the header."""
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ImportedRotorError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ImportedRotorError(f"{path}: is not text in UTF-8 (byte {error.start})") from None
+    lines = [line for line in text.splitlines() if line.strip(" ,;\t") and not line.startswith("#")]
+    if len(lines) < 2:
+        raise ImportedRotorError(f"{path}: has no row below its header")
+    mark = max("\t;,", key=lines[0].count)
+    rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
+    for number, row in enumerate(rows, 1):
+        if len(row) != len(rows[0]):
+            raise ImportedRotorError(
+                f"{path}, row {number}: has {len(row)} cells, the header {len(rows[0])}"
+            )
+    return rows

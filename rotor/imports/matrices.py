@@ -1,0 +1,227 @@
+"""A rotor from mass, stiffness and gyroscopic matrices, as finite-element programs export them.
+
+Arrays by name, for n rows and N nodes on the axis:
+
+    M, K, G      (n, n) of M q'' + (C + Omega G) q' + K q = F, the spin Omega in rad/s
+    C            (n, n), optional: damping of the free rotor
+    coordinates  (N, 3) of the nodes, or (N,) along z; the axis is that along which they differ
+    nodes        (N,) their numbers or names; without, from 1
+    dofs         (n, 2) node and degree of freedom of each row, or (d,) those of a node, node by node
+    units        "m": kg, m, s, N, which is the default; "mm": t, mm, s, N
+
+Degrees of freedom are displacements and right-handed rotations, 1 to 6 (or T1 to T3 and R1 to R3; UX to UZ
+and ROTX to ROTZ). Each node needs both displacements and both rotations across the axis; those along it and
+about it must not be coupled to them, and are left out. A spin is positive about the axis, so G holds +Jp in
+the row of the first rotation across it and the column of the second; the axis comes third, as in x, y, z.
+
+The planes must be alike. On an axis along z the slope in the x-z plane is the rotation about y, that in the
+y-z plane is less the one about x; along x and y likewise, in cyclic order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.superelement import Superelement, by, checked, furthest
+from touchdown.rotor.imports.dofs import Rows, rows
+from touchdown.rotor.imports.given import Given
+from touchdown.rotor.imports.mistakes import ImportedRotorError
+from touchdown.rotor.modal.modes import RIGID, basis
+
+FIELDS = ("M", "K", "G", "C", "coordinates", "nodes", "dofs", "units")
+LENGTHS = {"m": 1.0, "mm": 1e-3}  # m
+MISTAKEN = (  # what mends a mistake: a factor of the coordinates, and the unit; and what to say
+    (-1.0, None, "the coordinates run against the axis of the matrices; turn their sign along it"),
+    (1.0, "m", 'these are matrices in kg, m, s, N, so it is units = "m"'),
+    (1.0, "mm", 'these are matrices in t, mm, s, N; give units = "mm"'),
+    (1e-3, "m", "the coordinates are in mm, the matrices in kg, m, s, N; divide the coordinates by 1000"),
+    (1e3, "mm", 'the matrices are in t, mm, s, N; give the coordinates in mm, too, and units = "mm"'),
+)
+ALONG = "motion along the axis or about it, which a rotor here does not have"
+UNDAMPED = 1e-3  # of the first bending frequency: damping of a rigid motion below it is none
+PROPORTIONAL = 1e-3  # of alpha: by which C may differ from alpha M on the rigid modes
+TOLD = 5  # damping ratios
+MOST_LISTED = 200  # characters of nodes' names
+
+
+def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
+    """The rotor of these arrays. Raises ImportedRotorError."""
+    given = Given(file, data)
+    given.only(*FIELDS)
+    M = given.numbers("M")
+    if M.ndim != 2 or M.shape[0] != M.shape[1]:
+        raise given.error(f"M is {by(M.shape)}; it must be square")
+    planes = Planes(given, rows(given, len(M)), _unit(given))
+    planes.check_mass(M)
+    try:
+        body = checked(_body(given, planes, M))
+    except ImportedRotorError:
+        raise
+    except ModelError as error:
+        raise given.error(_mistaken(given, M) or str(error)) from None
+    positions = body.positions
+    about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
+    if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
+        listed = shorten(", ".join(planes.rows.nodes), MOST_LISTED, placeholder=" ...")
+        about += f"\nIts nodes from 1 on are those called {listed}"
+        called = planes.rows.nodes
+    shaft = Shaft(title, superelement=body, about=about, called=called)
+    if not given.has("C"):
+        return shaft
+    return _damped(given, shaft, planes.alike("C", given.numbers("C", M.shape)))
+
+
+def _body(given: Given, planes: Planes, M: np.ndarray) -> Superelement:
+    """Of one plane, in SI, unchecked."""
+    positions = planes.metre * planes.rows.positions
+    return Superelement(
+        positions - positions[0],
+        planes.alike("M", M),
+        planes.alike("K", given.numbers("K", M.shape)),
+        planes.polar(given.numbers("G", M.shape)),
+    )
+
+
+def _mistaken(given: Given, M: np.ndarray) -> str:
+    """Which mistake about axis or units, put right, makes these the matrices of a rotor; "" of none."""
+    places = given.numbers("coordinates")
+    for factor, unit, says in MISTAKEN:
+        changes = {"coordinates": factor * places} | ({} if unit is None else {"units": unit})
+        other = Given(given.file, {**given.data, **changes})
+        try:
+            checked(_body(other, Planes(other, rows(other, len(M)), _unit(other)), M))
+        except ModelError:
+            continue
+        return says
+    return ""
+
+
+def _unit(given: Given) -> float:
+    """The unit of length (m)."""
+    name = str(np.asarray(given.data.get("units", "m")))
+    if name not in LENGTHS:
+        raise given.error(f'units = {name!r} is not known; "m" is for kg, m, s, N and "mm" for t, mm, s, N')
+    return LENGTHS[name]
+
+
+@dataclass(frozen=True)
+class Planes:
+    """Parts of the matrices in one plane, in SI, after a look at the rest. All raise ImportedRotorError."""
+
+    given: Given
+    rows: Rows
+    metre: float  # the unit of length, m
+
+    def alike(self, name: str, matrix: np.ndarray) -> np.ndarray:
+        """M, K or C of a plane (2N, 2N): symmetric, the same in both, and nothing between them."""
+        size = np.diag(matrix)
+        if place := furthest(matrix, matrix.T, size):
+            what = f"{name} is not symmetric"
+            if name == "C":
+                what += " (what is gyroscopic in it belongs into G, per spin speed in rad/s)"
+            raise self._refusal(what, matrix, *_mirrored(place))
+        self._check_alone(name, matrix, size)
+        crossed = f"{name} couples the planes, which only G may (are the dofs in the order of the rows?)"
+        self._check_empty(crossed, matrix, size, self.rows.x, self.rows.y)
+        x, y = self._part(matrix, "xx"), self._part(matrix, "yy")
+        if place := furthest(x, y, np.diag(x)):
+            places = (self._place("xx", place), self._place("yy", place))
+            raise self._refusal(f"{name} is not the same in both planes", matrix, *places)
+        return self._in_si(0.5 * (x + y))
+
+    def check_mass(self, M: np.ndarray) -> None:
+        """Each deflection and each rotation has a mass of its own."""
+        for row in (*self.rows.x, *self.rows.y):
+            if M[row, row] <= 0.0:
+                raise self.given.error(
+                    f"M has {M[row, row]:g} for {self.rows.names[row]}, where a mass must be; export a "
+                    "consistent mass matrix, not a lumped one, or condense what has no mass"
+                )
+
+    def polar(self, matrix: np.ndarray) -> np.ndarray:
+        """The polar matrix of one plane (2N, 2N): what G has from the y-z plane on the x-z plane."""
+        size = np.full(len(matrix), np.max(np.abs(matrix), initial=0.0))
+        if place := furthest(matrix, -matrix.T, size):
+            raise self._refusal("G is not skew-symmetric", matrix, *_mirrored(place))
+        self._check_alone("G", matrix, size)
+        for plane in (self.rows.x, self.rows.y):
+            self._check_empty("G couples a plane to itself", matrix, size, plane, plane)
+        polar = self._part(matrix, "xy")
+        if place := furthest(polar, polar.T, size[: len(polar)]):
+            places = (self._place("xy", one) for one in _mirrored(place))
+            raise self._refusal("G is not the same in both planes", matrix, *places)
+        return self._in_si(0.5 * (polar + polar.T))
+
+    def _part(self, matrix: np.ndarray, planes: str) -> np.ndarray:
+        """Of the deflections and slopes in two planes (2N, 2N)."""
+        part = matrix[np.ix_(getattr(self.rows, planes[0]), getattr(self.rows, planes[1]))]
+        turned = np.tile([1.0, -1.0], len(part) // 2)  # slopes of the y-z plane are less the rotations
+        if planes[0] == "y":
+            part = turned[:, None] * part
+        return part * turned if planes[1] == "y" else part
+
+    def _place(self, planes: str, place: tuple[int, int]) -> tuple[int, int]:
+        """Row and column of the whole matrix, of those of a part."""
+        return getattr(self.rows, planes[0])[place[0]], getattr(self.rows, planes[1])[place[1]]
+
+    def _in_si(self, part: np.ndarray) -> np.ndarray:
+        """From the unit of length given; energies are then in N times it."""
+        per = np.tile([1.0 / self.metre, 1.0], len(part) // 2)
+        return self.metre * part * np.outer(per, per)
+
+    def _check_alone(self, name: str, matrix: np.ndarray, size: np.ndarray) -> None:
+        """Bending has nothing to do with motion along the axis or about it."""
+        lateral = np.concatenate((self.rows.x, self.rows.y))
+        self._check_empty(f"{name} couples bending to {ALONG}", matrix, size, lateral, self.rows.other)
+
+    def _check_empty(
+        self, what: str, matrix: np.ndarray, size: np.ndarray, lines: np.ndarray, columns: np.ndarray
+    ) -> None:
+        """Nothing of a matrix is in these rows and columns; `size` (n,) tells what is small."""
+        part = np.zeros_like(matrix)
+        part[np.ix_(lines, columns)] = matrix[np.ix_(lines, columns)]
+        if place := furthest(part, np.zeros_like(part), size):
+            raise self._refusal(what, matrix, place)
+
+    def _refusal(self, what: str, matrix: np.ndarray, *places: tuple[int, int]) -> ImportedRotorError:
+        """What to raise about the entries at some places."""
+        names = self.rows.names
+        told = [f"{matrix[i, j]:g} between {names[i]} and {names[j]}" for i, j in places]
+        return self.given.error(f"{what}: {', '.join(told)}")
+
+
+def _mirrored(place: tuple[int, int]) -> tuple[tuple[int, int], tuple[int, int]]:
+    """A place of a matrix, and that on the other side of its diagonal."""
+    row, column = place
+    return place, (column, row)
+
+
+def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
+    """`shaft` with the damping ratio that C (2N, 2N) gives the first bending mode; `about` tells others."""
+    free = basis(shaft, 0)
+    modal = np.sum(free.shapes * (C @ free.shapes), axis=0)  # 1/s
+    if np.max(np.abs(modal[:RIGID])) > UNDAMPED * free.omega[RIGID]:
+        rigid = free.shapes[:, :RIGID]
+        alpha = modal[:RIGID].mean()
+        if np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID))) <= PROPORTIONAL * alpha:
+            raise given.error(
+                f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
+                "belongs to the surroundings; export C without it"
+            )
+        raise given.error(
+            "C damps the rotor as a whole, so it holds bearings; export the rotor without, they belong "
+            "into the scene"
+        )
+    ratios = modal[RIGID:] / (2.0 * free.omega[RIGID:])
+    if not 0.0 <= ratios[0] < 1.0:
+        raise given.error(f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1")
+    told = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:TOLD])
+    about = f"{shaft.about}\nC gives the bending modes damping ratios of {told}; here all have the first."
+    return replace(shaft, damping_ratio=float(ratios[0]), about=about)

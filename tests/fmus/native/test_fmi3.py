@@ -1,0 +1,320 @@
+"""Native FMUs of FMI 3.0: the same models behind another side in C, with arrays."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import fromstring
+
+import fmpy
+import h5py
+import numpy as np
+import pytest
+from fmpy import extract, read_model_description
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+from places import ROOT
+
+from touchdown.fmus.description.arrays import arrays, element, time_reference
+from touchdown.fmus.native.build import Native as Choice
+from touchdown.fmus.native.build import build
+from touchdown.fmus.native.faces import FMI_3
+from touchdown.fmus.native.targets import TARGETS, here, places_3
+from touchdown.fmus.recipes import names, recipe
+from touchdown.master.cli import main
+from touchdown.master.common.errors import FAILED
+from touchdown.master.interop.check import check_fmu
+from touchdown.modelkit.model import slots
+
+Made = Callable[[str], Path]
+CHEAP = ("housing", "rigid_rotor", "bushing", "rotor_I")
+STEP = 2e-5  # s
+DROP = """
+title = "Rotor I drops onto bushings"
+attach = [["one.journal", "rotor.A"], ["two.journal", "rotor.B"]]
+[run]
+duration = "8 ms"
+macro_step = "40 us"
+[components.rotor]
+fmu = "{folder}rotor_I{end}"
+[components.one]
+fmu = "{folder}bushing{end}"
+[components.two]
+fmu = "{folder}bushing{end}"
+"""
+
+pytestmark = pytest.mark.skipif(here() is None, reason="native FMUs are not built for this machine")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """The FMU of a model, by name."""
+    target, folder = here(), tmp_path_factory.mktemp("fmi3")
+    assert target is not None
+    return cache(lambda name: build(recipe(name), folder, Choice((target,), face=FMI_3)))
+
+
+@pytest.fixture
+def bushing(made: Made, tmp_path: Path) -> Iterator[tuple[FMU3Slave, dict[str, Any], list[str]]]:
+    """An instance that is not initialised, its variables by name, and what it logs."""
+    folder = extract(str(made("bushing")), str(tmp_path / "bushing"))
+    description = read_model_description(folder)
+    said: list[str] = []
+    fmu = FMU3Slave(
+        guid=description.guid,
+        unzipDirectory=folder,
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="bushing",
+    )
+    fmu.instantiate(loggingOn=True, logMessage=lambda *words: said.append(words[-1].decode()))
+    yield fmu, {v.name: v for v in description.modelVariables}, said
+    fmu.freeInstance()
+    shutil.rmtree(folder)
+
+
+@pytest.mark.parametrize("fmu", CHEAP)
+def test_it_is_valid_and_meets_its_experiment(fmu: str, made: Made):
+    assert validate_fmu(str(made(fmu))) == []
+    report = check_fmu(str(made(fmu)))
+    assert report.problems == []
+    assert "valid FMI 3.0 for co-simulation" in report.lines
+
+
+def test_it_shows_all_functions_of_fmi_and_no_more(made: Made, tmp_path: Path):
+    """Those of FMI's own header, which fmpy brings along."""
+    if shutil.which("nm") is None:
+        pytest.skip("nm is not installed")
+    found = list(Path(extract(str(made("housing")), str(tmp_path))).glob("binaries/*/*.so"))
+    if not found:
+        pytest.skip("nm reads Linux's libraries")
+    (library,) = found
+    told = subprocess.run(["nm", "-D", library], capture_output=True, text=True, check=True).stdout
+    shown = {line.split()[-1] for line in told.splitlines() if " T " in line}
+    header = (Path(fmpy.__file__).parent / "c-code" / "fmi3Functions.h").read_text(encoding="utf-8")
+    known = set(re.findall(r"^FMI3_Export\s+\w+TYPE\s+(\w+);", header, re.MULTILINE))
+    assert len(known) > 60
+    assert shown == known
+
+
+@pytest.mark.parametrize("fmu", names())
+def test_arrays_hold_every_variable_of_fmi_2_once(fmu: str):
+    """Under the names that the master reads them by, each in its own word, alike but for their starts."""
+    model = recipe(fmu).model
+    read: list[tuple[str, int]] = []
+    for array in arrays(model):
+        indices = [()] if array.dimension is None else [(k + 1,) for k in range(array.dimension)]
+        places = [array.first.index + k * array.stride for k in range(len(indices))]
+        read += [(element(array.name, index), at) for index, at in zip(indices, places, strict=True)]
+        assert {(s.causality, s.variable.spec) for s in array.elements} == {
+            (array.first.causality, array.first.variable.spec)
+        }
+    assert sorted(read) == sorted((s.variable.name, s.index) for s in slots(model))
+
+
+def test_a_drop_is_recorded_as_in_process(made: Made, tmp_path: Path):
+    """Elastic modes cross in arrays; every number recorded is the same 64-bit word."""
+    folder = made("bushing").parent
+    assert folder == made("rotor_I").parent
+    found = {}
+    for name, text in (
+        ("third", DROP.format(folder=f"{folder}/", end=".fmu")),
+        ("within", DROP.format(folder="", end="")),
+    ):
+        scene = tmp_path / f"{name}.toml"
+        scene.write_text(text)
+        ways = ["--in-process"] if name == "within" else []
+        assert main(["run", str(scene), *ways, "--quiet", "--no-pictures", "-o", str(tmp_path / name)]) == 0
+        found[name] = recorded(tmp_path / name)
+    assert found["within"]["one/contact.force"].max() > 100.0  # N: they hit
+    assert found["third"].keys() == found["within"].keys()
+    assert {n for n, v in found["within"].items() if v.tobytes() != found["third"][n].tobytes()} == set()
+
+
+def recorded(folder: Path) -> dict[str, np.ndarray]:
+    """All numbers that a run recorded, by name."""
+    found: dict[str, np.ndarray] = {}
+
+    def take(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
+            found[name] = np.asarray(item[...])
+
+    with h5py.File(folder / "result.h5") as file:
+        file.visititems(take)
+    return found
+
+
+def test_arrays_are_set_and_read_whole_and_between_scalars(bushing: Any):
+    fmu, variables, _ = bushing
+    x, vy, clearance = (
+        variables[n].valueReference for n in ("journal.mode.x", "journal.mode.vy", "clearance")
+    )
+    given = [*np.arange(1.0, 21.0) * 1e-9, 4e-4, *np.arange(20) * -1e-6]
+    fmu.setFloat64([x, clearance, vy], given)
+    assert fmu.getFloat64([x, clearance, vy], nValues=41) == given
+    assert fmu.getFloat64([vy, x], nValues=40) == [*given[21:], *given[:20]]
+
+
+def test_other_counts_of_values_are_refused(bushing: Any):
+    fmu, variables, said = bushing
+    x = variables["journal.mode.x"].valueReference
+    for refused in (lambda: fmu.setFloat64([x], [0.0] * 19), lambda: fmu.getFloat64([x], nValues=21)):
+        with pytest.raises(Exception, match="failed with status 3"):
+            refused()
+    assert said == [f"{n} values for variables that hold 20" for n in (19, 21)]
+
+
+def test_elements_and_other_types_are_refused_by_name(bushing: Any):
+    fmu, variables, said = bushing
+    modes = next(a for a in arrays(recipe("bushing").model) if a.name == "journal.mode.x")
+    second, law = modes.first.index + modes.stride, variables["friction.kind"].valueReference
+    for refused in (
+        lambda: fmu.setFloat64([second], [0.0]),
+        lambda: fmu.setFloat64([law], [1.0]),
+        lambda: fmu.setInt32([law], [1]),
+        lambda: fmu.getBoolean([modes.first.index]),
+    ):
+        with pytest.raises(Exception, match="failed with status 3"):
+            refused()
+    assert f"value reference {second} cannot be set as Float64 now" in said[0]
+    assert "friction.kind cannot be set as Float64 now" in said[1]
+    assert "friction.kind cannot be set as Int32 now" in said[2]
+    assert "journal.mode.x cannot be read as Boolean" in said[3]
+
+
+def test_the_time_is_a_variable(bushing: Any):
+    """It can be read at any time, and never set."""
+    fmu, variables, said = bushing
+    time = variables["time"].valueReference
+    assert time == time_reference(recipe("bushing").model)
+    assert fmu.getFloat64([time]) == [0.0]
+    fmu.enterInitializationMode(startTime=0.5)
+    assert fmu.getFloat64([time]) == [0.5]
+    fmu.exitInitializationMode()
+    fmu.doStep(0.5, STEP)
+    assert fmu.getFloat64([time]) == [0.5 + STEP]
+    with pytest.raises(Exception, match="status 3"):
+        fmu.setFloat64([time], [0.0])
+    assert said[-1].startswith("time cannot be set")
+
+
+def test_a_step_that_is_discarded_leaves_no_trace(bushing: Any):
+    """A smaller one can be taken, with the numbers of an instance that was never asked for the larger."""
+    fmu, variables, said = bushing
+    force = [variables["journal.fy"].valueReference]
+    given = {"journal.y": -0.305e-3, "journal.vy": -0.4, "interface.tolerance": 1e-14}
+    answers = []
+    for tried in (False, True):
+        fmu.reset()
+        fmu.setFloat64([variables[n].valueReference for n in given], list(given.values()))
+        fmu.enterInitializationMode()
+        fmu.exitInitializationMode()
+        if tried:
+            with pytest.raises(Exception, match="status 2"):
+                fmu.doStep(0.0, 100.0)
+            assert "take a smaller macro step" in said[-1]
+        fmu.doStep(0.0, STEP)
+        answers.append(fmu.getFloat64(force))
+    assert answers[0] == answers[1]
+    assert answers[0][0] > 0.0
+
+
+def test_it_ends_where_the_host_said(bushing: Any):
+    fmu, _, said = bushing
+    fmu.enterInitializationMode(startTime=0.0, stopTime=3.0 * STEP)
+    fmu.exitInitializationMode()
+    for k in range(3):
+        fmu.doStep(k * STEP, STEP)
+    with pytest.raises(Exception, match="status 3"):
+        fmu.doStep(3.0 * STEP, STEP)
+    assert "the end was said to be t = 6e-05 s" in said[-1]
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"eventModeUsed": True}, "it has no event mode"),
+        ({"guid": "another"}, "do not belong together"),
+    ],
+)
+def test_instances_that_cannot_be_are_refused(
+    given: dict[str, Any], named: str, made: Made, tmp_path: Path
+):
+    folder = extract(str(made("bushing")), str(tmp_path / "bushing"))
+    description = read_model_description(folder)
+    said: list[str] = []
+    fmu = FMU3Slave(
+        guid=given.get("guid", description.guid),
+        unzipDirectory=folder,
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="bushing",
+    )
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        fmu.instantiate(
+            loggingOn=True,
+            eventModeUsed=given.get("eventModeUsed", False),
+            logMessage=lambda *words: said.append(words[-1].decode()),
+        )
+    assert named in said[0]
+
+
+def test_states_are_kept_and_written_down(bushing: Any):
+    fmu, variables, _ = bushing
+    force = [variables["journal.fy"].valueReference]
+    fmu.setFloat64([variables["journal.y"].valueReference], [-0.32e-3])
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    kept = fmu.getFMUState()
+    fmu.doStep(0.0, STEP)
+    once = fmu.getFloat64(force)
+    assert once[0] > 0.0
+    written = fmu.serializeFMUState(kept)
+    fmu.setFMUState(kept)
+    fmu.doStep(0.0, STEP)
+    assert fmu.getFloat64(force) == once
+    fmu.setFMUState(fmu.deserializeFMUState(written))
+    fmu.doStep(0.0, STEP)
+    assert fmu.getFloat64(force) == once
+
+
+def test_binaries_lie_where_fmi_3_looks():
+    told = places_3(
+        tuple(TARGETS[n] for n in ("linux-x86_64-v2", "linux-aarch64", "windows-x86_64", "macos-arm64"))
+    )
+    assert list(told) == ["x86_64-linux", "aarch64-linux", "x86_64-windows", "aarch64-darwin"]
+
+
+def test_its_pages_name_the_arrays(made: Made, tmp_path: Path):
+    folder = Path(extract(str(made("bushing")), str(tmp_path)))
+    page = (folder / "documentation" / "index.html").read_text(encoding="utf-8")
+    assert "<td>journal.mode.x[20]</td>" in page
+    assert "journal.mode[1].x" not in page
+
+
+def test_a_name_that_fmi_3_has_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """And groups of a model's own, which the contract does not have several of, stay scalars."""
+    for name in ("rubber_ring.py", "rubber_ring.c"):
+        text = (ROOT / "examples" / name).read_text(encoding="utf-8")
+        (tmp_path / name).write_text(text.replace("m->p.damping", "m->p.time").replace("damping:", "time:"))
+    command = ["build", "--native", str(tmp_path / "rubber_ring.py"), "-o", str(tmp_path)]
+    assert main([*command, "--fmi", "3"]) == FAILED
+    assert "rubber_ring has a variable called time" in capsys.readouterr().err
+    assert main(command) == 0
+
+
+def test_terminals_name_the_arrays(made: Made, tmp_path: Path):
+    folder = Path(extract(str(made("bushing")), str(tmp_path)))
+    root = fromstring((folder / "terminalsAndIcons" / "terminalsAndIcons.xml").read_bytes())
+    members = {m.get("variableName") for m in root.iter("TerminalMemberVariable")}
+    variables = {v.name for v in read_model_description(str(folder)).modelVariables}
+    assert "journal.mode.x" in members
+    assert members <= variables
+
+
+def test_pythonfmus_fmus_are_of_fmi_2(capsys: pytest.CaptureFixture[str]):
+    assert main(["build", "housing", "--fmi", "3"]) == FAILED
+    assert "add --native" in capsys.readouterr().err

@@ -1,0 +1,108 @@
+"""What a scene says of its machine beside itself: refused where it cannot be, said where it hardly can."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from commands import SCENE, Command
+
+import touchdown
+from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.plausible import Seat, remarks
+from touchdown.master.studies.sweep.journal import Journal, Member, read_journal
+from touchdown.master.studies.sweep.report import warned
+
+VALUES = {
+    "journal_radius": 9.7e-3,
+    "clearance": 0.3e-3,
+    "friction.dynamic": 0.15,
+    "friction.static": 0.2,
+    "balls.count": 9.0,
+}
+SEAT = Seat("bearing", VALUES, "6004", 20e-3, "rotor", 9000.0 * math.pi / 30.0)
+
+
+def with_value(name: str, value: float) -> Seat:
+    """The seat, one of its parameters set."""
+    return replace(SEAT, values={**VALUES, name: value})
+
+
+def test_a_usual_machine_is_not_remarked_on() -> None:
+    assert remarks([SEAT, SEAT]) == []
+    bushing = {name: value for name, value in VALUES.items() if name != "balls.count"}
+    assert remarks([Seat("bushing", bushing, None, None, "rotor", 20000.0)]) == []  # no balls
+    assert remarks([Seat("probe", {}, None, None, "rotor", None)]) == []
+
+
+@pytest.mark.parametrize("name", ["disk-caged-detailed", "rotor1-18000", "rotor2-case1"])
+def test_nor_are_scenes_that_come_along(name: str) -> None:
+    with opened(touchdown.load(name), in_process=True) as system:
+        assert not system.remarks
+
+
+@pytest.mark.parametrize(
+    ("seat", "said"),
+    [
+        (
+            with_value("clearance", 1.5e-3),
+            "bearing.clearance = 1.5 mm is 15 % of the journal's radius of 9.7 mm",
+        ),
+        (
+            with_value("friction.dynamic", 1.5),
+            "bearing.friction.dynamic = 1.5 is more than solids rub with",
+        ),
+        (with_value("friction.static", 2.0), "bearing.friction.static = 2 is more than"),
+        (
+            replace(SEAT, speed=20000.0),
+            "rotor.speed = 190986 rpm is more than a bearing of 20 mm bore runs (50000 rpm by the rule of "
+            "1,000,000 mm rpm); a number without a unit is in rad/s",
+        ),
+        (
+            replace(SEAT, speed=-20000.0, bore=None, designation=None),
+            "rotor.speed = -190986 rpm is more than a bearing of 19.4 mm bore runs",
+        ),
+        (replace(SEAT, bore=70e-3, designation="6014"), "fill 20 mm of the bore of 6014, 70 mm"),
+    ],
+)
+def test_what_hardly_can_be_is_said_once(seat: Seat, said: str) -> None:
+    (line,) = remarks([seat, seat])
+    assert said in line
+
+
+@pytest.mark.parametrize(
+    ("setting", "said"),
+    [
+        (
+            "bearing.preset=7000",
+            "journal_radius = 9.7 mm does not go into 7000, whose bore is 10 mm wide; take a "
+            "bearing with a bore above 19.4 mm",
+        ),
+        ("bearing.friction.dynamic=15", "dynamic = 15 is no coefficient of friction: dry steel has 0.1 to"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_all_that_run_a_scene(
+    setting: str, said: str, command: Command, tmp_path: Path
+) -> None:
+    swept = ["sweep", SCENE, "--vary", "rotor.mass=1,2", "--quiet"]
+    for verb in (["run", SCENE, "--quiet"], swept):
+        assert said in command(*verb, "--set", setting, "-o", tmp_path / "out").line
+    assert said in command("advise", SCENE, "--set", setting).line
+    assert not list(tmp_path.glob("out/*.json"))
+
+
+def test_a_run_says_what_hardly_can_be(run: Command) -> None:
+    ended = run(SCENE, "--set", "run.duration=1e-4", "--set", "rotor.speed=20000", "--in-process")
+    assert ended.status == 0
+    assert "warning: rotor.speed = 190986 rpm is more than a bearing of 20 mm bore" in ended.stderr
+
+
+def test_a_sweep_keeps_what_its_runs_warn_of(tmp_path: Path) -> None:
+    members = [Member(n, {}, {}, warnings=("it is fast",) if n > 1 else ()) for n in (1, 2, 3)]
+    journal = Journal(tmp_path / "members.jsonl")
+    for member in members:
+        journal.add(member)
+    back = read_journal(journal.path, {1: {}, 2: {}, 3: {}}).members
+    assert warned([back[n] for n in (1, 2, 3)]) == ["  2 x it is fast (member 2)"]

@@ -1,0 +1,357 @@
+"""Rotors from mass, stiffness and gyroscopic matrices: exported here as a finite-element program would."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from places import ROOT
+from scipy import io, sparse
+
+import touchdown
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.file import find
+from touchdown.rotor.imports import ImportedRotorError, of_arrays, placed, read
+from touchdown.rotor.modal.campbell import whirl_frequencies
+from touchdown.rotor.modal.modes import basis, flexibility
+from touchdown.rotor.statics import at_rest
+
+SAVED = Path(__file__).parent / "saved"
+THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
+EXAMPLE = ROOT / "examples" / "spindle_matrices"
+U, R = ("UX", "UY", "UZ"), ("ROTX", "ROTY", "ROTZ")
+Arrays = dict[str, Any]
+
+
+def exported(shaft: Shaft, axis: int = 2, along: bool = True, unit: float = 1.0) -> Arrays:
+    """Both planes of a rotor, coordinates `along` and about its `axis`, by a unit of length (m)."""
+    one, N = shaft.body.matrices(), shaft.nodes
+    x, y = (axis + 1) % 3, (axis + 2) % 3
+    dofs = [*U, *R] if along else [U[x], U[y], R[x], R[y]]
+    X, Y = (
+        np.array([len(dofs) * i + dofs.index(dof) for i in range(N) for dof in plane])
+        for plane in ((U[x], R[y]), (U[y], R[x]))
+    )
+    turned = np.tile([1.0, -1.0], N)  # rotations about x are less the slopes in the y-z plane
+    data: Arrays = {name: np.zeros((len(dofs) * N,) * 2) for name in "MKG"}
+    for name, matrix in (("M", one.mass), ("K", one.stiffness)):
+        data[name] += np.diag(np.where(np.isin(np.arange(len(data[name])), (*X, *Y)), 0.0, 3.0))
+        data[name][np.ix_(X, X)] = matrix
+        data[name][np.ix_(Y, Y)] = np.outer(turned, turned) * matrix
+    data["G"][np.ix_(X, Y)] = one.polar * turned
+    data["G"][np.ix_(Y, X)] = -(one.polar * turned).T
+    per = np.tile([unit if dof in U else 1.0 for dof in dofs], N)
+    for name in "MKG":
+        data[name] *= np.outer(per, per) / unit
+    data["coordinates"] = np.zeros((N, 3))
+    data["coordinates"][:, axis] = shaft.positions() / unit + 7.0
+    return data | {"dofs": dofs, "units": "m" if unit == 1.0 else "mm"}
+
+
+def imported(shaft: Shaft, **how: Any) -> touchdown.Rotor:
+    """`shaft` by way of its matrices, with its stations."""
+    places = {s.name: s.node for s in shaft.stations}
+    held = {name: places.pop(name) for name in shaft.levitated_at}
+    sensors = {s.name: s.node for s in shaft.sensors}
+    rotor = touchdown.Rotor.imported(exported(shaft, **how), places, held, sensors)
+    return touchdown.Rotor(
+        **{**vars(rotor), "unbalances": shaft.unbalances, "damping_ratio": shaft.damping_ratio}
+    )
+
+
+@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
+@pytest.mark.parametrize("how", [{}, {"axis": 0, "along": False}, {"axis": 1, "unit": 1e-3}])
+def test_a_rotor_by_its_matrices_is_the_rotor(name: str, how: dict[str, Any]) -> None:
+    """Also in millimetres and tonnes, and along other axes."""
+    shaft, rotor = find(name), imported(find(name), **how)
+    own, found = basis(shaft, 0), basis(rotor, 0)
+    assert found.omega == pytest.approx(own.omega, rel=1e-9)  # found: 2e-12
+    for speed in (300.0, -2000.0):
+        theirs = whirl_frequencies(own, [speed])
+        assert whirl_frequencies(found, [speed]) == pytest.approx(theirs, rel=1e-9, abs=1e-6)
+    for size in ("mass", "centre_of_mass", "polar_inertia", "diametral_inertia"):
+        assert getattr(rotor, size) == pytest.approx(getattr(shaft, size), rel=1e-12)
+    seats = [s.node for s in shaft.stations]
+    whole = flexibility(shaft, seats)
+    assert flexibility(rotor, seats) == pytest.approx(whole, abs=1e-9 * np.max(np.abs(whole)))
+    held = [(node, math.inf) for node in sorted(set(seats))]
+    lying, theirs = at_rest(rotor, held), at_rest(shaft, held)
+    assert lying.reactions == pytest.approx(theirs.reactions, rel=1e-6)
+    assert len(lying.bending) == 0
+
+
+def test_rows_may_come_in_any_order_and_nodes_by_any_name(tmp_path: Path) -> None:
+    data = exported(find("rotor_I"))
+    nodes = [f"N{3 * i}" for i in range(len(data["coordinates"]))]
+    whole = np.array([[node, str(1 + i)] for node in nodes for i in range(6)])
+    mixed = np.random.default_rng(1).permutation(len(whole))
+    turned = np.random.default_rng(2).permutation(len(nodes))
+    data |= {name: data[name][np.ix_(mixed, mixed)] for name in "MKG"}
+    data |= {"dofs": whole[mixed], "nodes": np.array(nodes)[turned]}
+    data["coordinates"] = data["coordinates"][turned]
+    np.savez(tmp_path / "mixed.npz", **data)
+    found = read(tmp_path / "mixed.npz")
+    assert found.superelement == of_arrays(exported(find("rotor_I")), "own", "").superelement
+    assert "those called N0, N3, N6" in found.about
+
+
+def test_a_superelement_is_written_and_read_to_the_bit(tmp_path: Path) -> None:
+    rotor = imported(find("rotor_II"))
+    again = touchdown.Rotor.load(rotor.save(tmp_path / "again.toml"))
+    assert again == rotor
+    assert hash(again.superelement) == hash(rotor.superelement)
+    assert rotor != imported(find("rotor_I"))
+
+
+def test_the_example_is_the_spindle() -> None:
+    """A folder of Matrix Market files, along x."""
+    shaft, found = find(str(ROOT / "examples" / "spindle_rotor.toml")), read(EXAMPLE)
+    assert basis(found, 0).omega == pytest.approx(basis(shaft, 0).omega, rel=1e-9)
+    assert found.polar_inertia == pytest.approx(shaft.polar_inertia, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["rotor_example", "rotor_example_with_damping"])
+def test_six_modes_of_matrices_of_ross(name: str) -> None:
+    """Backward and forward, at rest and spinning; `benchmarks/ross_rotors.py` saved them."""
+    shaft = read(SAVED / f"{name}.npz")
+    modes = basis(shaft, 0)
+    for rpm, theirs in THEIRS[name]["free"].items():
+        found = np.sort(np.abs(whirl_frequencies(modes, [float(rpm) * math.pi / 30.0])[0]))
+        found = found[found > 0.5 * modes.omega[2]] / (2.0 * math.pi)
+        assert len(theirs) >= 10
+        assert found[: len(theirs)] == pytest.approx(theirs, rel=1e-6)  # found: 6e-11
+
+
+def test_matrices_may_be_sparse_dofs_floats_and_digits_few() -> None:
+    """What NumPy and SciPy make of text files; single precision moves the first modes by its digits."""
+    shaft = find("rotor_I")
+    data = exported(shaft)
+    own = basis(shaft, 6).omega[2:]
+    data["dofs"] = np.array([[node + 1.0, dof + 1.0] for node in range(shaft.nodes) for dof in range(6)])
+    found = of_arrays(data | {name: sparse.csr_array(data[name]) for name in "MKG"}, "sparse", "sparse")
+    assert basis(found, 6).omega[2:] == pytest.approx(own, rel=1e-9)
+    rounded = of_arrays(data | {name: data[name].astype(np.float32) for name in "MKG"}, "single", "single")
+    assert basis(rounded, 6).omega[2:] == pytest.approx(own, rel=1e-3)
+
+
+def test_damping_of_the_free_rotor_becomes_a_ratio() -> None:
+    shaft = find("rotor_I")
+    data = exported(shaft)
+    stiffness_share = 1e-6  # s
+    data["C"] = stiffness_share * data["K"]
+    found = of_arrays(data, "rotor.npz", "damped")
+    first = basis(shaft, 3).omega[2]
+    assert found.damping_ratio == pytest.approx(0.5 * stiffness_share * first, rel=1e-9)
+    assert f"{50.0 * stiffness_share * first:.3g} %" in found.about
+
+
+def test_a_drop_of_the_matrices_is_that_of_the_beams() -> None:
+    """To rounding, until rounding decides how the rotor bounces off: it touches at 9 ms."""
+    shaft = find("rotor_I")
+    scene = touchdown.load("rotor1-9000").set({"run.duration": "15 ms"})
+    own, found = (touchdown.run(s) for s in (scene, scene.swap(rotor=imported(shaft))))
+    for place in ("A.x", "A.y", "B.x", "B.y"):
+        name = f"rotor.{place}"
+        apart = np.abs(found.data[name].values - own.data[name].values)
+        assert apart.max() < 1e-9  # m; found: 9e-11
+    for end in "AB":
+        peak = f"peak_contact_force_N_bearing_{end}"
+        assert own.summary[peak] > 100.0
+        assert found.summary[peak] == pytest.approx(own.summary[peak], rel=1e-5)
+    assert not any("stress" in key for key in found.summary)
+    assert "peak_bending_stress_MPa" in own.summary
+
+
+def changed(name: str, row: int, column: int, value: float) -> Callable[[Arrays], None]:
+    """What puts a value into a matrix."""
+
+    def change(data: Arrays) -> None:
+        data[name][row, column] = value
+
+    return change
+
+
+def spring(data: Arrays) -> None:
+    for row in (0, 1):
+        data["K"][row, row] += 1e6
+
+
+def lumped(data: Arrays) -> None:
+    data["M"] = np.diag(np.diag(data["M"]))
+    for row in range(3, len(data["M"]), 6):
+        data["M"][row, row] = data["M"][row + 1, row + 1] = 0.0
+
+
+def planes(data: Arrays) -> None:
+    data["K"][0, 0] *= 1.01
+
+
+def coupled(data: Arrays) -> None:
+    data["K"][0, 2] = data["K"][2, 0] = 1e8
+
+
+def between(data: Arrays) -> None:
+    data["K"][0, 1] = data["K"][1, 0] = 1e8
+
+
+def gone(name: str) -> Callable[[Arrays], object]:
+    return lambda data: data.pop(name)
+
+
+def given(**values: Any) -> Callable[[Arrays], None]:
+    return lambda data: data.update(values)
+
+
+def times(name: str, factor: float) -> Callable[[Arrays], None]:
+    return lambda data: data.update({name: factor * np.asarray(data[name])})
+
+
+def grounded(data: Arrays) -> None:
+    data["C"] = np.zeros_like(data["K"])
+    data["C"][[0, 1], [0, 1]] = 1e3
+
+
+def mass_damped(data: Arrays) -> None:
+    data["C"] = 50.0 * data["M"]
+
+
+def few_digits(data: Arrays) -> None:
+    """Six, of which the entries of K leave nothing for what its rigid motions take."""
+    for name in "MKG":
+        data[name] = np.array([[float(f"{value:.5e}") for value in row] for row in data[name]])
+
+
+def kilograms_and_millimetres(data: Arrays) -> None:
+    data.update(exported(find("rotor_I"), unit=1e-3))
+    data["M"] *= 1e3
+    data["G"] *= 1e3
+
+
+def hinged(data: Arrays) -> None:
+    """Two halves that are not fastened to each other."""
+    half = 6 * (len(data["coordinates"]) // 2)
+    for block in (np.s_[:half, half:], np.s_[half:, :half]):
+        data["K"][block] = 0.0
+
+
+MISTAKES = [
+    (gone("G"), "G is missing"),
+    (gone("dofs"), "dofs is missing"),
+    (gone("coordinates"), "coordinates is missing"),
+    (given(unit="mm"), "unit is not known; did you mean units"),
+    (given(units="inch"), "units = 'inch' is not known"),
+    (given(M=np.ones((3, 4))), "M is 3 by 4; it must be square"),
+    (given(K=np.ones((3, 3))), "K is 3 by 3; it must be"),
+    (given(K=[["a"]]), "K must be an array of real numbers"),
+    (given(dofs=["UX", "UY"]), "dofs are 40 by 2, and M has 120 rows"),
+    (given(dofs="UX"), "dofs are 20 by 2, and M has 120 rows"),
+    (given(dofs=[{}]), "dofs must be an array of texts or whole numbers"),
+    (given(units="mm"), 'so it is units = "m"'),
+    (times("coordinates", -1.0), "the coordinates run against the axis of the matrices"),
+    (times("coordinates", 1e3), "the coordinates are in mm, the matrices in kg, m, s, N"),
+    (few_digits, "some motion would have less energy than none; export the rotor free"),
+    (kilograms_and_millimetres, "kg on 0.3097 m is out of proportion, look at the units"),
+    (mass_damped, "alpha M (alpha = 50 1/s), which damps rigid motion, too"),
+    (times("K", 1e-12), "the first bending mode has"),
+    (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "PHI"]), "PHI is none; they are 1 to 6"),
+    (given(dofs=["UX", "UY", "UZ", "ROTX", "ROTY", "UX"]), "UX of node 1 is there twice"),
+    (given(dofs=["UY", "UX", "UZ", "ROTX", "ROTY", "ROTZ"]), "are the dofs in the order of the rows?"),
+    (given(dofs=["UX", "ROTY", "UZ", "ROTX", "UY", "ROTZ"]), "are the dofs in the order of the rows?"),
+    (given(nodes=[1, 2]), "nodes must be"),
+    (changed("M", 0, 0, math.nan), "M holds what is no finite number, first at [1, 1]"),
+    (changed("M", 0, 7, 1.0), "M is not symmetric: 1 between UX of node 1 and UY of node 2, 0 between"),
+    (changed("G", 3, 4, 5.0), "G is not skew-symmetric: 5 between ROTX of node 1 and ROTY of node 1"),
+    (changed("coordinates", 3, 0, 0.01), "away from a line along Z"),
+    (changed("coordinates", 3, 2, 7.0), "two nodes are at 7 along Z"),
+    (times("coordinates", 1e5), "m, which is out of proportion; look at the units"),
+    (times("coordinates", 10.0), "K holds the rotor: tilted as a whole it swings at"),
+    (times("G", -1.0), "G has a polar inertia of -"),
+    (times("G", 942.0), "G is per spin speed, in rad/s"),
+    (times("G", 0.0), "G has no polar inertia"),
+    (times("M", -1.0), "for UX of node 1, where a mass must be"),
+    (times("K", -1.0), "K is not positive"),
+    (spring, "K holds the rotor: moved sideways as a whole it swings at"),
+    (hinged, "K holds the rotor"),
+    (lumped, "M has 0 for ROTY of node 1, where a mass must be; export a consistent"),
+    (planes, "K is not the same in both planes"),
+    (coupled, "K couples bending to motion along the axis or about it"),
+    (between, "K couples the planes"),
+    (grounded, "C damps the rotor as a whole"),
+]
+
+
+@pytest.mark.parametrize(("spoil", "says"), MISTAKES, ids=[says[:40] for _, says in MISTAKES])
+def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: str) -> None:
+    data = exported(find("rotor_I"))
+    spoil(data)
+    with pytest.raises(ImportedRotorError) as error:
+        of_arrays(data, "rotor.npz", "rotor")
+    told = str(error.value)
+    assert told.startswith("rotor.npz: ")
+    assert says in told
+    assert "\n" not in told
+
+
+@pytest.mark.parametrize(
+    ("coordinates", "says"), [(1.0, "give the coordinates in mm, too"), (1e3, 'give units = "mm"')]
+)
+def test_matrices_in_millimetres_that_are_not_said_to_be_are_told(coordinates: float, says: str) -> None:
+    data = exported(find("rotor_I"), unit=1e-3)
+    data["coordinates"] = (data["coordinates"] - 7.0) * 1e-3 * coordinates
+    del data["units"]
+    with pytest.raises(ImportedRotorError, match=says):
+        of_arrays(data, "rotor.npz", "rotor")
+
+
+def test_a_place_that_is_no_node_is_refused() -> None:
+    with pytest.raises(touchdown.TouchdownError, match=r"no node .* the nearest is node 4 at 40 mm"):
+        touchdown.Rotor.imported(EXAMPLE, {"A": "41 mm"})
+    assert placed(read(EXAMPLE), {"A": "40 mm"}).node("A") == 4
+
+
+def test_a_place_may_be_what_the_file_calls_its_node() -> None:
+    data = exported(find("rotor_I"))
+    count = len(data["coordinates"])
+    data["nodes"] = np.arange(count) + 101
+    rotor = touchdown.Rotor.imported(data, {"A": 103, "B": 18})
+    assert (rotor.node("A"), rotor.node("B")) == (3, 18)
+    assert "A at node 3 (called 103), B at node 18 (called 118)" in repr(rotor)
+    data["nodes"] = [f"N{i}" for i in range(count)]
+    assert touchdown.Rotor.imported(data, {"A": "N2"}).node("A") == 3
+    data["nodes"] = np.arange(count)[::-1] + 1
+    with pytest.raises(touchdown.TouchdownError, match=rf"node 3 along the axis, called {count - 2}, at"):
+        touchdown.Rotor.imported(data, {"A": 3})
+
+
+def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> None:
+    def refused(path: Path, says: str) -> None:
+        with pytest.raises(ImportedRotorError, match=says):
+            read(path)
+
+    refused(tmp_path, "has no M.mtx")
+    for name in "MKG":
+        io.mmwrite(tmp_path / f"{name}.mtx", sparse.eye_array(8))
+    refused(tmp_path, "nodes.csv: cannot be read")
+    nodes = tmp_path / "nodes.csv"
+    nodes.write_text("node, x [mm], y [mm]\n1, 0, 0\n")
+    refused(tmp_path, "needs node, x, y and z")
+    nodes.write_text("node, x, y, z\n1, 0, 0, 0\n")
+    refused(tmp_path, "the column x has no unit")
+    nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, 0, 0\n")
+    refused(tmp_path, "row 3: has 3 cells, the header 4")
+    nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, a, 0, 0\n")
+    refused(tmp_path, "row 3: x = 'a 1'|is not a number")
+    nodes.write_text("node, x [mm], y [mm], z [mm]\n1, 0, 0, 0\n2, 0, 0, 5\n")
+    (tmp_path / "dofs.csv").write_text("row\nUX\n")
+    refused(tmp_path, "needs node and dof")
+    (tmp_path / "K.mtx").write_text("nothing\n")
+    refused(tmp_path, "K.mtx: is not read as Matrix Market text|K.mtx: cannot be read")
+    (tmp_path / "no.npz").write_text("nothing\n")
+    refused(tmp_path / "no.npz", "cannot be read")
+    np.savez(tmp_path / "other.npz", A=1.0)
+    refused(tmp_path / "other.npz", "holds neither matrices")

@@ -1,0 +1,232 @@
+"""Rotors from modal data: the free modes of one plane, and what they do not hold."""
+
+from __future__ import annotations
+
+import math
+import re
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from places import ROOT
+
+import touchdown
+from touchdown.master.cli import main
+from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.superelement import Superelement, checked
+from touchdown.rotor.file import find
+from touchdown.rotor.imports import ImportedRotorError, of_arrays, read
+from touchdown.rotor.modal.modes import basis
+
+Arrays = dict[str, Any]
+MODES = 7
+
+
+def exported(shaft: Shaft, modes: int = MODES) -> Arrays:
+    """Mass-normalised modes of a rotor."""
+    kept = basis(shaft, modes)
+    return {
+        "positions": shaft.positions(),
+        "frequencies": kept.omega / (2.0 * math.pi),
+        "deflections": kept.shapes[0::2],
+        "slopes": kept.shapes[1::2],
+        "gyroscopic": kept.gyroscopic,
+    }
+
+
+def imported(shaft: Shaft, modes: int) -> touchdown.Rotor:
+    """`shaft` by way of its modes, with its stations."""
+    rotor = touchdown.Rotor.imported(exported(shaft, modes))
+    places = {name: getattr(shaft, name) for name in ("stations", "sensors", "levitated_at", "unbalances")}
+    return touchdown.Rotor(**{**vars(rotor), **places, "damping_ratio": shaft.damping_ratio})
+
+
+@pytest.mark.parametrize("name", ["rotor_I", "rotor_II"])
+def test_a_rotor_by_its_modes_has_them(name: str, tmp_path: Path) -> None:
+    shaft = find(name)
+    kept = basis(shaft, MODES)
+    np.savez(tmp_path / "modes.npz", **exported(shaft))
+    found = read(tmp_path / "modes.npz")
+    again = basis(found, 0)
+    assert again.omega == pytest.approx(kept.omega, rel=1e-9)  # found: 2e-15
+    assert again.gyroscopic == pytest.approx(kept.gyroscopic, abs=1e-9 * np.max(kept.gyroscopic))
+    for size in ("mass", "centre_of_mass", "polar_inertia", "diametral_inertia"):
+        assert getattr(found, size) == pytest.approx(getattr(shaft, size), rel=1e-9)
+    assert "What modes beyond" in found.about
+    assert f"mass {shaft.mass:.4g} kg, as the modes say" in found.about
+
+
+def test_scale_order_and_the_shapes_of_rigid_modes_do_not_matter() -> None:
+    """Modal masses of any size, frequencies in any order, rigid modes that move and tilt at once."""
+    shaft = find("rotor_II")
+    data = exported(shaft)
+    turn = np.eye(MODES)
+    turn[:2, :2] = [[0.6, -0.8], [0.8, 0.6]]
+    masses = np.linspace(0.5, 4.0, MODES)
+    change = (turn * np.sqrt(masses))[:, ::-1]
+    mixed = {name: data[name] @ change for name in ("deflections", "slopes")}
+    mixed |= {"gyroscopic": change.T @ data["gyroscopic"] @ change, "modal_masses": masses[::-1]}
+    found = of_arrays(data | mixed | {"frequencies": data["frequencies"][::-1]}, "mixed", "mixed")
+    own, again = basis(shaft, MODES), basis(found, 0)
+    assert found.mass == pytest.approx(shaft.mass, rel=1e-9)
+    assert again.omega == pytest.approx(own.omega, rel=1e-9)
+    assert again.shapes == pytest.approx(own.shapes, abs=1e-9 * np.max(np.abs(own.shapes)))
+
+
+def few(shaft: Shaft, nodes: int, modes: int) -> Arrays:
+    """Modes of `shaft` at few of its nodes, from the first to the last."""
+    kept = np.linspace(0, shaft.nodes - 1, nodes).round().astype(int)
+    data = exported(shaft, modes)
+    return data | {name: data[name][kept] for name in ("positions", "deflections", "slopes")}
+
+
+@pytest.mark.parametrize(("nodes", "modes"), [(3, 8), (4, 10)])
+def test_few_nodes_may_have_many_modes(nodes: int, modes: int) -> None:
+    """More than they have coordinates, where bending modes together look like a rigid motion."""
+    shaft = find("rotor_I")
+    found = of_arrays(few(shaft, nodes, modes), "few", "few")
+    for size in ("mass", "centre_of_mass", "polar_inertia", "diametral_inertia"):
+        assert getattr(found, size) == pytest.approx(getattr(shaft, size), rel=1e-9)
+
+
+def test_rigid_modes_come_first() -> None:
+    """Or residual vectors, which hold the first two coordinates, could not be found."""
+    shaft = find("rotor_I")
+    body = of_arrays(exported(shaft), "own", "own").superelement
+    assert body is not None
+    order = np.roll(np.arange(MODES), 2)
+    M, K, G = (
+        A[np.ix_(order, order)] for A in (body.mass_matrix, body.stiffness_matrix, body.polar_matrix)
+    )
+    assert body.shapes is not None
+    moved = Superelement(body.positions, M, K, G, body.shapes[:, order])
+    assert moved.mass == pytest.approx(shaft.mass, rel=1e-9)
+    assert checked(body) == body
+    with pytest.raises(ModelError, match="put the two rigid modes first"):
+        checked(moved)
+
+
+def test_gyroscopics_may_be_inertias_of_the_nodes() -> None:
+    shaft = find("rotor_I")
+    data = exported(shaft)
+    inertias = np.linspace(1e-5, 3e-5, shaft.nodes)
+    slopes = data["slopes"]
+    del data["gyroscopic"]
+    found = of_arrays(data | {"polar_inertias": inertias}, "own", "own")
+    assert found.polar_inertia == pytest.approx(inertias.sum(), rel=1e-9)
+    made = basis(found, 0).gyroscopic[1:, 1:]
+    assert made == pytest.approx((slopes.T @ (inertias[:, None] * slopes))[1:, 1:], abs=1e-9)
+
+
+def test_a_drop_of_the_modes_is_that_of_the_beams_without_residual_flexibility() -> None:
+    """As far as 12 ms, just after the first contacts; with it, seats are softer than five modes know.
+
+    Modes that are given beyond the five that the scene keeps make up for that.
+    """
+    shaft = find("rotor_I")
+    soft = touchdown.load("rotor1-9000").set({"run.duration": "12 ms"})
+    stiff = soft.set({"rotor.residual": 0})
+    five, twenty = imported(shaft, 5), imported(shaft, 20)
+    scenes = (soft, soft.swap(rotor=twenty), stiff, stiff.swap(rotor=five))
+    own, more, without, found = (touchdown.run(scene) for scene in scenes)
+    for place in ("A.x", "A.y", "B.x", "B.y"):
+        name = f"rotor.{place}"
+        apart = np.abs(found.data[name].values - without.data[name].values)
+        assert apart.max() < 1e-9  # m; found: 7e-11
+    for end in "AB":
+        peak = f"peak_contact_force_N_bearing_{end}"
+        assert found.summary[peak] == pytest.approx(without.summary[peak], rel=1e-5)
+        assert found.summary[peak] > 1.01 * own.summary[peak]  # found: 2.9 and 4.1 %
+        assert found.summary[peak] == pytest.approx(own.summary[peak], rel=0.1)
+        assert more.summary[peak] == pytest.approx(own.summary[peak], rel=0.01)  # found: 0.4 %
+
+
+def given(**values: Any) -> Callable[[Arrays], None]:
+    return lambda data: data.update(values)
+
+
+def gone(name: str) -> Callable[[Arrays], object]:
+    return lambda data: data.pop(name)
+
+
+def times(name: str, factor: float) -> Callable[[Arrays], None]:
+    return lambda data: data.update({name: factor * data[name]})
+
+
+def largest_is_one(data: Arrays) -> None:
+    largest = np.abs(data["deflections"]).max(axis=0)
+    for name in ("deflections", "slopes"):
+        data[name] = data[name] / largest
+
+
+def bending_only(data: Arrays) -> None:
+    data["frequencies"] = data["frequencies"][2:]
+    for name in ("deflections", "slopes"):
+        data[name] = data[name][:, 2:]
+
+
+MISTAKES = [
+    (gone("slopes"), "slopes is missing"),
+    (gone("gyroscopic"), "give one of gyroscopic (n by n) and polar_inertias"),
+    (given(polar_inertias=np.ones(25)), "give one of gyroscopic (n by n) and polar_inertias"),
+    (given(modal_mass=1.0), "modal_mass is not known; did you mean modal_masses"),
+    (given(modal_masses=np.zeros(MODES)), "modal_masses must be above 0"),
+    (given(modal_masses=[1.0]), f"modal_masses is 1; it must be {MODES}"),
+    (given(deflections=np.ones((3, MODES))), f"deflections is 3 by {MODES}; it must be"),
+    (given(gyroscopic=np.diag([math.nan] * MODES)), "gyroscopic holds what is no finite number"),
+    (given(gyroscopic=np.arange(49.0).reshape(7, 7)), "G is not symmetric in a plane"),
+    (given(frequencies=1j * np.arange(MODES)), "frequencies must be an array of real numbers"),
+    (given(frequencies=np.arange(20.0, 20.0 + MODES)), "the lowest are 20, 21, 22 Hz; a free rotor has"),
+    (
+        largest_is_one,
+        "every mode has the largest deflection 1, so they are not mass-normalised: give modal",
+    ),
+    (bending_only, "a free rotor has two rigid modes of 0 Hz in a plane"),
+    (times("slopes", -1.0), "slopes with the sign of dx/dz"),
+    (times("positions", 10.0), "is a tilt of the rigid rotor"),
+    (times("positions", -1.0), "the positions must be those of two nodes or more, ascending"),
+    (times("gyroscopic", -1.0), "its sign is the other one"),
+]
+
+
+@pytest.mark.parametrize(("spoil", "says"), MISTAKES, ids=[says[:40] for _, says in MISTAKES])
+def test_a_mistake_is_told_in_one_line(spoil: Callable[[Arrays], object], says: str) -> None:
+    data = exported(find("rotor_II"))
+    spoil(data)
+    with pytest.raises(ImportedRotorError) as error:
+        of_arrays(data, "modes.npz", "modes")
+    told = str(error.value)
+    assert told.startswith("modes.npz: ")
+    assert says in told
+    assert "\n" not in told
+
+
+def test_two_modes_are_no_flexible_rotor() -> None:
+    with pytest.raises(ImportedRotorError, match="2 modes hold no bending mode"):
+        of_arrays(exported(find("rotor_I"), 2), "modes.npz", "modes")
+
+
+def test_the_page_exports_modes_of_the_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What docs/rotors.md says, as it stands there."""
+    page = (ROOT / "docs" / "rotors.md").read_text(encoding="utf-8")
+    (script,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    exec(script, {})
+    commands = [line for line in page.splitlines() if line.startswith("touchdown import-rotor")]
+    told = [line for line in commands if "matrices" in line or "modes" in line]
+    assert len(told) == 2
+    for line in told:
+        assert main(shlex.split(line)[1:]) == 0
+    spindle = find(str(ROOT / "examples" / "spindle_rotor.toml"))
+    for name in ("fe", "modes"):
+        found = find(f"runs/{name}.toml")
+        assert basis(found, 8).omega == pytest.approx(basis(spindle, 8).omega, rel=1e-9)
+        own = basis(spindle, 8).gyroscopic
+        assert basis(found, 8).gyroscopic == pytest.approx(own, abs=1e-9 * np.max(own))
+        assert found.levitated_at == spindle.levitated_at
