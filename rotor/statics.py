@@ -9,7 +9,8 @@ import numpy as np
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import check_nodes, tilt, translation
+from touchdown.rotor.beams.assembly import check_nodes
+from touchdown.rotor.beams.body import rigid_motion
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.modes import flexibility
 from touchdown.rotor.modal.stresses import bending_per_moment, end_nodes, shear_per_force
@@ -63,7 +64,7 @@ def _equilibrium(
     """
     nodes, springs = zip(*supports, strict=True)
     bent = flexibility(shaft, nodes)
-    rigid = np.stack((translation(shaft), tilt(shaft)), axis=1)
+    rigid = rigid_motion(shaft.positions(), shaft.centre_of_mass)
     at = [2 * (node - 1) for node in nodes]
     give = bent[at] + np.diag(1.0 / np.array(springs))  # m/N, also of the springs
     scale = np.max(np.abs(give)) or 1.0

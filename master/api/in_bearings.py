@@ -9,7 +9,7 @@ import numpy as np
 
 from touchdown.master.studies.rotor.held_table import RPM
 from touchdown.rotor.modal.campbell import Held
-from touchdown.rotor.modal.whirl import damping_ratios, log_decrements
+from touchdown.rotor.modal.whirl import log_decrements
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,12 +36,12 @@ class InBearings:
     @property
     def frequencies(self) -> np.ndarray:
         """Damped (M,), Hz."""
-        return np.imag(self.roots) / (2.0 * np.pi)
+        return self._held.whirl.frequencies[self._held.swinging]
 
     @property
     def damping_ratios(self) -> np.ndarray:
         """Of critical damping (M,); below 0 a mode grows."""
-        return damping_ratios(self.roots)
+        return self._held.whirl.damping_ratios[self._held.swinging]
 
     @property
     def log_decrements(self) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 from touchdown.master.api.in_bearings import InBearings, InScene
 from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import holds, writing_to
+from touchdown.master.common.files import keep_other, writing_to
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.rotor.importing import import_rotor
 from touchdown.master.studies.rotor.report import (
@@ -193,10 +193,8 @@ class Rotor(Shaft):
         file cannot hold, and where it cannot be written.
         """
         text, path = self._text(), Path(path)
-        if not force and os.path.exists(path) and not holds(path, text):
-            raise TouchdownError(
-                f"{path} is there already; choose another file, or --force (in Python, force=True)"
-            )
+        if not force:
+            keep_other(path, text, "file")
         with writing_to(path.parent):
             path.write_text(text, encoding="utf-8")
         return path

@@ -61,9 +61,16 @@ def write_records(records: Iterable[Mapping[str, object]], path: Path) -> None:
         writer.writerows(rows)
 
 
-def holds(path: Path, text: str) -> bool:
-    """Whether a file is what it is to become."""
+def keep_other(path: Path, text: str, what: str) -> None:
+    """Raise TouchdownError where a file is there that is not what it is to become.
+
+    what: the thing to choose another one of.
+    """
     try:
-        return path.read_text(encoding="utf-8") == text
+        same = not os.path.exists(path) or path.read_text(encoding="utf-8") == text
     except (OSError, UnicodeDecodeError):
-        return False
+        same = False
+    if not same:
+        raise TouchdownError(
+            f"{path} is there already; choose another {what}, or --force (in Python, force=True)"
+        )

@@ -16,7 +16,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import spoken, with_unit
 from touchdown.master.report.facts.labels import NODE, label
 from touchdown.master.report.facts.numbers import NONE, digits, quantity, share
-from touchdown.master.report.facts.subject import FIRST_CONTACT, number
+from touchdown.master.report.facts.subject import number
 from touchdown.master.report.page.blocks import (
     Absent,
     Block,
@@ -34,6 +34,7 @@ from touchdown.master.report.page.blocks import (
 from touchdown.master.report.page.writing import Page, made_now
 from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.figures.style import sized
+from touchdown.master.results.whirl.evidence import first_contact
 from touchdown.master.results.whirl.share import clopper_pearson
 from touchdown.master.results.whirl.told import has_verdict, whirling
 from touchdown.master.scene.titles import amended
@@ -87,7 +88,7 @@ def _length(sweep: Sweep) -> str:
     """How long the drops were followed, and how much of it after they touched."""
     done = _done(sweep)
     said = f"Each is followed for {_reach([_duration(sweep, m) for m in done], 's')} from the shutdown on"
-    firsts = [(m, first) for m in done if (first := _first_contact(m)) is not None]
+    firsts = [(m, first) for m in done if (first := first_contact(m.summary)) is not None]
     if not firsts:
         return f"{said}, and none touches."
     after = [_duration(sweep, member) - first for member, first in firsts]
@@ -110,12 +111,6 @@ def _reach(values: Sequence[float], unit: str) -> str:
     """From the least to the most, or what they all are, to three digits."""
     ends = dict.fromkeys(quantity(value, unit, 3) for value in (min(values), max(values)))
     return " to ".join(ends)
-
-
-def _first_contact(member: Member) -> float | None:
-    """When a drop touches first (s from the shutdown); None where it does not."""
-    found = [number(value) for key, value in member.summary.items() if key.startswith(FIRST_CONTACT)]
-    return min((time for time in found if time is not None), default=None)
 
 
 def _is_sample(about: str) -> bool:

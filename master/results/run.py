@@ -22,7 +22,7 @@ from touchdown.master.results.folder.ending import write_ending
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
-from touchdown.master.results.whirl.evidence import CONTACT
+from touchdown.master.results.whirl.evidence import first_contact
 from touchdown.master.scene.scene import Scene
 
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
@@ -117,9 +117,8 @@ def _reopened(path: Path, owner: object, outcome: Outcome) -> Recording:
 
 def _early(summary: Mapping[str, object]) -> list[str]:
     """That a bearing was touched while the rotor was still levitated, which is no drop."""
-    times = [time for key, time in summary.items() if key.startswith(CONTACT)]
-    earliest = min((time for time in times if isinstance(time, float)), default=0.0)
-    if earliest >= 0.0:
+    earliest = first_contact(summary)
+    if earliest is None or earliest >= 0.0:
         return []
     return [
         f"a touchdown bearing was touched {-1e3 * earliest:.3g} ms before the shutdown: the magnetic "

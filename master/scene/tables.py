@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, cast
 
@@ -102,19 +102,20 @@ def mistake_in(path: Path, error: Exception) -> str:
 
 def is_scene_file(path: Path) -> bool:
     """Whether a TOML file is a scene's."""
-    try:
-        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):
-        return False
-    return "components" in data or "extends" in data
+    return not {"components", "extends"}.isdisjoint(_names(path))
 
 
 def is_of_ross(path: Path) -> bool:
     """Whether ROSS saved a TOML file."""
+    return "ross_version" in _names(path)
+
+
+def _names(path: Path) -> Collection[str]:
+    """What stands at the top of a TOML file; nothing of what is none."""
     try:
-        return "ross_version" in tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(path.read_text(encoding="utf-8-sig")).keys()
     except (OSError, ValueError, RecursionError):
-        return False
+        return ()
 
 
 def is_rotor(table: Mapping[str, Any]) -> bool:

@@ -1,4 +1,4 @@
-"""Matrices of a whole rotor in one plane, its rigid motion, forces at its nodes (`rotor.beams.body`)."""
+"""Matrices of a whole rotor in one plane, and forces at its nodes (`rotor.beams.body`)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.body import Matrices, rigid_motion
+from touchdown.rotor.beams.body import Matrices
 from touchdown.rotor.beams.shaft import Shaft
 
 TOO_UNLIKE = (
@@ -20,16 +20,6 @@ TOO_UNLIKE = (
 def assemble(shaft: Shaft) -> Matrices:
     """The matrices of what the rotor is made of."""
     return shaft.body.matrices()
-
-
-def translation(shaft: Shaft) -> np.ndarray:
-    """The rotor moved sideways by 1 m (2N,)."""
-    return rigid_motion(shaft.positions(), shaft.centre_of_mass)[:, 0]
-
-
-def tilt(shaft: Shaft) -> np.ndarray:
-    """The rotor turned about its centre of mass by a slope of 1 (2N,)."""
-    return rigid_motion(shaft.positions(), shaft.centre_of_mass)[:, 1]
 
 
 def unit_forces(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:

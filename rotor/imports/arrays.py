@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import csv
 import math
-import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,12 +21,12 @@ import numpy as np
 
 from touchdown.modelkit.units import UnitError, to_si
 from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.imports.cells import named, separator, text_of
 from touchdown.rotor.imports.matrices import of_matrices
 from touchdown.rotor.imports.mistakes import ImportedRotorError
 from touchdown.rotor.imports.modes import of_modes
 
 MATRICES = ("M", "K", "G", "C")
-HEAD = re.compile(r"^\s*([^\[(]+?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*$")
 
 
 def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
@@ -108,8 +107,8 @@ def _nodes(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 def _column(path: Path, text: str) -> tuple[str, str]:
     """Name and unit of a column."""
-    match = HEAD.match(text)
-    name, unit = (match[1].lower(), match[2] or "") if match else (text, "")
+    name, unit = named(text)
+    name = name.lower()
     if name in ("x", "y", "z") and not unit:
         raise ImportedRotorError(f"{path}: the column {text} has no unit; write {name} [mm], for example")
     return name, unit
@@ -140,17 +139,13 @@ def _dofs(path: Path) -> np.ndarray:
 
 def _table(path: Path) -> list[list[str]]:
     """Header and rows of a .csv, all as long as the header."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise ImportedRotorError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ImportedRotorError(f"{path}: is not text in UTF-8 (byte {error.start})") from None
-    lines = [line for line in text.splitlines() if line.strip(" ,;\t") and not line.startswith("#")]
+    lines = [
+        line for line in text_of(path).splitlines() if line.strip(" ,;\t") and not line.startswith("#")
+    ]
     if len(lines) < 2:
         raise ImportedRotorError(f"{path}: has no row below its header")
-    mark = max("\t;,", key=lines[0].count)
-    rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
+    parted = csv.reader(lines, delimiter=separator(lines[0]))
+    rows = [[cell.strip() for cell in row] for row in parted]
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]):
             raise ImportedRotorError(

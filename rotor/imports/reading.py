@@ -9,6 +9,7 @@ from typing import Any
 
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.imports.arrays import from_archive, from_folder
+from touchdown.rotor.imports.cells import text_of
 from touchdown.rotor.imports.mistakes import ImportedRotorError
 from touchdown.rotor.imports.ross import of_elements
 from touchdown.rotor.imports.sections import of_sections
@@ -33,7 +34,7 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
     if kind == ARCHIVE:
         return from_archive(path)
     if kind in TABLES:
-        return of_sections(_text(path), str(path), path.stem)
+        return of_sections(text_of(path), str(path), path.stem)
     if kind in MODELS:
         return of_elements(_parsed(path), str(path), path.stem, speed)
     if not path.exists():
@@ -45,7 +46,7 @@ def read(path: str | Path, speed: float | None = None) -> Shaft:
 
 
 def _parsed(path: Path) -> dict[str, Any]:
-    text = _text(path)
+    text = text_of(path)
     try:
         data = json.loads(text) if path.suffix.lower() == ".json" else tomllib.loads(text)
     except (ValueError, RecursionError) as error:
@@ -53,14 +54,3 @@ def _parsed(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise ImportedRotorError(f"{path}: is no model of ROSS's: it holds a {type(data).__name__}")
     return data
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise ImportedRotorError(f"{path}: cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        raise ImportedRotorError(
-            f"{path}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"
-        ) from None

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from touchdown.modelkit.units import UnitError, to_si
 from touchdown.rotor.beams.element import Element, split
 from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.imports.cells import named, separator
 from touchdown.rotor.imports.mistakes import ImportedRotorError
 
 UNITS = {  # column: SI unit; those of text and of pure numbers are not here
@@ -41,7 +42,6 @@ MATERIALS = {  # modulus (Pa), density (kg/m3), Poisson's ratio
     "aluminium": (70e9, 2700.0, 0.33),
     "titanium": (114e9, 4430.0, 0.34),
 }
-HEAD = re.compile(r"^\s*([^\[(]+?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*$")
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def _rows(text: str, file: str) -> Iterator[Row]:
     if not lines:
         raise ImportedRotorError(f"{file}: is empty")
     (number, head), *body = lines
-    mark = max("\t;,", key=head.count)
+    mark = separator(head)
     units = _units(next(csv.reader([head], delimiter=mark)), f"{file}, line {number}")
     for i, line in body:
         where = f"{file}, line {i}"
@@ -129,15 +129,14 @@ def _units(heads: Iterable[str], where: str) -> dict[str, str]:
     """The unit of each column by name, in their order."""
     units: dict[str, str] = {}
     for head in heads:
-        match = HEAD.match(head)
-        name = re.sub(r"[\s_]+", " ", match[1]).lower() if match else ""
+        own, unit = named(head)
+        name = re.sub(r"[\s_]+", " ", own).lower()
         if name not in COLUMNS:
             raise ImportedRotorError(
                 f"{where}: the column {head.strip()!r} is not known; there are: {', '.join(COLUMNS)}"
             )
         if name in units:
             raise ImportedRotorError(f"{where}: there are two columns {name}")
-        unit = (match[2] or "") if match else ""
         if name in UNITS and not unit:
             raise ImportedRotorError(f"{where}: {name} has no unit; write it as {name} [{_usual(name)}]")
         units[name] = unit

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy import optimize
@@ -122,6 +123,7 @@ def _crossings(
 def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: float) -> Crossing:
     """The critical speed between two `speeds` (2,), rad/s, of the mode that has the `roots` (2,) there."""
 
+    @cache
     def at(speed: float) -> Crossing:
         found = rotor.whirl(speed)
         share = (speed - speeds[0]) / (speeds[1] - speeds[0])
@@ -133,9 +135,8 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
     def ahead(speed: float) -> float:
         return at(speed).root.imag - speed
 
-    if (ahead(speeds[0]) > 0.0) == (
-        ahead(speeds[1]) > 0.0
-    ):  # at an end another mode is as near: as they go
+    low, high = speeds.tolist()
+    if (ahead(low) > 0.0) == (ahead(high) > 0.0):  # at an end another mode is as near: as they go
         above = np.imag(roots) - speeds
         share = above[0] / (above[0] - above[1])
         return Crossing(
@@ -143,7 +144,7 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
             complex(roots[0] + share * np.diff(roots)[0]),
             sense,
         )
-    found = optimize.root_scalar(ahead, bracket=speeds.tolist(), xtol=EXACT * speeds[1])
+    found = optimize.root_scalar(ahead, bracket=(low, high), xtol=EXACT * high)
     return at(float(found.root))
 
 

@@ -90,9 +90,15 @@ def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
 
 def residual_flexibility(shaft: Shaft, kept: Basis, nodes: Sequence[int]) -> np.ndarray:
     """What `flexibility` holds beyond the coordinates of `kept` (2N, len(nodes)), m/N."""
-    deflection = flexibility(shaft, nodes)
-    elastic, omega = kept.shapes[:, RIGID:], kept.omega[RIGID:]
-    return deflection - elastic @ (elastic.T @ unit_forces(shaft, nodes) / omega[:, None] ** 2)
+    return _beyond(kept.shapes, kept.omega, flexibility(shaft, nodes), unit_forces(shaft, nodes))
+
+
+def _beyond(
+    shapes: np.ndarray, omega: np.ndarray, deflection: np.ndarray, forces: np.ndarray
+) -> np.ndarray:
+    """What modes leave of an elastic `deflection` under `forces`; shapes in the same coordinates."""
+    elastic = shapes[:, RIGID:]
+    return deflection - elastic @ (elastic.T @ forces / omega[RIGID:, None] ** 2)
 
 
 def _rigid_modes(shaft: Shaft, matrices: Matrices) -> np.ndarray:
@@ -154,8 +160,7 @@ def _residual_vectors(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Vectors (n, k), k <= len(nodes), orthonormal to `shapes` and each other, and frequencies (k,)."""
     deflection = _relieved(shaft, matrices, nodes)
-    elastic, forces = shapes[:, RIGID:], matrices.shapes.T @ unit_forces(shaft, nodes)
-    vectors = deflection - elastic @ (elastic.T @ forces / omega[RIGID:, None] ** 2)
+    vectors = _beyond(shapes, omega, deflection, matrices.shapes.T @ unit_forces(shaft, nodes))
     vectors = vectors - shapes @ (shapes.T @ (matrices.mass @ vectors))
     size = np.sqrt(np.sum(vectors * (matrices.mass @ vectors), axis=0))
     full = np.sqrt(np.sum(deflection * (matrices.mass @ deflection), axis=0))

@@ -69,7 +69,14 @@ class LinearBearing:
 
     def dynamic_stiffness(self, omega: float) -> np.ndarray:
         """Force against small motion at `omega` (rad/s) over that motion (2, 2), complex, N/m."""
-        return (self.stiffness + 1j * omega * self.damping) / (1.0 + 1j * omega * self.lag)
+        return dynamic_stiffness(self.stiffness, self.damping, self.lag, omega)
+
+
+def dynamic_stiffness(
+    stiffness: np.ndarray, damping: np.ndarray, lag: float, omega: float | np.ndarray
+) -> np.ndarray:
+    """Of springs and dampers (N/m, N s/m) behind a lag (s) at `omega` (rad/s), complex, N/m."""
+    return (stiffness + 1j * omega * damping) / (1.0 + 1j * omega * lag)
 
 
 def static_stiffness(bearings: Iterable[LinearBearing]) -> np.ndarray:

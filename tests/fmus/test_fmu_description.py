@@ -243,22 +243,17 @@ def draw(slot: Slot, default: float, chance: random.Random) -> float:
     return default - (value - default) if spec.maximum is not None and value > spec.maximum else value
 
 
-def store(instance: Instance, slot: Slot) -> memoryview:
-    """Where `slot` lives in the instance."""
-    return instance.reals if slot.variable.spec.kind == "real" else instance.integers
-
-
 def first_values(instance: Instance, values: Mapping[str, float]) -> dict[str, float] | None:
     """Outputs after initialisation with `values`; None where the model refuses them."""
     for slot in instance.slots:
         if slot.variable.name in values:
             value = values[slot.variable.name]
-            store(instance, slot)[slot.index] = value if slot.variable.spec.kind == "real" else int(value)
+            instance.store(slot)[slot.index] = value if slot.variable.spec.kind == "real" else int(value)
     try:
         instance.start(0.0)
     except ModelError:
         return None
-    return {s.variable.name: store(instance, s)[s.index] for s in instance.slots if s.causality == "output"}
+    return {s.variable.name: instance.store(s)[s.index] for s in instance.slots if s.causality == "output"}
 
 
 def observed_dependencies(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 from touchdown.master.coupling.observer import EveryStep, Moment
@@ -88,3 +89,16 @@ def run_to_end(scene: Scene, folder: Path, in_process: bool = True) -> dict[str,
     from touchdown.master.results.run import run_scene
 
     return run_scene(scene, folder, in_process=in_process, pictures=False).summary
+
+
+def recorded(folder: Path) -> dict[str, np.ndarray]:
+    """All numbers that a run in `folder` recorded, by name."""
+    found: dict[str, np.ndarray] = {}
+
+    def take(name: str, item: object) -> None:
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
+            found[name] = np.asarray(item[...])
+
+    with h5py.File(folder / "result.h5") as file:
+        file.visititems(take)
+    return found

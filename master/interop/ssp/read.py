@@ -154,13 +154,13 @@ def _settings(package: Package) -> dict[str, dict[str, float | str]]:
             start, end = _unit(bound.value.unit, definitions), _unit(unit, (side.units, package.said.units))
             scale = _along(start, bound.legs, end, package, what)
             given = bound.value.given
-            if isinstance(given, str) and not side.variable(bound.variable, what).choices:
+            if not isinstance(given, str):
+                given = scaled(given, scale)
+            elif not side.variable(bound.variable, what).choices:
                 raise TouchdownError(
                     f"{what} = {given!r} is an enumeration's word, and the variable is none"
                 )
-            settings[bound.component][bound.variable] = (
-                given if isinstance(given, str) else scaled(given, scale)
-            )
+            settings[bound.component][bound.variable] = given
     return settings
 
 

@@ -17,10 +17,10 @@ from touchdown.master.report.page.blocks import Absent
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.result import Result
 from touchdown.master.results.summary import seat_name, touchdown_seats
+from touchdown.master.results.whirl.evidence import CONTACT as FIRST_CONTACT
 
 COLOURS = ("blue", "orange", "green", "purple", "grey", "ink")
 SHOWN_IMPACT = (0.002, 0.018)  # s before and after the first contact
-FIRST_CONTACT = "first_contact_time_s"
 
 
 @dataclass(frozen=True)

@@ -25,10 +25,16 @@ def evidence(summary: Mapping[str, object]) -> list[str]:
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
 
 
+def first_contact(summary: Mapping[str, object]) -> float | None:
+    """When the first bearing was touched (s from the zero); None where none was."""
+    times = [time for key, time in summary.items() if key.startswith(CONTACT)]
+    return min((time for time in times if isinstance(time, float)), default=None)
+
+
 def _touched(summary: Mapping[str, object]) -> bool:
     """Whether any bearing was, as far as bearings tell."""
-    contacts = [time for key, time in summary.items() if key.startswith(CONTACT)]
-    return not contacts or any(isinstance(time, float) for time in contacts)
+    tells = any(key.startswith(CONTACT) for key in summary)
+    return not tells or first_contact(summary) is not None
 
 
 def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue import OWN_FILE, Bearing, CatalogueError
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import holds, writing_to
+from touchdown.master.common.files import keep_other, writing_to
 from touchdown.master.scene.file import SCENE_FILE
 from touchdown.master.studies.machine.bearings import find_bearing
 from touchdown.master.studies.machine.design import (
@@ -88,11 +88,8 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
     if folder.exists() and not folder.is_dir():
         raise TouchdownError(f"{folder} is a file; choose another name for the machine's folder")
     for name, text in made.files.items():
-        if not force and (folder / name).exists() and not holds(folder / name, text):
-            raise TouchdownError(
-                f"{folder / name} is there already; choose another folder, or --force (in Python, "
-                "force=True)"
-            )
+        if not force:
+            keep_other(folder / name, text, "folder")
     with writing_to(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in made.files.items():

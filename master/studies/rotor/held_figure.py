@@ -9,11 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sized
-from touchdown.master.studies.rotor.held_table import PLANAR, whirl_name
+from touchdown.master.studies.rotor.held_table import PLANAR, RPM, whirl_name
 from touchdown.rotor.modal.campbell import Held
 from touchdown.rotor.modal.whirl import DAMPED, damping_ratios
 
-RPM = 60.0 / (2.0 * math.pi)
 REACH = 1.15  # of the highest line that counts: the end of the scale
 BEYOND = 2.5  # times the highest speed: lines from there on are not followed by the scale
 LOOKS = (  # of each sense: name, marker, colour

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from touchdown.master.studies.rotor.rig import NO_FORCE, Rig
+from touchdown.rotor.modal.whirl import dynamic_stiffness
 
 AMPLITUDE = 1e-6  # m
 NO_LAG = 1e-7  # s; a lag this short is none
@@ -121,9 +122,9 @@ def _least_squares(found: Response, lags: bool) -> Law:
     found_by = np.linalg.lstsq(_split(system) / scale, _split(sides))[0]
     values = found_by / scale
     K, C, lag = values[:4].reshape(2, 2), values[4:8].reshape(2, 2), float(values[8])
-    told = (K + 1j * rate[:, None, None] * C) / (1.0 + 1j * rate[:, None, None] * lag)
-    misfit = np.max(np.abs(told - found.stiffness)) / np.max(np.abs(found.stiffness))
+    told = dynamic_stiffness(K, C, lag, rate[:, None, None])
     most = np.max(np.abs(found.stiffness))
+    misfit = np.max(np.abs(told - found.stiffness)) / most
     return Law(_cleared(K, most), _cleared(C, most / np.max(rate)), lag, float(misfit))
 
 

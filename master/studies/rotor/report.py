@@ -18,6 +18,7 @@ from touchdown.master.studies.rotor.held_table import held_lines
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find, shipped
+from touchdown.rotor.imports.reading import ARCHIVE, MODELS, TABLES
 from touchdown.rotor.modal.critical import CriticalMap
 from touchdown.rotor.modal.data import seats
 from touchdown.rotor.portrait import Portrait, portrait
@@ -29,9 +30,9 @@ MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 BEYOND = 2.0  # times the speed asked for: its end
 FOREIGN = {  # what files of others hold
-    **dict.fromkeys((".csv", ".tsv", ".txt"), "a table of sections"),
-    **dict.fromkeys((".toml", ".json"), "ROSS's files"),
-    ".npz": "matrices or modal data",
+    **dict.fromkeys(TABLES, "a table of sections"),
+    **dict.fromkeys(MODELS, "ROSS's files"),
+    ARCHIVE: "matrices or modal data",
     ".mtx": "the matrices in that folder",
 }
 ANY = "a table of sections, of ROSS's files, of matrices or modal data"

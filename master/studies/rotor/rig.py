@@ -64,9 +64,10 @@ class Rig:
             f"{one}.{name}" for one in (port, *place.sensors, MOUNTED) for axis in POSITION
             for name in (axis, f"v{axis}", f"a{axis}_free")
         ]  # fmt: skip
-        self._names = [name for name in names if name in component.variables]
+        taken = [name for name in names if name in component.variables]
+        self._inputs = [_input(name) for name in taken]
         self._force = np.zeros(2)
-        component.bind(self._names, self._force, [f"{port}.{f}" for f in FORCE])
+        component.bind(taken, self._force, [f"{port}.{f}" for f in FORCE])
         self._time = 0.0
         component.enter(0.0)
         self._set(AT_REST, AT_REST, AT_REST, True)
@@ -217,12 +218,15 @@ class Rig:
         moving[MOUNTED] = self._place.housing, AT_REST, AT_REST
         for sensor, place in self._place.sensors.items():
             moving[sensor] = (place + off, rate, bend) if sensed else (place, AT_REST, AT_REST)
-        for i, name in enumerate(self._names):
-            port, _, variable = name.rpartition(".")
-            if variable == SPIN:
-                self._component.inputs[i] = self.spin
-                continue
-            axis = POSITION.index(variable.removesuffix("_free")[-1])
-            order = {"x": 0, "y": 0, "v": 1, "a": 2}[variable[0]]
-            self._component.inputs[i] = moving[port][order][axis]
+        for i, asked in enumerate(self._inputs):
+            self._component.inputs[i] = self.spin if asked is None else moving[asked[0]][asked[1]][asked[2]]
         self._component.push()
+
+
+def _input(name: str) -> tuple[str, int, int] | None:
+    """Port, derivative and axis that an input takes; None: it is the spin."""
+    port, _, variable = name.rpartition(".")
+    if variable == SPIN:
+        return None
+    order = {"x": 0, "y": 0, "v": 1, "a": 2}[variable[0]]
+    return port, order, POSITION.index(variable.removesuffix("_free")[-1])

@@ -12,13 +12,13 @@ from typing import Any
 from xml.etree.ElementTree import fromstring
 
 import fmpy
-import h5py
 import numpy as np
 import pytest
 from fmpy import extract, read_model_description
 from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 from places import ROOT
+from systems import recorded
 
 from touchdown.fmus.description.arrays import arrays, element, time_reference
 from touchdown.fmus.native.build import Native as Choice
@@ -133,19 +133,6 @@ def test_a_drop_is_recorded_as_in_process(made: Made, tmp_path: Path):
     assert found["within"]["one/contact.force"].max() > 100.0  # N: they hit
     assert found["third"].keys() == found["within"].keys()
     assert {n for n, v in found["within"].items() if v.tobytes() != found["third"][n].tobytes()} == set()
-
-
-def recorded(folder: Path) -> dict[str, np.ndarray]:
-    """All numbers that a run recorded, by name."""
-    found: dict[str, np.ndarray] = {}
-
-    def take(name: str, item: object) -> None:
-        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f":
-            found[name] = np.asarray(item[...])
-
-    with h5py.File(folder / "result.h5") as file:
-        file.visititems(take)
-    return found
 
 
 def test_arrays_are_set_and_read_whole_and_between_scalars(bushing: Any):

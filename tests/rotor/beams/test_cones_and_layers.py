@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import assemble, tilt, translation
+from touchdown.rotor.beams.assembly import assemble
+from touchdown.rotor.beams.body import rigid_motion
 from touchdown.rotor.beams.element import Element, split
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.modal.modes import basis
@@ -56,7 +57,8 @@ def test_rigid_motion_weighs_what_it_should(layered: bool) -> None:
     bronze = replace(ROSS_CONE, inner_diameter=0.1, inner_diameter_end=0.15, outer_diameter=0.16,
                      outer_diameter_end=0.17, density=8800.0, modulus=0.0)  # fmt: skip
     shaft = Shaft("cone", (replace(ROSS_CONE, layers=(bronze,) if layered else ()), CONE))
-    m, e, t = assemble(shaft), translation(shaft), tilt(shaft)
+    m = assemble(shaft)
+    e, t = rigid_motion(shaft.positions(), shaft.centre_of_mass).T
     assert e @ m.mass @ e == pytest.approx(shaft.mass, rel=1e-12)
     assert e @ m.mass @ t == pytest.approx(0.0, abs=1e-12 * shaft.mass)
     assert t @ m.mass @ t == pytest.approx(shaft.diametral_inertia, rel=1e-12)
