@@ -1,8 +1,8 @@
 """Random bearings followed while their balls rattle: does a ball gain what nothing gave it?
 
 Random bearings of each model whose balls are free (`random_bearings.py`), a third of them undamped at the
-balls, from the landing on, with the default steps inside. No ball should bear much more than the journal does
-at its hardest; rotor, bearing and housing should keep their energy, with the heat.
+balls, from the landing on, with the default steps inside. No ball should bear much more than the journal
+does at its hardest; rotor, bearing and housing should keep their energy, with the heat.
 
     python benchmarks/rattle.py [--count 100] [--duration 0.1]
 """
