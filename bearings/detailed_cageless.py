@@ -209,7 +209,7 @@ def start(words):
     seat.take_inputs(m.q, m)
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
-    m.s.kick = 0.5 * m.d.micro_step
+    m.s.kick, m.s.lately = 0.5 * m.d.micro_step, 0.0
     state_constants(m)
     seat.begin(react, report, m)
 

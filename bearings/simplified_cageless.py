@@ -330,7 +330,7 @@ def start(words):
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m.p.balls.count, m.d.angles)
     m.s.balls.cross[:] = 1.0
-    m.s.kick = 0.5 * m.d.micro_step
+    m.s.kick, m.s.lately = 0.5 * m.d.micro_step, 0.0
     state_constants(m)
     seat.begin(react, report, m)
 

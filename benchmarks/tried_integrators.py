@@ -40,10 +40,9 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         rhs(0.0, m.q, rows[0], m)
-        steps = verlet.Steps(step, RESOLUTION)
-        return (
-            1 + verlet.integrate(rhs, drift, unaware, fastest, observe, m, m.q, m.n, rows, span, steps)[1]
-        )
+        steps, at = verlet.Steps(step, RESOLUTION), m.q
+        found = verlet.integrate(rhs, drift, unaware, fastest, observe, m, at, m.n, rows, span, steps, 0.0)
+        return 1 + found[1]
 
     return tried
 

@@ -60,6 +60,18 @@ def test_a_seed_stands_for_one_bearing(model: str) -> None:
         assert landed.record["o"]["contact"]["force"] == 0.0
 
 
+def test_no_ball_gains_what_nothing_gave_it() -> None:
+    """A bearing whose balls rattle undamped, over 20 ms: a hundredth of what is turned over, and no growth."""
+    import rattle
+    from random_bearings import random_case
+
+    case = random_case("detailed_caged", 1)
+    assert case.parameters["balls.damping_ratio"] == 0.0
+    found = rattle.rattled(case, 0.02)
+    assert 0.05 < found.force < 2.0
+    assert 0.0 < abs(found.made) < 0.01
+
+
 def test_the_errors_of_inner_steps_are_tabled() -> None:
     """One shipped bearing over 0.2 ms: shorter steps err less, and the rows say so."""
     import inner_steps

@@ -38,6 +38,7 @@ class KickMemory:
     """What a kick starts from."""
 
     kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
+    lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
     rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
     before: tuple = array(MOST_STATES)  # derivative of the state then
     brake: Brake = group(Brake)
@@ -83,8 +84,8 @@ def leapfrog(rhs, drift, fastest, observe, m, work, span):
     m.s.ahead[:] = 0.0
     book(work[0], seat.last_load(m), m)
     steps = verlet.Steps(m.d.micro_step, m.d.resolution)
-    status, evaluations = verlet.integrate(
-        rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, steps
+    status, evaluations, m.s.lately = verlet.integrate(
+        rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, steps, m.s.lately
     )
     return m.h, status, evaluations
 

@@ -33,6 +33,7 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
         completion.schemes,
     )
     verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
+    verb.add_argument("--duration", help='of the run from the scene\'s zero on, such as "0.2 s"')
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
     add_swaps(verb)
 
@@ -133,8 +134,9 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     from touchdown.master.interop.scenes import find_scene
 
     chosen = swapped(find_scene(options.scene), options).set(settings(options))
-    if options.scheme is not None:
-        chosen = chosen.set({"run.scheme": options.scheme})
+    for key in ("scheme", "duration"):
+        if (given := getattr(options, key)) is not None:
+            chosen = chosen.set({f"run.{key}": given})
     if options.macro_step == "auto":
         from touchdown.master.studies.schemes.advisor import advise
 

@@ -6,8 +6,11 @@ Undamped contacts neither gain nor lose energy in the long run (Hairer, Lubich, 
 Integration, 2nd ed., section I.1.4). Between two drifts the velocities get one kick, a' over half of either
 step; a' is evaluated with those before it, and a model may take what depends on velocity implicitly.
 
-The step is bounded from above, and by the fastest contact: h w at most `Steps.resolution`, w its angular
-frequency (the method is stable up to 2).
+The step is bounded from above, and by the fastest contact of late: h w at most `Steps.resolution`, w its
+angular frequency (the method is stable up to 2). Steps that shorten as a hit is found and lengthen after it
+come late at one end of the hit and in time at the other: a body that rattles undamped would gain energy at
+every hit, without bound. So w fades slowly, by `FADING` a step, and hits that follow each other are taken
+in equal steps.
 """
 
 from __future__ import annotations
@@ -20,6 +23,7 @@ from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
 
 OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
+FADING = 0.999  # of the largest frequency, a step
 SLIVER = 1e-6  # of a step; what is left of a span by rounding
 
 
@@ -39,23 +43,30 @@ def step_length(frequency, left, steps):
 
 
 @kernel
-def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps):
+def of_late(now, before):
+    """The frequency (rad/s) that bounds the next step: that of `now`, or that of `before`, faded."""
+    faded = FADING * before
+    return faded if now < faded else now  # a NaN stays
+
+
+@kernel
+def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps, lately):
     """Advance the state q[:n] over `span` (s) in place, in `Steps`.
 
     rhs(t, q, dq, m) and observe(t, q, m) as for `dopri.integrate`. drift(trial, q, v, h, m) sets each
     position in `trial` to that in q plus h (s) times its velocity in v. forecast(trial, dq, h, kick, m) may
     add h/2 dq to velocities in `trial` that are evaluated at the end of the step, not in its middle, and
     notes how long (s) the kick will be that follows: half of this step and half of the next.
-    fastest(m) is the largest angular frequency at the last evaluation (rad/s). work: `dopri.scratch`,
-    of which four rows (n,) are used; the first holds rhs at the start.
-    Returns (status, number of evaluations of rhs).
+    fastest(m) is the largest angular frequency at the last evaluation (rad/s); lately: what it was when the
+    span before this one ended. work: `dopri.scratch`, of which four rows (n,) are used; the first holds rhs
+    at the start. Returns (status, number of evaluations of rhs, `lately` of the span to come).
     """
     t = 0.0
     status = OK
     taken = 0
     f, f_new = work[0], work[1]  # dq at both ends of a step
     half, trial = work[2], work[3]  # q with the velocities of the middle; trial state
-    frequency = fastest(m)
+    frequency = of_late(fastest(m), lately)
     h = step_length(frequency, span, steps)
     while t < span:
         taken += 1
@@ -84,7 +95,7 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps
         for i in range(n):
             f[i] = f_new[i]
         observe(t, q, m)
-        h, frequency = following, fastest(m)
+        h, frequency = following, of_late(fastest(m), frequency)
         if frequency * following > OVERRUN * steps.resolution:  # a hit found only now needs a shorter one
             h = min(following, step_length(frequency, span - t, steps))
-    return status, taken
+    return status, taken, frequency

@@ -13,6 +13,7 @@ from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
+from touchdown.bearings.rolling.micro_step import MICRO_STEP
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
@@ -256,9 +257,9 @@ HARD = {
 }
 
 RATTLING = {  # share by which the force on one ball may differ where a caged bearing's balls rattle most
-    "1 um in the pockets": 0.2,
-    "stiff pockets": 0.3,
-    "races a hundred times stiffer": 0.3,
+    "1 um in the pockets": 0.1,
+    "stiff pockets": 0.25,
+    "races a hundred times stiffer": 0.25,
 }
 
 
@@ -267,9 +268,9 @@ RATTLING = {  # share by which the force on one ball may differ where a caged be
 def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
     """Default steps against adaptive ones: the first impact's peaks within 2 % and, on one ball, 8 %.
 
-    In a cage balls rattle before the impact, chaotically: the last bit of a start moves the force on one
-    by 2 % (standard deviation), by 5 to 13 % in the cases of `RATTLING`. Medians over seven starts, 1e-7
-    rad apart, differ by two thirds of that, so the bounds are three times it and more.
+    In a cage balls rattle before the impact, chaotically: starts 1e-3 rad apart, which have nothing more in
+    common, differ in the force on one ball by up to 2 % (standard deviation), by 3 to 10 % in the cases of
+    `RATTLING`. Medians over seven differ by two thirds of that, by 2 % here; the bounds are three times it.
     """
     settings = HARD[case]
     if any(".cage" in key for key in settings) and name == "detailed_cageless":
@@ -277,10 +278,10 @@ def test_hard_cases_converge_to_the_reference(name: str, case: str) -> None:
     if any("bunching" in key or "ball_contact" in key for key in settings) and name == "detailed_caged":
         pytest.skip("the cage keeps the balls apart")
     medians = []
-    for micro in (2e-6, 0.0):
+    for micro in (MICRO_STEP, 0.0):
         found = []
         for start in range(7 if name == "detailed_caged" else 1):
-            angle = math.pi + 1e-7 * start
+            angle = math.pi + 1e-3 * start
             scene = drop(name, 0.0095, bearing__micro_step=micro, bearing__balls__first_angle=angle)
             for key, value in settings.items():
                 scene = scene.set({key: value})
@@ -336,6 +337,22 @@ def test_energy_at_the_default_steps(name: str) -> None:
     total = sum(found[p] for p in parts)
     after = found["rotor.A.work"] != 0.0
     assert np.max(np.abs(total[after] - total[after][0])) < 0.02 * 1.65 * 9.81 * 0.3e-3
+
+
+LIGHT = {"detailed_cageless": (24, 3.608e-3, 0.02), "detailed_caged": (14, 3.5e-3, 0.1)}
+
+
+@every_model
+def test_many_light_balls_do_not_gain_speed(name: str) -> None:
+    """Balls of 0.2 g rattle between the races, undamped, where hits take few steps; to 0.02 and 0.1 s.
+
+    Where steps shorten only as a hit is found, a ball gains energy at every hit, up to meganewtons. None
+    bears more than a part of what the rotor's landing brings: 65 to 190 N of 350 N.
+    """
+    count, diameter, duration = LIGHT[name]
+    balls = {"bearing.balls.count": count, "bearing.balls.diameter": diameter}
+    system = finished(load_scene(SCENES[name]).set({"run.duration": duration, **balls}))
+    assert 50.0 < system.value("bearing.balls.peak_force") < system.value("bearing.contact.peak_force")
 
 
 def test_weights_and_states_match() -> None:

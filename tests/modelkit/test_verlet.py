@@ -50,9 +50,8 @@ def observe(t, q, m):
 @kernel
 def run(q, m, work, span, longest):
     rhs(0.0, q, work[0], m)
-    return verlet.integrate(
-        rhs, drift, forecast, fastest, observe, m, q, 3, work, span, verlet.Steps(longest, RESOLUTION)
-    )
+    steps = verlet.Steps(longest, RESOLUTION)
+    return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, steps, 0.0)
 
 
 def parameters(stiffness: float, friction: float, fastest: float) -> np.ndarray:
@@ -64,7 +63,7 @@ def advanced(span: float, step: float, stiffness: float, friction: float = 0.0, 
     """(State after `span`, evaluations) from x = 1 m at rest."""
     q = np.array([1.0, 0.0, 0.0])
     m = parameters(stiffness, friction, fastest)
-    status, evaluations = run(q, m, np.zeros((8, 3)), span, step)
+    status, evaluations, _ = run(q, m, np.zeros((8, 3)), span, step)
     assert status == 0
     return q, evaluations
 
@@ -113,6 +112,47 @@ def test_each_kick_is_half_of_the_steps_beside_it() -> None:
         longest = min(0.013, RESOLUTION / early) if early else 0.013
         first = 1.0 / math.ceil(1.0 / longest)
         assert 0.5 * first + m[KICKS] == pytest.approx(1.0, rel=1e-12)
+
+
+@kernel
+def bounced(t, q, dq, m):
+    """Mass 1 kg between walls at 1 m either way, stiffness 1 N/m^1.5."""
+    beyond = max(abs(q[0]) - 1.0, 0.0)
+    dq[0], dq[2] = q[1], 0.0
+    dq[1] = -math.copysign(beyond**1.5, q[0])
+    m[FASTEST] = math.sqrt(1.5 * math.sqrt(beyond))
+
+
+@kernel
+def rattled(q, m, work, span, longest):
+    """(Status, frequency of late) of `verlet.integrate` over a hundred spans."""
+    bounced(0.0, q, work[0], m)
+    steps, status, lately = verlet.Steps(longest, RESOLUTION), 0, 0.0
+    for _ in range(100):
+        if status == 0:
+            status, _, lately = verlet.integrate(
+                bounced, drift, forecast, fastest, unchanged, m, q, 3, work, span, steps, lately
+            )
+    return status, lately
+
+
+@kernel
+def unchanged(t, q, m):
+    """The contact stays as `bounced` finds it."""
+
+
+@pytest.mark.parametrize("speed", [0.3, 1.0, 3.0, 10.0])
+def test_an_undamped_rattle_neither_grows_nor_dies(speed: float) -> None:
+    """Some 500 hits, in steps that every speed but the least shortens: energy within a factor of two.
+
+    Steps bounded by the contact of the moment multiply it by more than a hundred.
+    """
+    q, m = np.array([0.0, speed, 0.0]), parameters(0.0, 0.0, 0.0)
+    longest = RESOLUTION / 1.2  # of a hit at 0.3 m/s with little to spare
+    status, _ = rattled(q, m, np.zeros((8, 3)), 30.0 / math.sqrt(speed), longest)
+    kept = (0.5 * q[1] ** 2 + 0.4 * max(abs(q[0]) - 1.0, 0.0) ** 2.5) / (0.5 * speed**2)
+    assert status == 0
+    assert 0.5 < kept < 2.0
 
 
 @pytest.mark.parametrize("fastest", [math.inf, math.nan])

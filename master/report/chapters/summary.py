@@ -13,6 +13,7 @@ from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
 from touchdown.master.report.page.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
 from touchdown.master.results.whirl.evidence import evidence
 from touchdown.master.results.whirl.unbalance import unbalanced
+from touchdown.master.studies.rotor.balance import balanced
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
 UNTOLD = "not told, for no clearance is stated or no orbit recorded"
@@ -140,7 +141,8 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
             "crossed it; a shorter run.macro_step shows what hangs on that.",
             True,
         )
-    if unbalanced(subject.run.system) and subject.seats:
+    turned = unbalanced(subject.run.system)
+    if turned and subject.seats and not balanced(subject.result.scene, turned):
         yield (
             "This is one phase of the unbalance. Whether a rotor whirls may hang on the phase; "
             "`touchdown verdict` runs them all.",

@@ -12,6 +12,7 @@ from touchdown.master.studies.rotor.situations import scene_shaft
 def balanced(scene: Scene, bodies: Iterable[str]) -> bool:
     """Whether all these components are rotors of elements or matrices, none with an unbalance."""
     try:
-        return not any(scene_shaft(scene, body).unbalances for body in bodies)
+        unbalances = [u for body in bodies for u in scene_shaft(scene, body).unbalances]
+        return not any(u.moment for u in unbalances)
     except TouchdownError:  # a rotor of another kind
         return False

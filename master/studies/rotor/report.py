@@ -43,10 +43,11 @@ TO_REST = (
 
 @dataclass(frozen=True)
 class Report:
-    """The table, and the pictures that were drawn."""
+    """The table, the pictures that were drawn, and what is to be said beside."""
 
     text: str
     pictures: list[Path] = field(default_factory=list)
+    remarks: tuple[str, ...] = ()
 
 
 def report(

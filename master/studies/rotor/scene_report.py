@@ -34,6 +34,7 @@ class SceneRotor:
     portrait: Portrait  # free; its maps of critical speeds mark what the situations' bearings have
     situations: tuple[Situation, ...]
     unheld: tuple[str, ...]  # a line for each situation that there is not
+    remarks: tuple[str, ...]  # what a run of the scene would say before its first step
 
 
 def described_in(
@@ -51,7 +52,8 @@ def described_in(
     found, unheld = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
     free = described(replace(seen.shaft, supports=()), asked, modes)
     maps = [one for situation in found if (one := _map(seen, situation)) is not None]
-    return SceneRotor(scene, replace(free, critical=tuple(maps)), tuple(found), tuple(unheld))
+    free = replace(free, critical=tuple(maps))
+    return SceneRotor(scene, free, tuple(found), tuple(unheld), seen.remarks)
 
 
 def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, load: float) -> Report:
@@ -61,7 +63,8 @@ def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, lo
     from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
 
     held = {one.name: (one.held, title_of(found, one)) for one in found.situations}
-    return Report(scene_text(found), draw_pictures(found.portrait, folder, held))
+    pictures = draw_pictures(found.portrait, folder, held)
+    return Report(scene_text(found), pictures, found.remarks)
 
 
 def title_of(found: SceneRotor, situation: Situation) -> str:

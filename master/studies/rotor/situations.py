@@ -81,6 +81,7 @@ class Seen:
     places: dict[str, Place]  # by bearing
     mounts: dict[str, str]  # by bearing, COMPONENT.PORT
     foundations: dict[str, Foundation]  # by mount
+    remarks: tuple[str, ...]  # what a run of the scene would say before its first step
 
 
 def situations(
@@ -148,6 +149,7 @@ def seen_in(scene: Scene) -> Seen:
             places={a.bearing: _place(system, a, sensors[a.bearing], mounts) for a in journals},
             mounts=mounts,
             foundations={m: f for m in mounts.values() if (f := _foundation(system, m)) is not None},
+            remarks=tuple(system.remarks),
         )
 
 

@@ -5,20 +5,23 @@ from __future__ import annotations
 import base64
 import json
 import re
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from commands import Command
+from places import ROOT
 
 import touchdown
+from touchdown.master.cli import main
 from touchdown.master.report.contents import CHAPTERS, section
 from touchdown.master.report.facts.labels import label
 from touchdown.master.report.facts.numbers import digits, listed, quantity
 from touchdown.master.report.facts.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
 from touchdown.master.report.facts.subject import Subject
-from touchdown.master.report.page.blocks import Folded, Table
+from touchdown.master.report.page.blocks import Folded, Remark, Table
 from touchdown.master.report.sweeps import _is_sample, _spread
 from touchdown.master.studies.sweep.journal import Member
 from touchdown.master.studies.sweep.results import Sweep
@@ -70,6 +73,22 @@ def test_settings_tell_where_they_come_from(dropped: Path) -> None:
     assert rows["rotor.mass"][2] == "scene"
     assert rows["run.duration"][2] == "set for this run"
     assert rows["run.scheme"][1:] == ["interface", "default"]
+
+
+def test_a_rotor_without_unbalance_has_no_phase(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for file in ("spindle.toml", "spindle_rotor.toml"):
+        shutil.copy(ROOT / "examples" / file, tmp_path)
+    scene, rotor = tmp_path / "spindle.toml", tmp_path / "spindle_rotor.toml"
+    for unbalance, phases in (("10 g.mm", "touchdown verdict"), ("0 g.mm", "hangs on no phase of it")):
+        rotor.write_text(rotor.read_text("utf-8").replace("10 g.mm", unbalance), "utf-8")
+        folder = tmp_path / unbalance
+        run = ["run", str(scene), "--duration", "20 ms", "--in-process", "--no-pictures", "-o", str(folder)]
+        assert main(run) == 0
+        assert phases in capsys.readouterr().out
+        chapter = next(c for c in CHAPTERS if c.name == "summary")
+        blocks = section(chapter, Subject(touchdown.open_result(folder))).blocks
+        said = [block.text for block in blocks if isinstance(block, Remark)]
+        assert any("one phase of the unbalance" in text for text in said) == (unbalance == "10 g.mm")
 
 
 def test_the_command_repeats_the_run(dropped: Path, page: Path) -> None:

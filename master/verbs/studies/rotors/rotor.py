@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.verbs import completion
@@ -17,7 +18,11 @@ from touchdown.master.verbs.arguments import (
     swapped,
 )
 from touchdown.master.verbs.completion import complete
+from touchdown.master.verbs.screen import warn
 from touchdown.master.verbs.verb import Verb
+
+if TYPE_CHECKING:
+    from touchdown.master.studies.rotor.report import Report
 
 EXAMPLES = (
     "touchdown rotor rotor_I",
@@ -79,13 +84,15 @@ def execute(options: argparse.Namespace) -> int:
         folder = options.output or Path("runs") / f"rotor-{own}"
         if options.output and len(names) > 1:
             folder = options.output / own
-        print(_described(name, folder, options))
+        found = _described(name, folder, options)
+        print(found.text)
         print(f"pictures in {folder}\n")
+        warn(found.remarks)
     return 0
 
 
-def _described(name: str, folder: Path, options: argparse.Namespace) -> str:
-    """The table of a rotor, or of a scene's, whose pictures go into `folder`."""
+def _described(name: str, folder: Path, options: argparse.Namespace) -> Report:
+    """A rotor, or a scene's, whose pictures go into `folder`."""
     from touchdown.master.common.units import to_si
     from touchdown.master.scene.file import is_scene
     from touchdown.master.studies.rotor.report import SPEED, report
@@ -100,12 +107,12 @@ def _described(name: str, folder: Path, options: argparse.Namespace) -> str:
         if getattr(options, option):
             raise TouchdownError(f"--{option} is for scenes; {name} is a rotor")
     supports = {station: _stiffness(station, text) for station, text in _given(options.support)}
-    return report(name, folder, SPEED if speed is None else speed, int(modes), supports).text
+    return report(name, folder, SPEED if speed is None else speed, int(modes), supports)
 
 
 def _described_in(
     name: str, folder: Path, speed: float | None, modes: int, options: argparse.Namespace
-) -> str:
+) -> Report:
     """Of the scene `name`."""
     from touchdown.master.interop.scenes import find_scene
     from touchdown.master.studies.rotor.scene_report import report_scene
@@ -116,7 +123,7 @@ def _described_in(
         )
     load = above_zero(options.load, "1", "--load")
     scene = swapped(find_scene(name), options).set(settings(options))
-    return report_scene(scene, folder, speed, modes, 1.0 if load is None else load).text
+    return report_scene(scene, folder, speed, modes, 1.0 if load is None else load)
 
 
 def _given(texts: list[str]) -> list[tuple[str, str]]:

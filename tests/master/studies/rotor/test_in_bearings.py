@@ -336,6 +336,14 @@ def test_a_control_that_lags_too_much_is_unstable(
         assert (tmp_path / f"{picture}.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_what_a_run_would_say_first_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    settings = ["--set", "rotor.speed=9000", "--speed", "6000 rpm"]
+    assert main(["rotor", "rotor1-9000", *settings, "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().err
+    assert "rotor.speed = 85944 rpm is more than a bearing" in said
+    assert "a number without a unit is in rad/s" in said
+
+
 def shaft_share(shaft: touchdown.Rotor) -> float:
     """Of its weight at A (N), by the lever."""
     z = shaft.positions()
