@@ -61,7 +61,7 @@ def test_a_seed_stands_for_one_bearing(model: str) -> None:
 
 
 def test_no_ball_gains_what_nothing_gave_it() -> None:
-    """A bearing whose balls rattle undamped, over 20 ms: a hundredth of what is turned over, and no growth."""
+    """Balls that rattle undamped for 20 ms bear what the landing brings, and keep their energy to 1 %."""
     import rattle
     from random_bearings import random_case
 
