@@ -20,17 +20,21 @@ from numba.core.typing.templates import make_concrete_template
 
 from touchdown.modelkit.kernel.front_end import FrontEnd
 
+COUNTING = "NRT_"  # begins the names of functions that count references
+
 
 class WholeCode(JITCodeLibrary):
     """Code of a kernel that Python calls; what that calls is called from nowhere else.
 
     LLVM may change how that is called. So it goes by another name: code that numba compiled looks for
-    functions by their names, among internal ones, too.
+    functions by their names, among internal ones, too. What counts references keeps its name, by which
+    numba finds pairs that cancel each other: hundreds, which would take a third of a bearing's time.
     """
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage.name == "linkonce_odr":
+            counting = function.name.startswith(COUNTING)
+            if not function.is_declaration and function.linkage.name == "linkonce_odr" and not counting:
                 function.linkage, function.name = "internal", f"{function.name}.internal"
         super()._optimize_final_module()
 
