@@ -18,10 +18,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 
-import numba
 import numpy as np
 from scipy.integrate import solve_ivp
-from tried_integrators import make
+from tried_integrators import make, whole
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, press
@@ -82,7 +81,7 @@ def carrier(module: ModuleType, tried: Callable) -> Callable:
     """`tried` on a bearing's words."""
     memory, scratch = module.MEMORY, module.SCRATCH
 
-    @numba.njit(error_model="numpy")
+    @whole
     def carry(words, work, span, step, tolerance):
         m = words.view(memory)[0]
         return tried(m, work.ravel().view(scratch)[0].rows, span, step, tolerance)
@@ -95,7 +94,7 @@ def kept(module: ModuleType) -> Callable:
     react, integrate, memory, scratch = module.react, module.integrate, module.MEMORY, module.SCRATCH
     copy_rates = seat.copy_rates
 
-    @numba.njit(error_model="numpy")
+    @whole
     def carry(words, work, span, step, tolerance):
         m = words.view(memory)[0]
         rows = work.ravel().view(scratch)[0].rows
@@ -120,7 +119,7 @@ def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
     instance = Runner("", kept(module), MICRO_STEP).run(module, 4e-4)[0]
     rhs, memory, scratch = module.rhs, module.MEMORY, module.SCRATCH
 
-    @numba.njit(error_model="numpy")
+    @whole
     def loop(words, work, count):
         m = words.view(memory)[0]
         dq = work.ravel().view(scratch)[0].rows[0]
@@ -145,7 +144,7 @@ def race_times(module: ModuleType) -> tuple[float, float]:
     layout = module.MEMORY
     one_race = one_by_one_at_a_race()
 
-    @numba.njit(error_model="numpy")
+    @whole
     def at_once(words, work, count):
         m = words.view(layout)[0]
         total, dq = 0.0, work[0]
@@ -154,7 +153,7 @@ def race_times(module: ModuleType) -> tuple[float, float]:
             total += rub_races(m.q, dq, m)[1].fx
         return total
 
-    @numba.njit(error_model="numpy")
+    @whole
     def one_by_one(words, work, count):
         m = words.view(layout)[0]
         total, d, s = 0.0, m.d, m.s
@@ -175,7 +174,7 @@ def race_times(module: ModuleType) -> tuple[float, float]:
 def one_by_one_at_a_race() -> Callable:
     """The balls at one race as pairs of their own: friction meets the answer of its own ball alone."""
 
-    @numba.njit(error_model="numpy")
+    @whole
     def one_race(m, body, side, law, s):
         total, d, rb, before = 0.0, m.d, m.d.ball_radius, m.s.before
         answers = 1.0 / d.mass + rb * rb / d.inertia, 1.0 / d.mass
@@ -234,7 +233,7 @@ class Equations:
     def __init__(self, module: ModuleType) -> None:
         rhs, layout, scratch = module.rhs, module.MEMORY, module.SCRATCH
 
-        @numba.njit(error_model="numpy")
+        @whole
         def rate(words, work, state):
             m = words.view(layout)[0]
             rows = work.ravel().view(scratch)[0].rows

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from types import ModuleType
-
-import numba
+from typing import Any
 
 from touchdown.bearings.contact.friction import slope
 from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.bodies.state import SPIN, drift, fastest
 from touchdown.bearings.rolling.micro_step import RESOLUTION, forecast
 from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
+from touchdown.modelkit.kernel.linked import KernelDispatcher
+
+
+def whole(function: Callable) -> Any:
+    """A kernel that is compiled as the models' are, and not kept."""
+    return KernelDispatcher(function, targetoptions={"nopython": True, "error_model": "numpy"})
 
 
 def make(module: ModuleType) -> dict[str, Callable]:
@@ -32,11 +37,11 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
     """Velocity Verlet with friction and damping as they are before the kick, which may overshoot."""
     rhs, observe = module.rhs, module.observe
 
-    @numba.njit(error_model="numpy")
+    @whole
     def unaware(trial, dq, h, kick, m):
         forecast(trial, dq, h, 0.0, m)
 
-    @numba.njit(error_model="numpy")
+    @whole
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         rhs(0.0, m.q, rows[0], m)
@@ -50,7 +55,7 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
 def _dormand_prince(module: ModuleType) -> Callable:
     rhs, observe = module.rhs, module.observe
 
-    @numba.njit(error_model="numpy")
+    @whole
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         return dopri.integrate(rhs, observe, m, m.q, m.n, m.weight, rows, span, 1e-7, tolerance)[2]
@@ -61,7 +66,7 @@ def _dormand_prince(module: ModuleType) -> Callable:
 def _bogacki_shampine(module: ModuleType) -> Callable:
     rhs, observe = module.rhs, module.observe
 
-    @numba.njit(error_model="numpy")
+    @whole
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         q, n, weight = m.q, m.n, m.weight
@@ -102,7 +107,7 @@ def _implicit_spin(module: ModuleType) -> Callable:
     """The linearly implicit method of the simplified cageless bearing, for the spin of each ball alone."""
     rhs, observe = module.rhs, module.observe
 
-    @numba.njit(error_model="numpy")
+    @whole
     def linearise(q, stiff, m):
         d, s = m.d, m.s
         at = part(stiff, SPIN, m)
@@ -111,7 +116,7 @@ def _implicit_spin(module: ModuleType) -> Callable:
             held = steep * (s.inner.normal[b] + s.outer.normal[b])
             at[b] = held * d.ball_radius**2 / d.inertia
 
-    @numba.njit(error_model="numpy")
+    @whole
     def solve(stiff, shift, right, m):
         first = BALLS + SPIN * m.p.balls.count
         for i in range(m.n):
@@ -120,7 +125,7 @@ def _implicit_spin(module: ModuleType) -> Callable:
             else:
                 right[i] /= shift
 
-    @numba.njit(error_model="numpy")
+    @whole
     def tried(m, rows, span, step, tolerance):
         m.s.kick = 0.0
         return rosenbrock.integrate(

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 import tempfile
-import time as clock
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,15 @@ from touchdown.fmus.recipes import names, recipe
 from touchdown.master.components.library.sources import built
 
 WAYS = {"in process": ["--in-process"], "native FMUs": ["--native"], "FMUs in Python": []}
+# A process that is small itself: what one starts counts the memory of who started it as its own.
+WATCH = """
+import json, os, subprocess, sys, time
+began = time.perf_counter()
+process = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL)
+_, status, used = os.wait4(process.pid, 0)
+wall = time.perf_counter() - began
+print(json.dumps([os.waitstatus_to_exitcode(status), wall, used.ru_utime + used.ru_stime, used.ru_maxrss]))
+"""
 BRIEF = ["--set", "run.duration=1 ms", "--no-pictures", "--quiet"]
 
 
@@ -31,14 +40,12 @@ def started(scene: str, way: str, environment: dict[str, str]) -> Start:
     """One command. Raises CalledProcessError where it fails."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "touchdown", "run", scene, *BRIEF, *WAYS[way], "-o", folder]
-        began = clock.perf_counter()
-        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        wall = clock.perf_counter() - began
-    if process.returncode:
-        raise subprocess.CalledProcessError(process.returncode, command)
-    return Start(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0)
+        watched = [sys.executable, "-c", WATCH, *command]
+        said = subprocess.run(watched, env=environment, stdout=subprocess.PIPE, check=True).stdout
+    status, wall, processor, memory = json.loads(said)
+    if status:
+        raise subprocess.CalledProcessError(status, command)
+    return Start(wall, processor, memory / 1024.0)
 
 
 def block(scene: str, repeat: int, native: bool, cold: bool) -> Block:
