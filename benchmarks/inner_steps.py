@@ -35,7 +35,7 @@ from random_bearings import (
     GRAVITY,
     MODULES,
     Case,
-    continue_from,
+    carry,
     energy,
     landed,
     random_case,
@@ -130,9 +130,7 @@ def run(case: Case, plan: Plan, step: float, tolerance: float = EXACT) -> tuple[
     count = max(round(plan.span / plan.macro_step), 1)
     macro_step = plan.span / count
     began = clock.perf_counter()
-    for i in range(count):
-        instance.step(i * macro_step, macro_step)
-        continue_from(instance)
+    carry(instance, macro_step, count)
     spent = clock.perf_counter() - began
     o = m["o"]
     side = o["pockets"] if case.model == "detailed_caged" else o["neighbours"]

@@ -117,6 +117,13 @@ def continue_from(instance: Instance) -> None:
     journal["omega"] = q[seat.JW]
 
 
+def carry(instance: Instance, macro_step: float, count: int) -> None:
+    """Take `count` macro steps (s) from the landing, journal and housing as the bearing carries them."""
+    for k in range(count):
+        instance.step(k * macro_step, macro_step)
+        continue_from(instance)
+
+
 def energy(instance: Instance, rotor: Rotor) -> float:
     """Of rotor, bearing and housing, with the heat (J)."""
     q, inside = instance.record["q"], instance.record["o"]["energy"]

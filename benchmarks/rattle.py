@@ -13,7 +13,7 @@ import argparse
 from dataclasses import dataclass
 
 import numpy as np
-from random_bearings import GRAVITY, MODULES, Case, continue_from, energy, landed, random_case
+from random_bearings import GRAVITY, MODULES, Case, carry, energy, landed, random_case
 
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
 
@@ -53,9 +53,7 @@ def rattled(case: Case, duration: float) -> Rattle:
     """The case after a `duration` (s) of macro steps."""
     instance = landed(case, TOLERANCE, MICRO_STEP)
     m, before = instance.record, energy(instance, case.rotor)
-    for k in range(round(duration / MACRO_STEP)):
-        instance.step(k * MACRO_STEP, MACRO_STEP)
-        continue_from(instance)
+    carry(instance, MACRO_STEP, round(duration / MACRO_STEP))
     o = m["o"]
     turned = case.rotor.mass * GRAVITY * case.clearance + float(o["energy"]["dissipated"])
     return Rattle(

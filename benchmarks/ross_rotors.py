@@ -16,6 +16,7 @@ import argparse
 import io
 import json
 import math
+from collections.abc import Sequence
 from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
@@ -50,8 +51,13 @@ def ross_modes(rotor: ross.Rotor, speed: float) -> np.ndarray:
 def our_modes(rotor: touchdown.Rotor, speed: float, supports: tuple[Support, ...]) -> np.ndarray:
     """The same of ours on the springs of `supports`."""
     springs = [replace(s, damping=0.0, damping_y=0.0) for s in supports]
-    found = HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in springs]).whirl(speed).frequencies
+    found = frequencies(rotor, speed, springs)
     return np.sort(found[found > STILL / (2.0 * math.pi)])[:MODES]
+
+
+def frequencies(rotor: touchdown.Rotor, speed: float, supports: Sequence[Support]) -> np.ndarray:
+    """Damped (Hz), of all modes of ours on `supports` at `speed` (rad/s)."""
+    return HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in supports]).whirl(speed).frequencies
 
 
 def ross_roots(free: ross.Rotor, held: ross.Rotor, speed: float) -> np.ndarray:
@@ -177,11 +183,7 @@ def run_modal(held: ross.Rotor, rotor: touchdown.Rotor, speed: float) -> str:
     if len(rotor.about.splitlines()) > 1:
         return "-"
     theirs = held.run_modal(speed, num_modes=4 * MODES, sparse=False).wd / (2.0 * math.pi)
-    ours = (
-        HeldRotor(basis(rotor, 0), [LinearBearing.of(s) for s in rotor.supports])
-        .whirl(speed)
-        .frequencies[: MODES // 2]
-    )
+    ours = frequencies(rotor, speed, rotor.supports)[: MODES // 2]
     return f"{max(np.min(np.abs(theirs / one - 1.0)) for one in ours):.1e}"
 
 
