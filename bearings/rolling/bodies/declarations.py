@@ -27,6 +27,7 @@ from touchdown.bearings.rolling.declarations import (
     RollingOutputs,
     RollingParameters,
 )
+from touchdown.bearings.rolling.lines import FrictionLines
 from touchdown.bearings.rolling.micro_step import (
     MICRO_STEP,
     RESOLUTION,
@@ -113,9 +114,20 @@ class BallBodiesDerived(RollingDerived):
 
 
 @dataclass(frozen=True)
+class BallRates:
+    """Accelerations of all balls, on their way through an evaluation."""
+
+    x: tuple = array(MOST_BALLS)  # m/s2
+    y: tuple = array(MOST_BALLS)
+    spin: tuple = array(MOST_BALLS)  # rad/s2
+
+
+@dataclass(frozen=True)
 class BallBodiesMemory(RollingMemory, KickMemory):
     """Memory between evaluations and steps."""
 
+    lines: FrictionLines = group(FrictionLines)
+    faster: BallRates = group(BallRates)
     inner: Contacts = group(Contacts)
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)
