@@ -72,7 +72,8 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     components = hear(components, attachments)
     told = [*left_out, *remarks(seats)]
-    return System(components, attachments, connections, settings, every, told, bonds)
+    start = scene.run.start_time
+    return System(components, attachments, connections, settings, every, told, bonds, start)
 
 
 def _seat(
@@ -144,7 +145,8 @@ def _left_out(scene: Scene, component: Component, settings: Sequence[str]) -> li
         return []
     lost = [f"{component.name}.{key}" for key in settings]
     if scene.zero is not None and _lacks(component, scene.zero):
-        lost.append(f"zero = {scene.zero}, so times count from the start")
+        origin = "t = 0" if scene.run.start_time else "the start"
+        lost.append(f"zero = {scene.zero}, so times count from {origin}")
     if any(_lacks(component, name) for name in scene.energy_scale):
         lost.append("energy_scale, so energies are in J only")
     what = f"{component.name} is {spec.fmu} instead of {spec.instead_of}, and does not take over"

@@ -29,6 +29,7 @@ class System:
     every: dict[str, int]  # macro steps of the run that each component takes in one
     remarks: Sequence[str] = ()  # what is to be said of it before it runs, a line each
     bonds: Sequence[Bond] = ()
+    start: float = 0.0  # s, where its components begin
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
@@ -80,7 +81,7 @@ class System:
     def initialise(self) -> None:
         """Bring all components through initialisation, exchanging until every input has its value."""
         for component in self.components.values():
-            component.enter(0.0)
+            component.enter(self.start)
         bodies_first = list(reversed(self.order))
         for _ in range(2):  # bodies to bearings, and loads back
             for name in bodies_first:

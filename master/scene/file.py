@@ -13,7 +13,8 @@ bond = [["s1.f", "s2.f"], ["s2.x", "s1.x2"]]   # a force and the motion it acts 
                                                # velocity = [...]} where units do not tell which is which
 
 [run]
-duration = 5.0        # s
+duration = 5.0        # s, from zero, or from the start of a scene without one
+start_time = 0.0      # s, where the simulation's clock begins (default: 0); a zero is a time on that clock
 macro_step = 2e-5     # s
 
 [components.rotor]

@@ -121,8 +121,10 @@ def _with_run(scene: Scene, package: Package) -> Scene:
     settings: dict[str, object] = {f"run.{k}": said.scene[k] for k in RUN_KEYS if k in said.scene}
     if said.macro_step is not None:
         settings["run.macro_step"] = said.macro_step
+    if said.start:
+        settings["run.start_time"] = said.start
     if said.stop is not None:
-        zero = 0.0
+        zero = said.start
         if scene.zero:
             head, _, tail = scene.zero.partition(".")
             if head not in sides:
