@@ -17,6 +17,7 @@ from touchdown.master.coupling.connections import (
     connection,
     port_connections,
     recognised,
+    require_real,
     sensor_connections,
 )
 from touchdown.master.coupling.system import System
@@ -64,7 +65,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         component.set(values)
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
-    attachments = recognised(connections)
+    attachments = recognised(connections, components)
     bonds = found(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
@@ -117,11 +118,13 @@ def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
 def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Component]) -> list[Connection]:
     """All that the scene attaches, senses and connects, checked."""
     attached = [attachment(pair, components) for pair in scene.attach]
-    connections = [c for a in attached for c in port_connections(a, components, scheme)]
-    connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    ports = [c for a in attached for c in port_connections(a, components, scheme)]
+    ports += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    require_real(ports, components, "what crosses at a port")
     declared = [wire for bond in scene.bond for wire in bond.wires]
+    require_real((connection(wire, components) for wire in declared), components, "a bond")
     wires = dict.fromkeys([*scene.connect, *declared])  # a bond's may stand among the others, too
-    connections += [connection(wire, components) for wire in wires]
+    connections = [*ports, *(connection(wire, components) for wire in wires)]
     check_connections(connections, components)
     for c in connections:
         if c.input in scene.components[c.target].set:
