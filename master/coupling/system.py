@@ -29,6 +29,7 @@ class System:
     every: dict[str, int]  # macro steps of the run that each component takes in one
     remarks: Sequence[str] = ()  # what is to be said of it before it runs, a line each
     bonds: Sequence[Bond] = ()
+    start: float = 0.0  # s, where its components begin
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
@@ -80,7 +81,8 @@ class System:
     def initialise(self) -> None:
         """Bring all components through initialisation, exchanging until every input has its value."""
         for component in self.components.values():
-            component.enter(0.0)
+            component.enter(self.start)
+        self._begin_with_starts()
         bodies_first = list(reversed(self.order))
         for _ in range(2):  # bodies to bearings, and loads back
             for name in bodies_first:
@@ -95,6 +97,17 @@ class System:
             self._feed_numbers(name)
             self.components[name].exit()
             self.components[name].pull()
+
+    def _begin_with_starts(self) -> None:
+        """Have inputs keep their start values until what feeds them has told its own.
+
+        Others' components may not stand a pressure of 0, or a choice with that number.
+        """
+        for c in self._live():
+            start = self.components[c.target].variable(c.input).start
+            if start is not None:
+                factor, offset = c.scale or (1.0, 0.0)
+                self.signals[self.position[c.source_name]] = (start - offset) / factor if factor else 0.0
 
     def _feed_numbers(self, name: str) -> None:
         """`feed`, but of numbers alone.

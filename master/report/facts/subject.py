@@ -10,7 +10,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.simulation import zero_of
+from touchdown.master.coupling.loop.span import zero_of
 from touchdown.master.report.facts.numbers import quantity
 from touchdown.master.report.facts.series import Chart, Line, chosen_rows
 from touchdown.master.report.page.blocks import Absent

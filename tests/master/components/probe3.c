@@ -1,4 +1,4 @@
-/* An FMU of FMI 3.0: y = gain u, element by element; n counts steps. It returns early at t = 1 s. */
+/* An FMU of FMI 3.0: y = gain u, element by element; n counts steps, big is 2^53 + n. It returns early at t = 1 s. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -84,6 +84,13 @@ int fmi3GetInt32(void *instance, const uint32_t *references, size_t count, int32
     return count == 1 && n == 1 ? 0 : 3;
 }
 
+int fmi3GetInt64(void *instance, const uint32_t *references, size_t count, int64_t *values, size_t n)
+{
+    (void)references;
+    values[0] = ((int64_t)1 << 53) + ((Probe *)instance)->n;
+    return count == 1 && n == 1 ? 0 : 3;
+}
+
 int fmi3SetUInt8(void *instance, const uint32_t *references, size_t count, const uint8_t *values, size_t n)
 {
     (void)references;
@@ -119,7 +126,7 @@ ABSENT(fmi3EnterStepMode) ABSENT(fmi3EvaluateDiscreteStates) ABSENT(fmi3ExitConf
 ABSENT(fmi3FreeFMUState) ABSENT(fmi3GetAdjointDerivative) ABSENT(fmi3GetBinary) ABSENT(fmi3GetBoolean)
 ABSENT(fmi3GetClock) ABSENT(fmi3GetContinuousStateDerivatives) ABSENT(fmi3GetContinuousStates)
 ABSENT(fmi3GetDirectionalDerivative) ABSENT(fmi3GetEventIndicators) ABSENT(fmi3GetFMUState)
-ABSENT(fmi3GetFloat32) ABSENT(fmi3GetInt16) ABSENT(fmi3GetInt64) ABSENT(fmi3GetInt8)
+ABSENT(fmi3GetFloat32) ABSENT(fmi3GetInt16) ABSENT(fmi3GetInt8)
 ABSENT(fmi3GetIntervalDecimal) ABSENT(fmi3GetIntervalFraction) ABSENT(fmi3GetNominalsOfContinuousStates)
 ABSENT(fmi3GetNumberOfContinuousStates) ABSENT(fmi3GetNumberOfEventIndicators)
 ABSENT(fmi3GetNumberOfVariableDependencies) ABSENT(fmi3GetOutputDerivatives) ABSENT(fmi3GetShiftDecimal)

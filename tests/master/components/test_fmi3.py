@@ -35,10 +35,12 @@ DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
 <Float64 name="y" valueReference="3" causality="output" initial="calculated">{TWO}</Float64>
 <Int32 name="n" valueReference="4" causality="output" initial="calculated"/>
 <UInt8 name="k" valueReference="5" causality="parameter" variability="fixed" start="7"/>
+<Int64 name="big" valueReference="7" causality="output" initial="calculated"/>
 <Binary name="raw" valueReference="6" causality="input"><Start value="00"/></Binary>
 </ModelVariables>
 <ModelStructure><Output valueReference="3"/><Output valueReference="4"/>
-<InitialUnknown valueReference="3"/><InitialUnknown valueReference="4"/></ModelStructure>
+<Output valueReference="7"/><InitialUnknown valueReference="3"/><InitialUnknown valueReference="4"/>
+<InitialUnknown valueReference="7"/></ModelStructure>
 </fmiModelDescription>"""
 
 
@@ -94,6 +96,55 @@ def test_a_probe_changes_no_bit_of_the_drop(isolate: bool, probe: Path) -> None:
         assert np.array_equal(values[name], without[name])
     assert np.array_equal(values["probe.y[2]"], 2.0 * without["rotor.A.y"])
     assert not values["probe.y[1]"].any()
+
+
+@pytest.fixture(scope="module")
+def fed(probe: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The probe, whose parameter k is an input."""
+    path = tmp_path_factory.mktemp("fed") / "fed.fmu"
+    given = DESCRIPTION.replace(
+        'causality="parameter" variability="fixed" start="7"', 'causality="input" start="7"'
+    )
+    assert given != DESCRIPTION
+    with zipfile.ZipFile(probe) as archive, zipfile.ZipFile(path, "w") as changed:
+        for name in archive.namelist():
+            changed.writestr(name, given if name.endswith(".xml") else archive.read(name))
+    return path
+
+
+def two(fed: Path, output: str, given: str, steps: int) -> Scene:
+    """Two probes, a whole number of the one to the other."""
+    parts = {name: {"fmu": str(fed)} for name in ("one", "other")}
+    run = {"duration": steps * 1e-3, "macro_step": 1e-3}
+    connect = [[f"one.{output}", f"other.{given}"]]
+    return parse({"components": parts, "connect": connect, "run": run}, "two", fed.parent)
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+def test_whole_numbers_cross_whatever_their_size(isolate: bool, fed: Path) -> None:
+    scene = two(fed, "n", "k", 9).set({"one.isolate": isolate, "other.isolate": isolate})
+    _, values, _ = history(scene, ["one.n", "other.k"], in_process=False)
+    assert np.array_equal(values["one.n"], np.arange(1, 10))
+    assert np.array_equal(values["other.k"], np.arange(1, 10))
+
+
+@pytest.mark.parametrize(
+    ("output", "given", "line"),
+    [
+        ("n", "k", "component other: k is given 256, and holds whole numbers from 0 to 255"),
+        (
+            "big",
+            "u[1]",
+            f"component one: big = {2**53 + 1} cannot be exchanged; whole numbers can up to 2^53",
+        ),
+    ],
+)
+def test_whole_numbers_that_would_become_others_are_refused(
+    output: str, given: str, line: str, fed: Path
+) -> None:
+    scene = two(fed, output, given, 300)
+    with opened(scene) as system:
+        assert simulate(scene, system).reason == line
 
 
 def test_a_step_that_ends_early_is_said(probe: Path) -> None:

@@ -131,7 +131,7 @@ def exchange(plan, turns, parts, signals, number, time):
 @kernel
 def take(plan, turns, parts, seats, books, signals):
     """One macro step, whole or divided, each part of it booked; whether it failed."""
-    begin, divided = plan.done * plan.length, plan.parts
+    begin, divided = plan.start + plan.done * plan.length, plan.parts
     if met(seats, signals, begin, plan.length):
         plan.hit += 1
         divided = max(divided, plan.impact_parts)
@@ -153,7 +153,7 @@ def record(plan, reads, columns, row):
         status = _answer(call_exchange(r.call, r.of, r.references, r.count, r.into))
         if status != 0:
             return note(plan, r.turn, FETCH, status)
-    row[0] = plan.done * plan.length - plan.zero
+    row[0] = plan.start + plan.done * plan.length - plan.zero
     for i in range(len(columns)):
         address, kind = columns[i].address, columns[i].kind
         if kind == INT:

@@ -58,6 +58,7 @@ REAL, LONG, INT = 0, 1, 2
 PLAN = np.dtype(
     [
         ("at_once", "i8"),  # whether all take their inputs before any steps
+        ("start", "f8"),  # of the run, s on the simulation's clock
         ("length", "f8"),  # of a macro step, s
         ("parts", "i8"),  # that each is divided into
         ("impact_parts", "i8"),  # that one is divided into in which a body is hit twice

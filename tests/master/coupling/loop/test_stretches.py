@@ -118,6 +118,14 @@ def test_macro_steps_of_their_own(scheme: str, both: Both) -> None:
     both.compared(disk(run__scheme=scheme, bearing__every=4))
 
 
+@pytest.mark.parametrize("scheme", ["interface", "jacobi-interface"])
+def test_a_start_at_another_time(scheme: str, both: Both) -> None:
+    """By a start and steps that no binary number is: every time is rounded."""
+    start = 1000.0 / 7.0
+    scene = disk(run__scheme=scheme, run__start_time=start, amb__shutdown_time=start + 1e-3)
+    assert both.compared(scene).start == start
+
+
 def test_scaled_connections(both: Both) -> None:
     both.compared(parse(SCALED, "scaled", both.folder))
 
