@@ -17,7 +17,7 @@ from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import array
 
 LANES = 4  # contacts that are computed at once
-ROOM = 2 * MOST_BALLS + LANES
+ROOM = 2 * MOST_BALLS  # a multiple of it
 
 
 @dataclass(frozen=True)

@@ -231,7 +231,7 @@ def rubbing(dq, m):
 
 @woven
 def rub_balls(q, dq, m):
-    """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
+    """Friction at both races and in the bore, when all else on the balls is in m.s.balls; sets them in dq.
 
     Returns the journal's `Touch` and the `Total` (N, N m, W) on the ring.
     """

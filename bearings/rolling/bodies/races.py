@@ -32,7 +32,7 @@ from touchdown.modelkit.ports import Motion
 
 @woven
 def press_races(q, m):
-    """Both races press all balls in the state q; sets the balls' derivatives in dq, gravity included."""
+    """Both races press all balls in the state q; sets their accelerations in m.s.faster, with gravity."""
     p, d, s = m.p, m.d, m.s
     balls, moved = balls_of(q, m), ring.moved_before(m)
     inner_ring, at = ring.ring_motion(q), seat.housing_motion(q)
@@ -72,7 +72,7 @@ def _accelerate(m):
 
 @woven
 def rub_races(q, dq, m):
-    """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
+    """Friction at both races and in the bore, when all else on the balls is in m.s.faster; sets them in dq.
 
     Returns the journal's `Touch` and the `Total` (N, N m, W) on the inner and on the outer race.
     """

@@ -12,7 +12,7 @@ from bearing_states import instance_of, pressed, state_in_contact
 from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import COULOMB, MAKKAR, Curve, FrictionLaw, curve
+from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Curve, FrictionLaw, curve
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.rolling import ring, row
 from touchdown.bearings.rolling.ball_state import BALLS, rounded
@@ -28,6 +28,8 @@ every_kick = pytest.mark.parametrize("h", LENGTHS.values(), ids=LENGTHS)
 LAWS = {
     "Coulomb": FrictionLaw(kind=COULOMB),
     "Makkar": FrictionLaw(kind=MAKKAR),
+    "Makkar, three slopes": FrictionLaw(kind=MAKKAR, g2=300.0),
+    "Stribeck": FrictionLaw(kind=STRIBECK),
     "steep": FrictionLaw(kind=COULOMB, slope=1e5),
 }
 

@@ -28,9 +28,7 @@ from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.master.studies.drop.refined import REFINED, refine
 
 START, STEP = 10.0, 1e-3  # s
-ROUGHLY = (
-    5e-4  # of a drop's figures: a peak is that of a micro-step's end, and these follow the time's last bits
-)
+ROUGHLY = 1e-6  # of a drop's figures, which follow the last bits of its times
 CLOCKED = '''
 from pythonfmu import Fmi2Causality, Fmi2Slave, Real
 
