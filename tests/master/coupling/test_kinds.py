@@ -158,6 +158,14 @@ def test_compiled_code_records_what_it_does_not_exchange(
     assert np.array_equal(values["giver/n"], 5 + steps)
 
 
+def test_inputs_of_one_output_start_each_from_its_own(folder: Path) -> None:
+    """The one would refuse the other's start."""
+    scene = pair(folder, connect=[["giver.choice", "taker.choice"], ["giver.choice", "taker.n"]])
+    _, values, _ = history(scene, ["taker.told_choice", "taker.told_n"], in_process=False)
+    assert np.array_equal(values["taker.told_choice"], values["taker.told_n"])
+    assert set(values["taker.told_n"]) == {2, 3}
+
+
 def test_an_integer_may_feed_what_is_real(folder: Path) -> None:
     scene = pair(folder, connect=[["giver.n", "taker.x"]])
     _, values, _ = history(scene, ["taker.told_x"], in_process=False)
