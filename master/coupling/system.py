@@ -9,7 +9,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import scaled
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import EXACT, Component, Kind
 from touchdown.master.components.contract import REACH
 from touchdown.master.coupling.bonds.bond import Bond
 from touchdown.master.coupling.connections import Attachment, Connection, hit_together, split, used_modes
@@ -150,9 +150,9 @@ class System:
             for source in dict.fromkeys(c.source for c in mine):
                 theirs = [c for c in mine if c.source == source]
                 outputs = self.components[source].read([c.output for c in theirs])
-                values |= {
-                    c.input: scaled(value, c.scale) for c, value in zip(theirs, outputs, strict=True)
-                }
+                for c, value in zip(theirs, outputs, strict=True):
+                    _refuse_rounded(self.components[source], c.output, value)
+                    values[c.input] = scaled(value, c.scale)
             self.components[target].set(values)
 
     def _live(self) -> list[Connection]:
@@ -167,6 +167,18 @@ class System:
         watched = [(a.bearing, REACH) for a in self.hit_together]
         layout = lay_out(self.components, self._live(), attachments, watched)
         self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
+
+
+def _refuse_rounded(source: Component, output: str, value: float) -> None:
+    """Raise TouchdownError where the `value` of a whole number may not be all of its digits.
+
+    2^53 itself is refused, too: the next one is read as the same.
+    """
+    if source.variable(output).kind is not Kind.REAL and abs(value) >= EXACT:
+        raise TouchdownError(
+            f"component {source.name}: {output} = {value:.0f} cannot be handed over; constant whole "
+            "numbers can below 2^53"
+        )
 
 
 def _in_order(names: Sequence[str], before: Sequence[tuple[str, str]]) -> list[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from misbehaving import COMPILER, compiled, misbehaving
 from pythonfmu import FmuBuilder
 from systems import history, recorded
 
@@ -89,17 +90,22 @@ CHOICES = (
 FED = ("n", "on", "choice", "x")
 
 
-def chosen(path: Path) -> None:
-    """Make the Integer `choice` of an FMU an Enumeration of 2 and 3, without a 0."""
+def change(path: Path, name: tuple[str, str], kind: tuple[str, str], types: str = "") -> None:
+    """Put a variable of another name and kind into an FMU's description, before and after, and types."""
     with zipfile.ZipFile(path) as archive:
         entries = {name: archive.read(name) for name in archive.namelist()}
-    head, name, tail = entries["modelDescription.xml"].decode().partition('name="choice"')
-    tail = tail.replace("<Integer", '<Enumeration declaredType="Choice"', 1)
-    head = head.replace("<ModelVariables>", f"{CHOICES}<ModelVariables>")
-    entries["modelDescription.xml"] = f"{head}{name}{tail}".encode()
+    head, found, tail = entries["modelDescription.xml"].decode().partition(f'name="{name[0]}')
+    assert found
+    head = head.replace("<ModelVariables>", f"{types}<ModelVariables>")
+    entries["modelDescription.xml"] = f'{head}name="{name[1]}{tail.replace(*kind, 1)}'.encode()
     with zipfile.ZipFile(path, "w") as archive:
-        for name, entry in entries.items():
-            archive.writestr(name, entry)
+        for entry, content in entries.items():
+            archive.writestr(entry, content)
+
+
+def chosen(path: Path) -> None:
+    """Make the Integer `choice` of an FMU an Enumeration of 2 and 3, without a 0."""
+    change(path, ('choice"', 'choice"'), ("<Integer", '<Enumeration declaredType="Choice"'), CHOICES)
 
 
 @pytest.fixture(scope="module")
@@ -164,6 +170,20 @@ def test_inputs_of_one_output_start_each_from_its_own(folder: Path) -> None:
     _, values, _ = history(scene, ["taker.told_choice", "taker.told_n"], in_process=False)
     assert np.array_equal(values["taker.told_choice"], values["taker.told_n"])
     assert set(values["taker.told_n"]) == {2, 3}
+
+
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+@pytest.mark.parametrize("listens", [False, True])
+def test_true_is_one_whatever_an_fmu_says(listens: bool, folder: Path, tmp_path: Path) -> None:
+    """It says 2; where none listens, compiled code records it."""
+    fmu = misbehaving(compiled(tmp_path), "never", "nothing")
+    change(fmu, ('journal.jump"', 'on"'), ('<Real unit="J"/>', "<Boolean/>"))
+    parts = {"says": {"fmu": str(fmu)}, "taker": {"fmu": "Taker.fmu"}}
+    connect = [["says.on", "taker.on"]] if listens else []
+    run_scene(pair(folder, components=parts, connect=connect), tmp_path / "out", pictures=False)
+    values = recorded(tmp_path / "out")
+    assert values["says/on"] == pytest.approx(1.0)
+    assert values["taker/told_on"][1:] == pytest.approx(float(listens))
 
 
 def test_an_integer_may_feed_what_is_real(folder: Path) -> None:
