@@ -262,19 +262,23 @@ def value_of(component: Component, variable: Variable, given: object) -> float:
     raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}")
 
 
-def put_whole(component: Component, names: Sequence[str], values: np.ndarray, data: np.ndarray) -> None:
-    """Put `values` of inputs called `names` into `data`, of a type of whole numbers, or of Booleans.
+def put_whole(
+    component: Component, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray
+) -> None:
+    """Put `values` into `data`, of a type of whole numbers, or of Booleans.
 
-    Raises TouchdownError where it cannot hold one.
+    values, data: (n,), of the variables `names[i]` for `i` in `which`. Raises TouchdownError where it
+    cannot hold one.
     """
     if data.dtype.kind != "b":
         limits = np.iinfo(data.dtype)
-        beyond = np.flatnonzero((values < limits.min) | (values > limits.max))
-        if len(beyond):
-            first = int(beyond[0])
+        # the largest of 64 bits is no number here, the one above it is; what is no number holds for neither
+        held = (values >= float(limits.min)) & (values < float(limits.max) + 1.0)
+        if not held.all():
+            first = int(np.argmin(held))
             raise TouchdownError(
-                f"component {component.name}: {names[first]} is given {values[first]:.0f}, and holds whole "
-                f"numbers from {limits.min} to {limits.max}"
+                f"component {component.name}: {names[int(which[first])]} is given {values[first]:.0f}, and "
+                f"holds whole numbers from {limits.min} to {limits.max}"
             )
     data[:] = values
 

@@ -89,6 +89,7 @@ class _Exchange(NamedTuple):
     """A call that fetches or hands over all values of one type; arrays must outlive their addresses."""
 
     call: Callable[..., int]
+    boolean: bool
     at: np.ndarray  # where the values go, or come from
     references: np.ndarray
     data: np.ndarray
@@ -315,12 +316,19 @@ class FmuComponent(LoadedFmu):
             names = [n for n in values if self.variable(n).kind in kinds]
             if names:
                 self._told(title)
-                references = self._references(names)
-                data = np.array([values[n] for n in names]).astype(dtype)
+                references, data = self._references(names), np.zeros(len(names), dtype)
+                self._put(names, np.arange(len(names)), np.array([values[n] for n in names], float), data)
                 self._check(
                     call(self._component, references.ctypes.data, len(names), data.ctypes.data),
                     "setting values",
                 )
+
+    def _put(self, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray) -> None:
+        """`put_whole`, or what is Real as it is."""
+        if data.dtype.kind == "f":
+            data[:] = values
+        else:
+            put_whole(self, names, which, values, data)
 
     def _exchanges(self, names: Sequence[str], functions: Functions) -> list[_Exchange]:
         """Those that exchange the variables called `names`, type by type."""
@@ -330,7 +338,8 @@ class FmuComponent(LoadedFmu):
             if len(at):
                 references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
                 addresses = references.ctypes.data, data.ctypes.data
-                found.append(_Exchange(call, at, references, data, *addresses))
+                boolean = Kind.BOOLEAN in kinds
+                found.append(_Exchange(call, boolean, at, references, data, *addresses))
         return found
 
     def _typed(self, names: Sequence[str], functions: Functions) -> list[_Exchange]:
@@ -352,11 +361,8 @@ class FmuComponent(LoadedFmu):
         status = self._set_real(self._component, *self._in)
         if status > WARNING:
             self._check(status, Call.SET)
-        for call, at, references, data, of, into in self._taken:
-            if data.dtype.kind == "f":
-                data[:] = self.inputs[at]
-            else:
-                put_whole(self, [self._inputs[int(i)] for i in at], self.inputs[at], data)
+        for call, _, at, references, data, of, into in self._taken:
+            self._put(self._inputs, at, self.inputs[at], data)
             self._check(call(self._component, of, len(references), into), Call.SET)
 
     def pull(self) -> None:
@@ -367,11 +373,11 @@ class FmuComponent(LoadedFmu):
             self._fetch(self._given, self.outputs, Call.GET)
 
     def _fetch(self, exchanges: Sequence[_Exchange], values: np.ndarray, doing: Call) -> None:
-        for call, at, references, data, of, into in exchanges:
+        for call, boolean, at, references, data, of, into in exchanges:
             status = call(self._component, of, len(references), into)
             if status > WARNING:
                 self._check(status, doing)
-            values[at] = data
+            values[at] = data != 0 if boolean else data  # some say -1 or 255 for true
 
     def by_address(self) -> InMemory | ByFunctions | None:
         """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here.

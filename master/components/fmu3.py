@@ -130,10 +130,20 @@ class Fmu3Component(LoadedFmu):
         self._told("fmi3Set")
         names = list(values)
         for vector in self._vectors(names):
-            vector.data[vector.at] = [values[names[i]] for i in vector.which]
+            self._put(vector, names, np.array(list(values.values()), float))
             self._check(vector.set(self._component, *vector.arguments), "setting values")
             for reference in vector.references:  # what inputs that nothing feeds keep
                 self._keep(int(reference), names, values)
+
+    def _put(self, vector: _Vector, names: Sequence[str], values: np.ndarray) -> None:
+        """Fill `vector` with those of `values`, (n,) of the variables called `names`, that it is for."""
+        mine = values[vector.which]
+        if vector.data.dtype.kind == "f":
+            vector.data[vector.at] = mine
+        else:
+            held = np.zeros(len(mine), vector.data.dtype)
+            put_whole(self, names, vector.which, mine, held)
+            vector.data[vector.at] = held
 
     def _keep(self, reference: int, names: Sequence[str], values: Mapping[str, float]) -> None:
         for name in names:
@@ -149,13 +159,7 @@ class Fmu3Component(LoadedFmu):
 
     def push(self) -> None:
         for vector in self._taken:
-            values = self.inputs[vector.which]
-            if vector.data.dtype.kind == "f":
-                vector.data[vector.at] = values
-            else:
-                held = np.zeros(len(values), vector.data.dtype)
-                put_whole(self, [self._inputs[int(i)] for i in vector.which], values, held)
-                vector.data[vector.at] = held
+            self._put(vector, self._inputs, self.inputs)
             self._check(vector.set(self._component, *vector.arguments), Call.SET)
 
     def pull(self) -> None:

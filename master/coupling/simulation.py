@@ -131,7 +131,7 @@ def simulate(
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
-        times = span(scene.run, named_zero(scene, system))
+        times = span(scene.run, named_zero(scene, system), impacts=bool(system.hit_together))
         steps = macro_steps(times.length, scene.run.macro_step)
         now = Moment(system, times.zero, steps, times.start, time=times.start)
         system.initialise()

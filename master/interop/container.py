@@ -21,7 +21,7 @@ from touchdown.fmus.presentation.xml import document
 from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import NUMBERS
+from touchdown.master.components.component import READABLE
 from touchdown.master.coupling.loop.span import named_zero, span
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
@@ -107,7 +107,7 @@ def _fill(container: Any, system: System, fmus: Mapping[str, Path], sequential: 
         for variable in component.variables.values():
             given = variable.causality is Causality.OUTPUT
             given = given or (variable.causality is Causality.LOCAL and "[" not in variable.name)
-            if given and variable.kind in NUMBERS and (name, variable.name) not in linked:
+            if given and variable.kind in READABLE and (name, variable.name) not in linked:
                 own = component.own_name(variable.name)
                 container.add_output(f"{name}.fmu", own, f"{name}.{own}")
 

@@ -40,10 +40,11 @@ class Span:
         return self.end - self.start
 
 
-def span(run: RunSpec, zero: float | None) -> Span:
+def span(run: RunSpec, zero: float | None, impacts: bool = False) -> Span:
     """The times of `run`; `zero`: s on the simulation's clock, None where the scene names none.
 
-    Raises TouchdownError where it would end before it starts, or times are too large for its macro steps.
+    impacts: whether macro steps may be divided in impacts. Raises TouchdownError where it would end before
+    it starts, or times are too large for its macro steps, or for parts of them.
     """
     start = run.start_time
     origin = start if zero is None else zero
@@ -53,12 +54,22 @@ def span(run: RunSpec, zero: float | None) -> Span:
             f"run.start_time = {start:g} s is not before the run's end at t = {end:g} s: run.duration = "
             f"{run.duration:g} s counts from the scene's zero at t = {origin:g} s; set that later"
         )
-    if math.ulp(start) > FINENESS * run.macro_step:
-        raise TouchdownError(
-            f"run.start_time = {start:g} s is too late: beside it macro steps of {run.macro_step:g} s are "
-            "lost in rounding; start earlier, or take longer steps"
-        )
+    _refuse_lost(start, run, impacts)
     return Span(start, end, 0.0 if zero is None else zero, origin)
+
+
+def _refuse_lost(start: float, run: RunSpec, impacts: bool) -> None:
+    """Raise TouchdownError where times as late as `start` (s) do not tell steps apart, or parts of them."""
+    parts = run.impact_step if impacts and run.impact_step > 0.0 else math.inf
+    for length, what, remedy in (
+        (run.macro_step, "macro steps of", "take longer steps"),
+        (parts, "parts of macro steps, of run.impact_step =", "take a longer one, or 0 to divide none"),
+    ):
+        if math.ulp(start) > FINENESS * length:
+            raise TouchdownError(
+                f"run.start_time = {start:g} s is too late: beside it {what} {length:g} s are lost in "
+                f"rounding; start earlier, or {remedy}"
+            )
 
 
 def named_zero(scene: Scene, system: Values) -> float | None:
@@ -77,10 +88,21 @@ def zero_of(scene: Scene, system: Values) -> float:
     return 0.0 if zero is None else zero
 
 
+def origin_of(scene: Scene, system: Values) -> float:
+    """What a run's duration counts from, in s from what its times count from: 0 where a zero is named."""
+    return scene.run.start_time if named_zero(scene, system) is None else 0.0
+
+
 def until(scene: Scene, system: Values, time: float) -> Scene:
     """A copy of `scene` that ends at `time`, in s from what its times count from."""
-    before = scene.run.start_time if named_zero(scene, system) is None else 0.0
-    return scene.set({"run.duration": time - before})
+    return scene.set({"run.duration": time - origin_of(scene, system)})
+
+
+def brief(scene: Scene, system: Values, steps: int) -> Scene:
+    """A copy of `scene` that ends `steps` macro steps after its start, or after a zero that is later."""
+    zero = named_zero(scene, system)
+    before = 0.0 if zero is None else max(scene.run.start_time - zero, 0.0)
+    return scene.set({"run.duration": before + steps * scene.run.macro_step})
 
 
 def swapped_away(scene: Scene, name: str, system: Values) -> bool:

@@ -9,7 +9,16 @@ import numpy as np
 
 from touchdown.master.components.component import WHOLE, ByFunctions, Component, InMemory, Kind, Variable
 from touchdown.master.coupling.layout import Scaling
-from touchdown.master.coupling.loop.kernels.tables import COLUMN, INT, LONG, PART, READ, REAL, TURN
+from touchdown.master.coupling.loop.kernels.tables import (
+    COLUMN,
+    INT,
+    LONG,
+    PART,
+    READ,
+    REAL,
+    TRUTH,
+    TURN,
+)
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel, Turn
 from touchdown.master.coupling.steppers.rates import Part
@@ -160,7 +169,7 @@ def _fetched(
     for call, wanted, dtype, kind in (
         (entry.get_real, (Kind.REAL,), "f8", REAL),
         (entry.get_integer, WHOLE, "i4", INT),
-        (entry.get_boolean, (Kind.BOOLEAN,), "i4", INT),
+        (entry.get_boolean, (Kind.BOOLEAN,), "i4", TRUTH),
     ):
         at = [i for i, v in enumerate(chosen) if v.kind in wanted]
         if at:

@@ -18,7 +18,7 @@ from xml.etree.ElementTree import indent
 
 from touchdown.fmus.presentation.xml import document
 from touchdown.master.common.archives import write_archive
-from touchdown.master.coupling.loop.span import span
+from touchdown.master.coupling.loop.span import named_zero, span
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.interop.packing import AS_IN_SCENE, Making, fixed, packed_fmus
 from touchdown.master.interop.ssp.describe import Content, structure
@@ -47,7 +47,7 @@ def write_package(
         opened(scene, listening=False) as system,
         tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
     ):
-        times = span(scene.run, system.value(scene.zero) if scene.zero else None)
+        times = span(scene.run, named_zero(scene, system))
         system.initialise()
         places = _places(packed_fmus(scene, system, making, Path(folder)))
         connected = [c for c in system.connections if not (outputs_only and system.constant(c))]

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.loop.span import brief
 from touchdown.master.coupling.simulation import Outcome, opened, refuse_endless, simulate
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
@@ -222,13 +223,14 @@ class _Stopwatch:
 
     def _warm_up(self, variant: Variant) -> None:
         """Compile what is to be timed."""
-        scene = variant.scene
-        brief = scene.set({"run.duration": 2.0 * scene.run.macro_step})
-        self._once(replace(variant, scene=brief))
+        self._once(variant, 2)
 
-    def _once(self, variant: Variant) -> float:
-        with tempfile.TemporaryDirectory() as folder, opened(variant.scene, self._in_process) as system:
+    def _once(self, variant: Variant, steps: int | None = None) -> float:
+        """Wall time per simulated second, of the whole run or of its first macro steps."""
+        scene = variant.scene
+        with tempfile.TemporaryDirectory() as folder, opened(scene, self._in_process) as system:
             record_to = Path(folder) / "result.h5" if variant.recorded else None
-            outcome = simulate(variant.scene, system, record_to)
+            run = scene if steps is None else brief(scene, system, steps)
+            outcome = simulate(run, system, record_to)
         outcome.raise_if_stopped()
         return outcome.wall_time / outcome.simulated

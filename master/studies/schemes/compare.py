@@ -17,6 +17,7 @@ from enum import StrEnum
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.loop.span import brief
 from touchdown.master.coupling.simulation import opened, refuse_endless, simulate
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES
@@ -294,8 +295,8 @@ class _Judge:
 
 def _warm_up(scene: Scene, asked: Asked) -> None:
     """Compile what is to be timed."""
-    with opened(scene.set({"run.duration": 2.0 * scene.run.macro_step}), asked.in_process) as system:
-        simulate(scene, system).raise_if_interrupted()
+    with opened(scene, asked.in_process) as system:
+        simulate(brief(scene, system, 2), system).raise_if_interrupted()
 
 
 def _timed(row: Row, scene: Scene, asked: Asked) -> Row:

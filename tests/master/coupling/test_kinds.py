@@ -8,13 +8,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmpy import simulate_fmu
+from misbehaving import COMPILER, compiled, misbehaving
 from pythonfmu import FmuBuilder
 from systems import history, recorded
 
+import touchdown
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.interface import interface
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import open_system, opened
+from touchdown.master.interop.container import write_container
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
@@ -54,7 +59,7 @@ class Taker(Fmi2Slave):
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
-        self.n, self.on, self._choice, self.x, self.word = 1, False, 2, 0.0, ""
+        self.n, self.on, self._choice, self.x, self.word = 1, False, 2, 0.0, "true"
         self.told_n = self.told_choice = -1
         self.told_on, self.told_x = False, -1.0
         taken, out = {"causality": Fmi2Causality.input}, {"causality": Fmi2Causality.output}
@@ -89,17 +94,22 @@ CHOICES = (
 FED = ("n", "on", "choice", "x")
 
 
-def chosen(path: Path) -> None:
-    """Make the Integer `choice` of an FMU an Enumeration of 2 and 3, without a 0."""
+def change(path: Path, name: tuple[str, str], kind: tuple[str, str], types: str = "") -> None:
+    """Put a variable of another name and kind into an FMU's description, before and after, and types."""
     with zipfile.ZipFile(path) as archive:
         entries = {name: archive.read(name) for name in archive.namelist()}
-    head, name, tail = entries["modelDescription.xml"].decode().partition('name="choice"')
-    tail = tail.replace("<Integer", '<Enumeration declaredType="Choice"', 1)
-    head = head.replace("<ModelVariables>", f"{CHOICES}<ModelVariables>")
-    entries["modelDescription.xml"] = f"{head}{name}{tail}".encode()
+    head, found, tail = entries["modelDescription.xml"].decode().partition(f'name="{name[0]}')
+    assert found
+    head = head.replace("<ModelVariables>", f"{types}<ModelVariables>")
+    entries["modelDescription.xml"] = f'{head}name="{name[1]}{tail.replace(*kind, 1)}'.encode()
     with zipfile.ZipFile(path, "w") as archive:
-        for name, entry in entries.items():
-            archive.writestr(name, entry)
+        for entry, content in entries.items():
+            archive.writestr(entry, content)
+
+
+def chosen(path: Path) -> None:
+    """Make the Integer `choice` of an FMU an Enumeration of 2 and 3, without a 0."""
+    change(path, ('choice"', 'choice"'), ("<Integer", '<Enumeration declaredType="Choice"'), CHOICES)
 
 
 @pytest.fixture(scope="module")
@@ -156,6 +166,49 @@ def test_compiled_code_records_what_it_does_not_exchange(
     values, steps = recorded(tmp_path / "out"), np.arange(STEPS + 1)
     assert np.array_equal(values["giver/on"], 1 - steps % 2)
     assert np.array_equal(values["giver/n"], 5 + steps)
+
+
+def test_inputs_of_one_output_start_each_from_its_own(folder: Path) -> None:
+    """The one would refuse the other's start."""
+    scene = pair(folder, connect=[["giver.choice", "taker.choice"], ["giver.choice", "taker.n"]])
+    _, values, _ = history(scene, ["taker.told_choice", "taker.told_n"], in_process=False)
+    assert np.array_equal(values["taker.told_choice"], values["taker.told_n"])
+    assert set(values["taker.told_n"]) == {2, 3}
+
+
+def test_words_are_no_starts_but_those_of_booleans(folder: Path) -> None:
+    variables, _ = interface(folder / "Taker.fmu", folder / "cache")
+    assert variables["on"].start == 0.0
+    assert variables["word"].start is None
+
+
+def test_booleans_can_be_asked_for_after_the_run(folder: Path, tmp_path: Path) -> None:
+    """In memory, and in what its folder keeps."""
+    result = run_scene(pair(folder), tmp_path / "out", pictures=False)
+    for told in (result, touchdown.open_result(tmp_path / "out")):
+        assert told.ending.value("giver.on") == 1 - STEPS % 2
+        assert told.ending.value("taker.told_on") == 1 - STEPS % 2
+
+
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+@pytest.mark.parametrize("listens", [False, True])
+def test_true_is_one_whatever_an_fmu_says(listens: bool, folder: Path, tmp_path: Path) -> None:
+    """It says 2; where none listens, compiled code records it."""
+    fmu = misbehaving(compiled(tmp_path), "never", "nothing")
+    change(fmu, ('journal.jump"', 'on"'), ('<Real unit="J"/>', "<Boolean/>"))
+    parts = {"says": {"fmu": str(fmu)}, "taker": {"fmu": "Taker.fmu"}}
+    connect = [["says.on", "taker.on"]] if listens else []
+    run_scene(pair(folder, components=parts, connect=connect), tmp_path / "out", pictures=False)
+    values = recorded(tmp_path / "out")
+    assert values["says/on"] == pytest.approx(1.0)
+    assert values["taker/told_on"][1:] == pytest.approx(float(listens))
+
+
+def test_booleans_are_outputs_of_containers(folder: Path, tmp_path: Path) -> None:
+    scene = pair(folder, connect=[["giver.x", "taker.x"]])
+    path = write_container(scene, tmp_path / "pair.fmu")
+    found = simulate_fmu(str(path), stop_time=STEPS * STEP, output_interval=STEP, output=["giver.on"])
+    assert np.array_equal(found["giver.on"], np.arange(STEPS + 1) % 2 == 0)
 
 
 def test_an_integer_may_feed_what_is_real(folder: Path) -> None:

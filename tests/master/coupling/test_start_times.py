@@ -9,12 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pythonfmu import FmuBuilder
-from systems import history, rotor_on
+from systems import dropped, history, rotor_on
 
+import touchdown
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.loop.span import brief, span
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.sweeps import report_on_sweep
 from touchdown.master.results.figures.style import beginning
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
@@ -26,6 +30,8 @@ from touchdown.master.studies.drop.levitation import SHORT, shortened
 from touchdown.master.studies.drop.measured import land, plan
 from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.master.studies.drop.refined import REFINED, refine
+from touchdown.master.studies.models.compare import compare_models
+from touchdown.master.studies.schemes.compare import Asked, compare_schemes
 
 START, STEP = 10.0, 1e-3  # s
 ROUGHLY = 1e-6  # of a drop's figures, which follow the last bits of its times
@@ -136,16 +142,6 @@ def test_a_shutdown_before_the_start_is_over() -> None:
     assert values["rotor.A.y"][-1] < -2e-4
 
 
-def test_start_zero_is_said_as_before() -> None:
-    """What a scene without the setting runs, and what one that states 0 does."""
-    _, values, outcome = history(disk(**{"run.start_time": "0 s"}), ["rotor.A.y"])
-    scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 1e-3, "run.duration": 9e-3})
-    _, same, again = history(scene, ["rotor.A.y"])
-    assert np.array_equal(values["rotor.A.y"], same["rotor.A.y"])
-    alike = {"wall_time": 0.0, "start_up": 0.0}
-    assert replace(outcome, **alike) == replace(again, **alike)
-
-
 @pytest.mark.parametrize(
     ("settings", "line"),
     [
@@ -166,6 +162,17 @@ def test_what_cannot_be_is_one_line(settings: dict[str, object], line: str) -> N
     with pytest.raises(TouchdownError, match=line) as refused:
         history(disk().set(settings), ["rotor.A.y"])
     assert "\n" not in str(refused.value)
+
+
+def test_parts_of_steps_are_told_apart() -> None:
+    """Where two bearings can hit a rotor; with one, or with nothing to be divided, later starts will do."""
+    late = 2.0**26  # s, of which the next is 15 ns away
+    held = {f"amb_{end}.shutdown_time": late for end in "AB"}
+    with pytest.raises(TouchdownError, match=r"parts of macro steps, of run\.impact_step = 1e-06 s are"):
+        history(dropped().set({"run.start_time": late, **held}), ["rotor.A.y"])
+    run = disk(late, **{"run.macro_step": 2e-5}).run
+    assert span(run, late).length == pytest.approx(run.duration)
+    assert span(replace(run, impact_step=0.0), late, impacts=True).start == late
 
 
 # -- packages ----------------------------------------------------------------------------------------------
@@ -202,6 +209,22 @@ def test_pictures_of_a_scene_without_a_zero(tmp_path: Path) -> None:
     assert result.pictures
     assert result.plot.forces()[0].get_xlim()[0] >= START
     assert result.summary["first_contact_time_s"] == pytest.approx(START, abs=5e-3)
+    told = Subject(result)
+    assert told.length == pytest.approx(5e-3)
+    assert told.fall is not None
+    assert 0.0 <= told.fall <= 5e-3
+
+
+def test_sweeps_of_a_scene_without_a_zero_say_how_long_contacts_are(tmp_path: Path) -> None:
+    """Each of its own start, before which there is nothing."""
+    scene = rotor_on("bushing", {"y": -0.25e-3}, duration=5e-3)
+    starts = {"run.start_time": [START, 2.0 * START]}
+    sweep = touchdown.sweep(scene, starts, tmp_path / "sweep", jobs=1, in_process=True)
+    (first, second) = (m.summary["first_contact_time_s"] for m in sweep)
+    assert second == pytest.approx(START + first)
+    left = 1e3 * (START + 5e-3 - first)
+    said = report_on_sweep(sweep).headline.replace("\N{NO-BREAK SPACE}", " ")
+    assert f"followed for 5 ms from the shutdown on, {left:.3g} ms of it after the first contact:" in said
 
 
 @pytest.mark.parametrize("start", [0.0, 0.25])
@@ -217,6 +240,17 @@ def test_references_begin_where_the_run_does(start: float) -> None:
     finely = refine(scene, landing.seats, looks.times[:20], REFINED[1]).motion[:, 0, 1]
     assert ours[-1] < -1e-6
     assert ours == pytest.approx(finely, abs=1e-9)
+
+
+def test_what_is_timed_is_warmed_up_from_the_start_on() -> None:
+    """Where the zero lies before it, too: two macro steps from there would have been over."""
+    scene = disk(1e-3, **{"amb.shutdown_time": 0.5e-3})
+    with opened(scene, True) as system:
+        assert simulate(brief(scene, system, 2), system).steps == 2
+    found = compare_models(scene, [], 1e-3, 1, True)
+    assert found.drop.first == pytest.approx(8.4e-3, abs=0.1e-3)  # it is held until the start
+    asked = Asked(("interface",), (1e-4,), duration=1e-3, repeat=1, in_process=True)
+    assert compare_schemes(scene, asked).rows[0].wall is not None
 
 
 def test_levitation_is_cut_short_from_the_start_on() -> None:

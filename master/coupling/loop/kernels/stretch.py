@@ -20,6 +20,7 @@ from touchdown.master.coupling.loop.kernels.tables import (
     NOT_FINITE,
     SET,
     STEP,
+    TRUTH,
 )
 from touchdown.modelkit.kernel.address import (
     call_advance,
@@ -158,6 +159,8 @@ def record(plan, reads, columns, row):
         address, kind = columns[i].address, columns[i].kind
         if kind == INT:
             row[1 + i] = int32_at(address, 1)[0]
+        elif kind == TRUTH:
+            row[1 + i] = 1.0 if int32_at(address, 1)[0] != 0 else 0.0
         elif kind == LONG:
             row[1 + i] = int64_at(address, 1)[0]
         else:

@@ -53,7 +53,7 @@ READ = _table("turn", "call", "of", "references", "count", "into")
 
 COLUMN = _table("address", "kind")
 """Where a number of a recorded row is found, and of which kind it is."""
-REAL, LONG, INT = 0, 1, 2
+REAL, LONG, INT, TRUTH = 0, 1, 2, 3  # the last an int, of which all but 0 is true
 
 PLAN = np.dtype(
     [
