@@ -60,7 +60,6 @@ from touchdown.bearings.rolling.declarations import (
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.lines import FrictionLines
 from touchdown.bearings.rolling.micro_step import (
     MICRO_STEP,
     RESOLUTION,
@@ -86,7 +85,7 @@ from touchdown.bearings.rolling.row import (
     rubbing,
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
-from touchdown.bearings.rolling.rubbing import RubbedRace
+from touchdown.bearings.rolling.rubbing import FrictionLines, RubbedRace
 from touchdown.bearings.rolling.sides.chain import Chain
 from touchdown.bearings.rolling.sides.contact import SideContacts, highest, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock

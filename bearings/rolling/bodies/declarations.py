@@ -27,7 +27,6 @@ from touchdown.bearings.rolling.declarations import (
     RollingOutputs,
     RollingParameters,
 )
-from touchdown.bearings.rolling.lines import FrictionLines
 from touchdown.bearings.rolling.micro_step import (
     MICRO_STEP,
     RESOLUTION,
@@ -35,6 +34,7 @@ from touchdown.bearings.rolling.micro_step import (
     refined,
     step_in_hit,
 )
+from touchdown.bearings.rolling.rubbing import FrictionLines
 from touchdown.bearings.rolling.sides.contact import SideContacts
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array, group, groups, integer, real

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.bearings.rolling.lines import draw, gather, hand_back, in_full_lanes
+from touchdown.bearings.rolling.rubbing.lines import draw, gather, hand_back, in_full_lanes
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import array
 
