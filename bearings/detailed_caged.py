@@ -97,7 +97,7 @@ CONSTANTS, PROBLEMS = constants(
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
-    press_races(q, dq, m)
+    press_races(q, m)
     cage.pocket_contacts(q, dq, m)
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)

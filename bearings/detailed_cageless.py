@@ -100,16 +100,16 @@ CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
 
 
 @kernel
-def _neighbour_contacts(q, dq, m):
-    """Each ball in q against the next; adds to the balls' derivatives in dq."""
+def _neighbour_contacts(q, m):
+    """Each ball in q against the next; adds to the balls' accelerations."""
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
     share(s.side, s.chain, count)
-    for b in range(count):
+    for b in range(count if s.side.touching > 0 else 0):
         if s.side.indentation[b] > 0.0:
             c = press_of(b, d.ball_contact, d.ball_friction, m)
-            push(dq, after(b, count), c.fx, c.fy, c.first_moment, m)
-            push(dq, b, -c.fx, -c.fy, c.second_moment, m)
+            push(after(b, count), c.fx, c.fy, c.first_moment, m)
+            push(b, -c.fx, -c.fy, c.second_moment, m)
 
 
 @kernel
@@ -117,6 +117,7 @@ def _find_neighbours(q, m):
     """Balls in q that touch the next one, and what their forces hang on (`sides.chain`)."""
     d, before, count, apart = m.d, m.s.before, m.p.balls.count, 2.0 * m.d.ball_radius
     x, y = part(q, X, m), part(q, Y, m)
+    m.s.side.touching = 0
     for b in range(count):
         k = after(b, count)
         ex, ey = x[k] - x[b], y[k] - y[b]
@@ -147,8 +148,8 @@ def _rubbing(dq, m):
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
-    press_races(q, dq, m)
-    _neighbour_contacts(q, dq, m)
+    press_races(q, m)
+    _neighbour_contacts(q, m)
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + _rubbing(dq, m)

@@ -85,9 +85,9 @@ from touchdown.bearings.rolling.row import (
     rubbing,
 )
 from touchdown.bearings.rolling.row_implicit import linearise, solve
-from touchdown.bearings.rolling.rubbing import RubbedRace
+from touchdown.bearings.rolling.rubbing import FrictionLines, RubbedRace
 from touchdown.bearings.rolling.sides.chain import Chain
-from touchdown.bearings.rolling.sides.contact import SideContacts, stored
+from touchdown.bearings.rolling.sides.contact import SideContacts, highest, stored
 from touchdown.modelkit.integrators import dopri, rosenbrock
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
@@ -177,6 +177,7 @@ class Hidden(RollingMemory, KickMemory):
     """Memory between evaluations and steps."""
 
     balls: RaceBalls = group(RaceBalls)
+    lines: FrictionLines = group(FrictionLines)
     inner: RubbedRace = group(RubbedRace)
     outer: RubbedRace = group(RubbedRace)
     side: SideContacts = group(SideContacts)
@@ -194,8 +195,8 @@ CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "
 @kernel
 def react(t, q, dq, m):
     """Derivative dq of ring and balls in q, and the `Load` (N, N m) on journal and housing."""
-    press_balls(q, dq, m)
-    neighbour_forces(q, dq, m)
+    press_balls(q, m)
+    neighbour_forces(q, m)
     j, balls = rub_balls(q, dq, m)
     ring.accelerate(q, dq, m, j, balls)
     dq[ring.LOSS] = j.loss + balls.loss + rubbing(dq, m)
@@ -216,8 +217,7 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     time, s, count, rows = m.time + t, m.s, m.p.balls.count, m.p.balls.rows
     watch_balls(time, largest(s.inner.normal, s.balls.indentation, count, rows), m)
-    push = largest(s.side.highest, s.side.indentation, count, rows)
-    watch_peaks(time, push, m.o.neighbours, s.side_peaks)
+    watch_peaks(time, highest(s.side, count, rows), m.o.neighbours, s.side_peaks)
 
 
 @kernel

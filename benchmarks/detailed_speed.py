@@ -149,7 +149,7 @@ def race_times(module: ModuleType) -> tuple[float, float]:
         m = words.view(layout)[0]
         total, dq = 0.0, work[0]
         for _ in range(count):
-            press_races(m.q, dq, m)
+            press_races(m.q, m)
             total += rub_races(m.q, dq, m)[1].fx
         return total
 

@@ -20,6 +20,7 @@ from touchdown.fmus.description.variables import scalars
 from touchdown.fmus.presentation import references, terminals
 from touchdown.fmus.presentation.documentation import page
 from touchdown.fmus.presentation.icon import icon
+from touchdown.fmus.python.categories import with_categories
 from touchdown.fmus.python.link import Interpreter, linked
 from touchdown.fmus.python.sources import package_name, write_host, write_package, write_script
 from touchdown.fmus.python.statuses import with_errors
@@ -42,7 +43,7 @@ def build(recipe: Recipe, folder: Path, interpreter: Interpreter | None = None) 
     entries["model.png"] = icon(recipe.model)
     entries |= terminals.entries(recipe.model, scalars(recipe.model))
     for name in [name for name in entries if name.startswith("binaries/")]:
-        library = with_errors(entries.pop(name))
+        library = with_categories(with_errors(entries.pop(name)))
         if name.endswith(LIBRARY):
             entries[name] = linked(library, interpreter.library) if interpreter else library
     return write(entries, folder, recipe.name)

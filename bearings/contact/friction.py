@@ -80,52 +80,72 @@ def curve(law):
 
 @woven
 def saturation(x):
-    """1 - exp(-x) for a number x >= 0 to rounding, from sums and products alone.
+    """1 - exp(-x) for a number x >= 0, to 3e-13, from sums and products alone.
 
-    A series at x/1024, then 1 - e^(-2a) = (1 - e^(-a)) (1 + e^(-a)) ten times, written out: unlike a call
-    of the mathematical library, or a loop, it becomes vector code. It is 1 to rounding beyond x = 40.
+    A series for exp(-x/1024), squared ten times, written out: unlike a call of the mathematical library, or
+    a loop, it becomes vector code. It is 0 at x = 0, and 1 to rounding beyond x = 40.
     """
     z = min(x, 40.0) * (1.0 / 1024.0)
-    u = z * (1.0 - z * (1 / 2 - z * (1 / 6 - z * (1 / 24 - z * (1 / 120 - z * (1 / 720))))))
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    u = u * (2.0 - u)
-    return u * (2.0 - u)
+    e = 1.0 - z * (1.0 - z * (1 / 2 - z * (1 / 6 - z * (1 / 24))))
+    e = e * e
+    e = e * e
+    e = e * e
+    e = e * e
+    e = e * e
+    e = e * e
+    e = e * e
+    e = e * e
+    e = e * e
+    return 1.0 - e * e
+
+
+class Rises(NamedTuple):
+    """How far the exponentials of a `Curve` have run at a speed, from 0 at rest to 1; 0: not in it."""
+
+    last: float  # of tanh slope v
+    flat: float  # of tanh g3 v
+    steep: float  # of tanh g2 v; `last` where both are the same
+    faded: float  # of static friction
 
 
 @woven
-def follow(speed, law):
-    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
-
-    The derivative leaves out that of the fading in Stribeck's law, which only falls.
-    tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|). What a law does not have is not computed.
-    """
+def rises(speed, law):
+    """`Rises` of a `Curve` at a speed (m/s). What a law does not have is not computed."""
     v = abs(speed)
     last = saturation(2.0 * law.slope * v)
-    level = law.dynamic
+    flat, steep, faded = 0.0, last, 0.0
     if law.extra != 0.0:
-        level += law.extra * (1.0 - saturation(law.faded * v * v))
+        faded = saturation(law.faded * v * v)
+    if law.g1 != 0.0:
+        flat = saturation(2.0 * law.g3 * v)
+        if law.g2 != law.slope:
+            steep = saturation(2.0 * law.g2 * v)
+    return Rises(last, flat, steep, faded)
+
+
+@woven
+def height_and_slope(speed, risen, law):
+    """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
+
+    risen: `Rises` at that speed. The derivative leaves out that of the fading in Stribeck's law, which
+    only falls. tanh(g v) = u/(2 - u) with u = 1 - exp(-2 g |v|).
+    """
+    last = risen.last
+    level = law.dynamic + law.extra * (1.0 - risen.faded)
     if law.g1 == 0.0:
         plateau = last / (2.0 - last)
         value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
     else:
-        flat = saturation(2.0 * law.g3 * v)
+        flat = risen.flat
         both = 1.0 / ((2.0 - last) * (2.0 - flat))
         plateau, fall = last * (2.0 - flat) * both, flat * (2.0 - last) * both
         rise = plateau
         if law.g2 != law.slope:
-            steep = saturation(2.0 * law.g2 * v)
-            rise = steep / (2.0 - steep)
+            rise = risen.steep / (2.0 - risen.steep)
         value, slope = level * plateau, level * law.slope * (1.0 - plateau * plateau)
         value += law.g1 * (rise - fall)
         slope += law.g1 * (law.g2 * (1.0 - rise * rise) - law.g3 * (1.0 - fall * fall))
-    value += law.g6 * v
+    value += law.g6 * abs(speed)
     return value if speed >= 0.0 else -value, max(slope + law.g6, 0.0)
 
 
@@ -136,7 +156,8 @@ def coefficient_and_slope(speed, law):
     law: a record of `FrictionLaw`. The derivative is zero where the curve falls: it is what an implicit
     step needs.
     """
-    return follow(speed, curve(law))
+    course = curve(law)
+    return height_and_slope(speed, rises(speed, course), course)
 
 
 @kernel

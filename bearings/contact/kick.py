@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from touchdown.bearings.contact.friction import follow
+from touchdown.bearings.contact.friction import height_and_slope, rises
 from touchdown.modelkit.kernel import woven
 
 
@@ -47,6 +47,9 @@ class Line(NamedTuple):
     start: float  # N
     slope: float  # N s/m
     base: float
+
+
+NO_LINE = Line(0.0, 0.0, 6.0)  # of a contact that does not press
 
 
 @woven
@@ -79,17 +82,30 @@ def highest(law):
 
 
 @woven
-def friction_line(sliding, expected, answer, normal, law):
-    """Friction of a contact under the force `normal` (N) over a kick, as a `Line`.
+def spot(expected, answer, normal, law):
+    """The speed (m/s) where a kick is expected to end under friction that rises linearly to its peak.
 
-    sliding: speed before the kick (m/s); expected: after it, without friction; answer: as `Kick.across`;
-    law: a `Curve`. The kick is expected to end where a friction that rises linearly to its peak would
-    take it.
+    expected: after the kick, without friction (m/s); answer: as `Kick.across`; law: a `Curve`.
     """
     reach, size = answer * normal, abs(expected)
     end = max(size / (1.0 + reach * steepest(law)), size - reach * highest(law))
-    spot = end if expected >= 0.0 else -end
-    mu, slope = follow(spot, law)
+    return end if expected >= 0.0 else -end
+
+
+@woven
+def line_at(speed, risen, sliding, answer, normal, law):
+    """Friction of a contact under the force `normal` (N) over a kick, as a `Line`.
+
+    speed: the kick's `spot` (m/s); risen: `Rises` there; sliding: speed before the kick (m/s).
+    """
+    mu, slope = height_and_slope(speed, risen, law)
     slope *= normal
     z = answer * slope
-    return Line((6.0 + z) * (slope * (spot - sliding) - normal * mu), (3.0 + z) * slope, 6.0 + z)
+    return Line((6.0 + z) * (slope * (speed - sliding) - normal * mu), (3.0 + z) * slope, 6.0 + z)
+
+
+@woven
+def friction_line(sliding, expected, answer, normal, law):
+    """`line_at` a kick's own `spot`, for a contact alone."""
+    speed = spot(expected, answer, normal, law)
+    return line_at(speed, rises(speed, law), sliding, answer, normal, law)

@@ -22,10 +22,10 @@ SLIVER = 0.1  # of the step before; over less than that, as at the end of a macr
 class Samples:
     """The last two samples of a force (N) or an indentation (m), and at which contact they were."""
 
-    time_before: float = real(0.0, "s", "time of the last sample but one")
+    time_before: float = real(-1.0, "s", "time of the last sample but one; -1: there was none")
     before: float = real(0.0, "1", "the last sample but one, in the unit of what is watched")
     place_before: int = integer(0, "number of its contact")
-    time: float = real(0.0, "s", "time of the last sample")
+    time: float = real(-1.0, "s", "time of the last sample; -1: there was none")
     last: float = real(0.0, "1", "the last sample, in the same unit")
     place: int = integer(0, "number of its contact")
 
@@ -67,7 +67,7 @@ def crest(samples, time, value, place):
     its place in the record `samples` (`Samples`).
     """
     top = value
-    if time - samples.time > SLIVER * (samples.time - samples.time_before):
+    if samples.time_before < 0.0 or time - samples.time > SLIVER * (samples.time - samples.time_before):
         same = samples.place_before == samples.place and samples.place == place
         if same and samples.last > samples.before > 0.0 and samples.last >= value > 0.0:
             top = vertex(samples, time, value)

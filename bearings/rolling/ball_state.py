@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.modelkit.kernel import kernel
+from touchdown.modelkit.kernel import kernel, woven
 
 BALLS = ring.NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
@@ -29,3 +29,21 @@ def rounded(count):
     """How many balls the loops run over for `count`; all arrays have room for `MOST_BALLS`."""
     left = count % LANES
     return count if left <= SPARE else count - left + LANES
+
+
+@woven
+def drift(trial, q, mid, h, place, rate, n):
+    """Set n places in the state `trial`: those in q and h (s) times their rates in `mid`.
+
+    place, rate: numbers of the first ones in the state.
+    """
+    to, start, by = trial[place : place + n], q[place : place + n], mid[rate : rate + n]
+    for b in range(len(to)):
+        to[b] = start[b] + h * by[b]
+
+
+@woven
+def copy(given, to):
+    """Set `to` (n,) to what is `given` (n,)."""
+    for b in range(len(to)):
+        to[b] = given[b]

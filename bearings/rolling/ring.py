@@ -152,7 +152,7 @@ def rub_races(q, pressed, answers, inner, m):
     around = Around(moved_before(m), push_on(at, squeezed, pressed, m), bore_line(at, kick, squeezed, m))
     races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
     law = curve(m.d.race_friction)
-    friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1])
+    friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1], s.lines)
     return rub_journal(at, squeezed, friction, moved, m), moved
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.pair import OUTSIDE, Place
-from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling import ball_state, ring
 from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
@@ -43,6 +43,8 @@ class RaceBalls:
     rate: tuple = array(MOST_BALLS)  # m/s, at which the rings approach, before the kick
     damped: tuple = array(MOST_BALLS)  # N, what of the force between the rings is damping
     drag: tuple = array(MOST_BALLS)  # N, rolling resistance
+    faster: tuple = array(MOST_BALLS)  # rad/s2, of the orbit, on its way through an evaluation
+    turning: tuple = array(MOST_BALLS)  # rad/s2, of the spin, likewise
 
 
 class Course(NamedTuple):
@@ -89,8 +91,7 @@ def drift(trial, q, mid, h, m):
     seat.drift(trial, q, mid, h, m)
     ring.drift(trial, q, mid, h)
     n = m.p.balls.count
-    for i in range(BALLS, BALLS + n):
-        trial[i] = q[i] + h * mid[i + n]
+    ball_state.drift(trial, q, mid, h, BALLS + ANGLE * n, BALLS + ORBIT * n, n)
 
 
 @kernel
@@ -152,10 +153,10 @@ def _crowd(m):
 
 
 @woven
-def press_balls(q, dq, m):
-    """Both races press all balls in the state q; sets the balls' derivatives in dq, gravity included."""
-    s, at, count = m.s, m.s.balls, m.p.balls.count
-    n = rounded(count)
+def press_balls(q, m):
+    """Both races press all balls in the state q; sets their accelerations, gravity included."""
+    s, at = m.s, m.s.balls
+    n = rounded(m.p.balls.count)
     angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
     _directions(angle, at.cosine[:n], at.sine[:n])
     moved = ring.moved_before(m)
@@ -163,21 +164,19 @@ def press_balls(q, dq, m):
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
     _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, _loads_of(at, n), inner, outer)
-    turned, faster, turning = part(dq, ANGLE, m), part(dq, ORBIT, m), part(dq, SPIN, m)
-    for b in range(count):
-        turned[b] = orbit[b]
-        faster[b] = at.along[b] / at.radius[b]
-        turning[b] = 0.0
+    for b in range(n):
+        at.faster[b] = at.along[b] / at.radius[b]
+        at.turning[b] = 0.0
 
 
 @kernel
-def neighbour_forces(q, dq, m):
-    """Each ball in the state q against the next one; adds to the derivatives dq."""
+def neighbour_forces(q, m):
+    """Each ball in the state q against the next one; adds to the balls' accelerations."""
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
     share(s.side, s.chain, count)
-    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
-    for b in range(count):
+    faster, turning = s.balls.faster, s.balls.turning
+    for b in range(count if s.side.touching > 0 else 0):
         if s.side.indentation[b] > 0.0:
             k = after(b, count)
             c = press_of(b, d.ball_contact, d.ball_friction, m)
@@ -194,6 +193,7 @@ def _find_neighbours(q, m):
     p, d, at, before = m.p, m.d, m.s.balls, m.s.before
     rm, rb, count = d.pitch_radius, d.ball_radius, p.balls.count
     angle, spun = part(q, ANGLE, m), 2.0 * rb * rb / d.inertia
+    m.s.side.touching = 0
     for b in range(count):
         k = after(b, count)
         between = angle[k] - angle[b] + (0.0 if b + 1 < count else 2.0 * math.pi)
@@ -231,14 +231,14 @@ def rubbing(dq, m):
 
 @woven
 def rub_balls(q, dq, m):
-    """Friction at both races and in the bore, when all else on the balls is in dq, to which it is added.
+    """Friction at both races and in the bore, when all else on the balls is in m.s.balls; sets them in dq.
 
     Returns the journal's `Touch` and the `Total` (N, N m, W) on the ring.
     """
     d, s, h = m.d, m.s, m.s.kick
     n = rounded(m.p.balls.count)
     share = m.p.as_printed * d.ball_radius / d.pitch_radius  # of (2.10) as printed
-    _drive(dq, m)
+    _drive(m)
     pressed = _pressing(m)
     answers = Answers(
         h * (1.0 + share) / d.mass,
@@ -247,38 +247,47 @@ def rub_balls(q, dq, m):
     )
     inner = Inner(s.balls.cosine[:n], s.balls.sine[:n], s.balls.lever[:n], s.balls.cross[:n])
     journal, moved = ring.rub_races(q, pressed, answers, inner, m)
-    _rub(q, dq, share, moved, m)
+    _rub(q, share, moved, m)
+    _hand_over(q, dq, m)
     balls = _with_friction(pressed, m)
     s.brake.hx, s.brake.hy = pressed.fx - balls.fx, pressed.fy - balls.fy
     return journal, balls
 
 
 @woven
-def _drive(dq, m):
-    """How all but friction at races, in dq, changes the sliding speeds over the kick."""
+def _drive(m):
+    """How all but friction at races changes the sliding speeds over the kick."""
     s, rb, h = m.s, m.d.ball_radius, m.s.kick
-    faster, turning = part(dq, ORBIT, m), part(dq, SPIN, m)
-    for b in range(len(faster)):
-        along, around = s.balls.radius[b] * faster[b], rb * turning[b]
+    for b in range(rounded(m.p.balls.count)):
+        along, around = s.balls.radius[b] * s.balls.faster[b], rb * s.balls.turning[b]
         s.outer.driven[b] = h * (along + around)
         s.inner.driven[b] = h * (along - around)
 
 
 @woven
-def _rub(q, dq, share, moved, m):
-    """Add friction at both races to the balls' derivatives dq, and all other heat to that of friction.
+def _rub(q, share, moved, m):
+    """Add friction at both races to the balls' accelerations, and all other heat to that of friction.
 
     share: of friction's moment, as printed; moved: what the kick does to the ring (`Moved`).
     """
     s, at, spun, half = m.s, m.s.balls, m.d.ball_radius / m.d.inertia, 0.5 * m.s.kick
-    orbit, faster, turning = part(q, ORBIT, m), part(dq, ORBIT, m), part(dq, SPIN, m)
-    for b in range(len(faster)):
+    orbit = part(q, ORBIT, m)
+    for b in range(rounded(m.p.balls.count)):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
-        faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
-        turning[b] += spun * (f_o - f_i)
+        at.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
+        at.turning[b] += spun * (f_o - f_i)
         middle = at.rate[b] + 0.5 * (moved.x * at.cosine[b] + moved.y * at.sine[b])
-        along = at.radius[b] * (orbit[b] + half * faster[b])
+        along = at.radius[b] * (orbit[b] + half * at.faster[b])
         s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
+
+
+@woven
+def _hand_over(q, dq, m):
+    """Set the balls' derivatives in dq (m.n,), component by component: each loop is vector code."""
+    n, at = m.p.balls.count, m.s.balls
+    ball_state.copy(part(q, ORBIT, m), part(dq, ANGLE, m))
+    ball_state.copy(at.faster[:n], part(dq, ORBIT, m))
+    ball_state.copy(at.turning[:n], part(dq, SPIN, m))
 
 
 @woven

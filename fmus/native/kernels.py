@@ -33,6 +33,7 @@ from touchdown.modelkit.kernel.tried import NUMBA
 from touchdown.modelkit.model import Model
 
 ENTRIES = ("settle", "start", "advance")
+OPTIONS = {"nopython": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 PREFIX = "kernel_"  # of the entries' names
 
 
@@ -199,9 +200,8 @@ def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:
     pointer, real = types.CPointer(types.float64), types.float64
     stepping = name == "advance"
     signature = (pointer, pointer, real, real) if stepping else (pointer,)
-    carray, njit = cast(Any, numba).carray, cast(Any, numba).njit
-    plain = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-    entry = plain(on_words_and_scratch if stepping else on_words)
+    carray = cast(Any, numba).carray
+    entry = KernelDispatcher(on_words_and_scratch if stepping else on_words, targetoptions=OPTIONS)
     entry.compile(signature)
     compiled = entry.overloads[signature]
     module = compiled.library._get_module_for_linking()

@@ -35,7 +35,9 @@ class Kind(StrEnum):
 
 REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
 WHOLE = (Kind.INTEGER, Kind.ENUMERATION)  # FMI 2.0 has one function for both
-NUMBERS = (Kind.REAL, *WHOLE)  # what is recorded and kept
+NUMBERS = (Kind.REAL, *WHOLE)
+READABLE = (*NUMBERS, Kind.BOOLEAN)  # as numbers; a Boolean is 0 or 1
+EXACT = 2**53  # whole numbers up to it are exchanged as they are
 SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 
 
@@ -68,6 +70,7 @@ class ByFunctions:
     do_step: int
     get_real: int
     get_integer: int
+    get_boolean: int
     taken: np.ndarray  # uint32, value references of the exchanged inputs
     given: np.ndarray  # and of the exchanged outputs
     checked: bool  # whether it is to be seen that these are finite numbers
@@ -169,7 +172,11 @@ class Component(ABC):
 
     @abstractmethod
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
-        """Exchange real `inputs` through self.inputs, and read real variables `names` into `outputs`."""
+        """Exchange `inputs` through self.inputs, and read variables `names` into `outputs`.
+
+        They are Real, whole or Boolean, and all numbers here; values that a type cannot hold are refused by
+        TouchdownError when they come.
+        """
 
     @abstractmethod
     def enter(self, start_time: float) -> None:
@@ -211,10 +218,10 @@ class Component(ABC):
         """A function that fetches the values of any variables, for many calls; its array is its own."""
 
     def read(self, names: Sequence[str]) -> list[float]:
-        """Values of any variables, integers as such."""
+        """Values of any variables, integers and Booleans as whole numbers."""
         values = self.reader(names)()
         kinds = [self.variable(name).kind for name in names]
-        return [int(v) if k in WHOLE else float(v) for v, k in zip(values, kinds, strict=True)]
+        return [float(v) if k is Kind.REAL else int(v) for v, k in zip(values, kinds, strict=True)]
 
     foreign = False  # whether it is an FMU of others'
     any_step = True  # whether it takes steps of any length
@@ -253,6 +260,27 @@ def value_of(component: Component, variable: Variable, given: object) -> float:
             return value
     known = ", ".join(f"{word} ({number})" for word, number in variable.choices.items())
     raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}")
+
+
+def put_whole(
+    component: Component, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray
+) -> None:
+    """Put `values` into `data`, of a type of whole numbers, or of Booleans.
+
+    values, data: (n,), of the variables `names[i]` for `i` in `which`. Raises TouchdownError where it
+    cannot hold one.
+    """
+    if data.dtype.kind != "b":
+        limits = np.iinfo(data.dtype)
+        # the largest of 64 bits is no number here, the one above it is; what is no number holds for neither
+        held = (values >= float(limits.min)) & (values < float(limits.max) + 1.0)
+        if not held.all():
+            first = int(np.argmin(held))
+            raise TouchdownError(
+                f"component {component.name}: {names[int(which[first])]} is given {values[first]:.0f}, and "
+                f"holds whole numbers from {limits.min} to {limits.max}"
+            )
+    data[:] = values
 
 
 def check_value(component: Component, variable: Variable, value: float) -> None:

@@ -27,7 +27,15 @@ from fmpy.fmi2 import (
 )
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import WHOLE, ByFunctions, Call, Component, InMemory, Kind
+from touchdown.master.components.component import (
+    WHOLE,
+    ByFunctions,
+    Call,
+    Component,
+    InMemory,
+    Kind,
+    put_whole,
+)
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
 
@@ -77,15 +85,20 @@ def _release_interpreter(library: ctypes.CDLL) -> None:
         release()
 
 
-class _Fetch(NamedTuple):
-    """A call that fetches all values of one type; the arrays must outlive their addresses."""
+class _Exchange(NamedTuple):
+    """A call that fetches or hands over all values of one type; arrays must outlive their addresses."""
 
     call: Callable[..., int]
-    at: np.ndarray  # where the values go
+    boolean: bool
+    at: np.ndarray  # where the values go, or come from
     references: np.ndarray
     data: np.ndarray
     of: int  # address of `references`
     into: int  # address of `data`
+
+
+Functions = Sequence[tuple[Sequence[Kind], Callable[..., int], str]]
+"""What exchanges values: of which types, the function, and numpy's name of its values."""
 
 
 def _address(held: Any) -> int:
@@ -230,6 +243,8 @@ class FmuComponent(LoadedFmu):
     STATES = ("fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate")
     _in: tuple[int, int, int] = (0, 0, 0)  # places and number of what it takes: references, values
     _out: tuple[int, int, int] = (0, 0, 0)  # and gives
+    _taken: Sequence[_Exchange] = ()  # what it takes, where some is not Real
+    _given: Sequence[_Exchange] = ()
 
     def _load(self) -> Any:
         self._fmu = self._wrapped(FMU2Slave)
@@ -276,9 +291,18 @@ class FmuComponent(LoadedFmu):
         step = ctypes.PYFUNCTYPE(integer, pointer, real, real, integer)
         self._set_real = exchange(("fmi2SetReal", self._fmu.dll))
         self._get_real = exchange(("fmi2GetReal", self._fmu.dll))
-        self._set_boolean = exchange(("fmi2SetBoolean", self._fmu.dll))
-        self._set_integer = exchange(("fmi2SetInteger", self._fmu.dll))
         self._get_integer = exchange(("fmi2GetInteger", self._fmu.dll))
+        self._get_boolean = exchange(("fmi2GetBoolean", self._fmu.dll))
+        self._setters = (
+            ((Kind.REAL,), self._set_real, "f8"),
+            (WHOLE, exchange(("fmi2SetInteger", self._fmu.dll)), "i4"),
+            ((Kind.BOOLEAN,), exchange(("fmi2SetBoolean", self._fmu.dll)), "i4"),
+        )
+        self._getters = (
+            ((Kind.REAL,), self._get_real, "f8"),
+            (WHOLE, self._get_integer, "i4"),
+            ((Kind.BOOLEAN,), self._get_boolean, "i4"),
+        )
         self._do_step = step(("fmi2DoStep", self._fmu.dll))
 
     # -- values --------------------------------------------------------------------------------------
@@ -287,41 +311,81 @@ class FmuComponent(LoadedFmu):
         return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
 
     def set(self, values: Mapping[str, float]) -> None:
-        calls = (
-            ((Kind.REAL,), "fmi2SetReal", self._set_real, "f8"),
-            (WHOLE, "fmi2SetInteger", self._set_integer, "i4"),
-            ((Kind.BOOLEAN,), "fmi2SetBoolean", self._set_boolean, "i4"),
-        )
-        for kinds, title, call, dtype in calls:
+        titles = ("fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean")
+        for title, (kinds, call, dtype) in zip(titles, self._setters, strict=True):
             names = [n for n in values if self.variable(n).kind in kinds]
             if names:
                 self._told(title)
-                references = self._references(names)
-                data = np.array([values[n] for n in names]).astype(dtype)
+                references, data = self._references(names), np.zeros(len(names), dtype)
+                self._put(names, np.arange(len(names)), np.array([values[n] for n in names], float), data)
                 self._check(
                     call(self._component, references.ctypes.data, len(names), data.ctypes.data),
                     "setting values",
                 )
 
+    def _put(self, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray) -> None:
+        """`put_whole`, or what is Real as it is."""
+        if data.dtype.kind == "f":
+            data[:] = values
+        else:
+            put_whole(self, names, which, values, data)
+
+    def _exchanges(self, names: Sequence[str], functions: Functions) -> list[_Exchange]:
+        """Those that exchange the variables called `names`, type by type."""
+        found: list[_Exchange] = []
+        for kinds, call, dtype in functions:
+            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in kinds], dtype=np.intp)
+            if len(at):
+                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
+                addresses = references.ctypes.data, data.ctypes.data
+                boolean = Kind.BOOLEAN in kinds
+                found.append(_Exchange(call, boolean, at, references, data, *addresses))
+        return found
+
+    def _typed(self, names: Sequence[str], functions: Functions) -> list[_Exchange]:
+        """`_exchanges` of variables of which some are not Real; where all are, none is needed."""
+        mixed = any(self.variable(n).kind is not Kind.REAL for n in names)
+        return self._exchanges(names, functions) if mixed else []
+
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
         self.inputs = np.zeros(len(inputs))
         self.outputs = outputs
-        self._held = self._references(inputs), self._references(names)
-        self._in = self._held[0].ctypes.data, len(inputs), self.inputs.ctypes.data
-        self._out = self._held[1].ctypes.data, len(names), outputs.ctypes.data
+        self._inputs = inputs
+        self._taken, self._given = self._typed(inputs, self._setters), self._typed(names, self._getters)
+        real_inputs, real_names = (() if self._taken else inputs), (() if self._given else names)
+        self._held = self._references(real_inputs), self._references(real_names)
+        self._in = self._held[0].ctypes.data, len(real_inputs), self.inputs.ctypes.data
+        self._out = self._held[1].ctypes.data, len(real_names), outputs.ctypes.data
 
     def push(self) -> None:
         status = self._set_real(self._component, *self._in)
         if status > WARNING:
             self._check(status, Call.SET)
+        for call, _, at, references, data, of, into in self._taken:
+            self._put(self._inputs, at, self.inputs[at], data)
+            self._check(call(self._component, of, len(references), into), Call.SET)
 
     def pull(self) -> None:
         status = self._get_real(self._component, *self._out)
         if status > WARNING:
             self._check(status, Call.GET)
+        if self._given:
+            self._fetch(self._given, self.outputs, Call.GET)
+
+    def _fetch(self, exchanges: Sequence[_Exchange], values: np.ndarray, doing: Call) -> None:
+        for call, boolean, at, references, data, of, into in exchanges:
+            status = call(self._component, of, len(references), into)
+            if status > WARNING:
+                self._check(status, doing)
+            values[at] = data != 0 if boolean else data  # some say -1 or 255 for true
 
     def by_address(self) -> InMemory | ByFunctions | None:
-        """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here."""
+        """Compiled code holds the GIL, as these calls do: pythonfmu's FMUs find it as they do here.
+
+        What it exchanges is Real.
+        """
+        if self._taken or self._given:
+            return None
         taken, given = self._held
         return ByFunctions(
             component=_address(self._component),
@@ -329,6 +393,7 @@ class FmuComponent(LoadedFmu):
             do_step=_address(self._do_step),
             get_real=_address(self._get_real),
             get_integer=_address(self._get_integer),
+            get_boolean=_address(self._get_boolean),
             taken=taken,
             given=given,
             checked=False,
@@ -338,24 +403,10 @@ class FmuComponent(LoadedFmu):
         self._check(status, _step_from(time) if call is Call.STEP else call)
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
-        values = np.zeros(len(names))
-        fetches: list[_Fetch] = []
-        for kinds, call, dtype in (
-            ((Kind.REAL,), self._get_real, "f8"),
-            (WHOLE, self._get_integer, "i4"),
-        ):
-            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in kinds], dtype=np.intp)
-            if len(at):
-                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
-                addresses = references.ctypes.data, data.ctypes.data
-                fetches.append(_Fetch(call, at, references, data, *addresses))
+        values, exchanges = np.zeros(len(names)), self._exchanges(names, self._getters)
 
         def fetch() -> np.ndarray:
-            for call, at, references, data, of, into in fetches:
-                status = call(self._component, of, len(references), into)
-                if status > WARNING:
-                    self._check(status, Call.FETCH)
-                values[at] = data
+            self._fetch(exchanges, values, Call.FETCH)
             return values
 
         return fetch

@@ -16,7 +16,7 @@ import numpy as np
 from fmpy.fmi3 import FMU3Slave
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import WHOLE, Call, Kind
+from touchdown.master.components.component import EXACT, READABLE, Call, put_whole
 from touchdown.master.components.fmu import OK, WARNING, LoadedFmu
 
 CALLS = (  # in the order of FMI 2.0's, `fmu.CALLS`
@@ -56,6 +56,11 @@ class _Vector:
     data: np.ndarray  # (n,) of that type
     at: np.ndarray  # where in `data` the scalars are that were asked for
     which: np.ndarray  # and which of those they are
+
+    @property
+    def exact(self) -> bool:
+        """Whether all its values are numbers here as they are there."""
+        return self.data.dtype.itemsize < 8 or self.data.dtype.kind == "f"
 
     @property
     def arguments(self) -> tuple[int, int, int, int]:
@@ -125,10 +130,20 @@ class Fmu3Component(LoadedFmu):
         self._told("fmi3Set")
         names = list(values)
         for vector in self._vectors(names):
-            vector.data[vector.at] = [values[names[i]] for i in vector.which]
+            self._put(vector, names, np.array(list(values.values()), float))
             self._check(vector.set(self._component, *vector.arguments), "setting values")
             for reference in vector.references:  # what inputs that nothing feeds keep
                 self._keep(int(reference), names, values)
+
+    def _put(self, vector: _Vector, names: Sequence[str], values: np.ndarray) -> None:
+        """Fill `vector` with those of `values`, (n,) of the variables called `names`, that it is for."""
+        mine = values[vector.which]
+        if vector.data.dtype.kind == "f":
+            vector.data[vector.at] = mine
+        else:
+            held = np.zeros(len(mine), vector.data.dtype)
+            put_whole(self, names, vector.which, mine, held)
+            vector.data[vector.at] = held
 
     def _keep(self, reference: int, names: Sequence[str], values: Mapping[str, float]) -> None:
         for name in names:
@@ -139,18 +154,34 @@ class Fmu3Component(LoadedFmu):
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
         self.inputs = np.zeros(len(inputs))
         self.outputs = outputs
+        self._inputs, self._names = inputs, names
         self._taken, self._given = self._vectors(inputs), self._vectors(names)
 
     def push(self) -> None:
         for vector in self._taken:
-            vector.data[vector.at] = self.inputs[vector.which]
+            self._put(vector, self._inputs, self.inputs)
             self._check(vector.set(self._component, *vector.arguments), Call.SET)
 
     def pull(self) -> None:
         self._fetch(self._given, self.outputs, Call.GET)
+        for vector in self._given:
+            if not vector.exact:
+                self._refuse_inexact(vector)
+
+    def _refuse_inexact(self, vector: _Vector) -> None:
+        """Raise TouchdownError where a whole number has more digits than a number here."""
+        values = vector.data[vector.at]
+        beyond = np.flatnonzero((values > EXACT) | (values < (-EXACT if values.dtype.kind == "i" else 0)))
+        if len(beyond):
+            first = int(beyond[0])
+            name = self._names[int(vector.which[first])]
+            raise TouchdownError(
+                f"component {self.name}: {name} = {values[first]} cannot be exchanged; whole numbers can "
+                "up to 2^53"
+            )
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
-        numbers = [n for n in names if self.variable(n).kind in (Kind.REAL, *WHOLE)]
+        numbers = [n for n in names if self.variable(n).kind in READABLE]
         values, vectors = np.zeros(len(names)), self._vectors(numbers)
         places = np.array([i for i, n in enumerate(names) if n in set(numbers)], np.intp)
         vectors = [_Vector(v.get, v.set, v.references, v.data, v.at, places[v.which]) for v in vectors]

@@ -124,7 +124,7 @@ def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
             unit=_unit(v) if kind is Kind.REAL else "1",
             minimum=_number(v.min),
             maximum=_number(v.max),
-            start=_number(starts[number] if number < len(starts) else starts[-1]),
+            start=_start(starts[number] if number < len(starts) else starts[-1], kind),
             description=v.description or "",
             element=number,
             choices=_choices(v) if kind is Kind.ENUMERATION else {},
@@ -140,6 +140,12 @@ def _choices(v: Any) -> dict[str, int]:
     items = v.declaredType.items if v.declaredType else ()
     numbers = {item.name: _number(item.value) for item in items if item.name}
     return {word: int(n) for word, n in numbers.items() if n is not None and math.isfinite(n)}
+
+
+def _start(text: object, kind: Kind) -> float | None:
+    """A start value as a number; None where it is none, as words are that begin a String."""
+    words = {"true": 1.0, "false": 0.0} if kind is Kind.BOOLEAN else {}
+    return words.get(str(text), _number(text))
 
 
 def _number(text: object) -> float | None:

@@ -36,12 +36,12 @@ def _variable(slot: Slot) -> Variable:
     )
 
 
-class _Fetch(NamedTuple):
+class _Words(NamedTuple):
     """Values of one type."""
 
     store: np.ndarray  # the instance's memory, seen as that type
     references: np.ndarray  # in it
-    at: np.ndarray  # where the values go
+    at: np.ndarray  # where the values go, or come from
 
 
 class TwinComponent(Component):
@@ -54,6 +54,8 @@ class TwinComponent(Component):
         self._words = self.instance.words
         self._initialising = False
         self._start_time = 0.0
+        self._taken: Sequence[_Words] = ()  # what it takes, where some is not Real
+        self._given: Sequence[_Words] = ()
 
     def second(self) -> TwinComponent:
         second = TwinComponent(f"{self.name} (witness)", self.instance.model)
@@ -73,6 +75,7 @@ class TwinComponent(Component):
         self.outputs = outputs
         self._in = np.array([self.variable(n).reference for n in inputs], dtype=np.intp)
         self._out = np.array([self.variable(n).reference for n in names], dtype=np.intp)
+        self._taken, self._given = self._typed(inputs), self._typed(names)
 
     def enter(self, start_time: float) -> None:
         self._initialising = True
@@ -84,11 +87,15 @@ class TwinComponent(Component):
 
     def push(self) -> None:
         self._words[self._in] = self.inputs
+        for store, references, at in self._taken:
+            store[references] = self.inputs[at]
 
     def pull(self) -> None:
         if self._initialising:
             self._start()
         self.outputs[:] = self._words[self._out]
+        for store, references, at in self._given:
+            self.outputs[at] = store[references]
 
     def step(self, time: float, step: float) -> None:
         try:
@@ -97,7 +104,12 @@ class TwinComponent(Component):
             raise TouchdownError(f"component {self.name}: {error}") from None
 
     def by_address(self) -> InMemory | None:
-        """None before the first step, which has `advance` compiled and constants derived."""
+        """None before the first step, which has `advance` compiled and constants derived.
+
+        What it exchanges is Real.
+        """
+        if self._taken or self._given:
+            return None
         address = advance_address(self.instance.model.advance)
         return InMemory(address, self._words, self.instance.work, self._in, self._out) if address else None
 
@@ -105,14 +117,7 @@ class TwinComponent(Component):
         raise TouchdownError(f"component {self.name}: {explanation(self.instance, status, time, step)}")
 
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
-        values = np.zeros(len(names))
-        variables = [self.variable(n) for n in names]
-        integers = self._words.view("i8")
-        fetches: list[_Fetch] = []
-        for kinds, store in (((Kind.REAL,), self._words), (WHOLE, integers)):
-            at = np.array([i for i, v in enumerate(variables) if v.kind in kinds], dtype=np.intp)
-            references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
-            fetches.append(_Fetch(store, references, at))
+        values, fetches = np.zeros(len(names)), self._by_type(names)
 
         def fetch() -> np.ndarray:
             if self._initialising:
@@ -122,6 +127,21 @@ class TwinComponent(Component):
             return values
 
         return fetch
+
+    def _by_type(self, names: Sequence[str]) -> list[_Words]:
+        """Where the variables called `names` stand in the memory, type by type."""
+        variables = [self.variable(n) for n in names]
+        found: list[_Words] = []
+        for kinds, store in (((Kind.REAL,), self._words), (WHOLE, self._words.view("i8"))):
+            at = np.array([i for i, v in enumerate(variables) if v.kind in kinds], dtype=np.intp)
+            references = np.array([variables[int(i)].reference for i in at], dtype=np.intp)
+            found.append(_Words(store, references, at))
+        return found
+
+    def _typed(self, names: Sequence[str]) -> list[_Words]:
+        """`_by_type` of variables of which some are not Real; where all are, none is needed."""
+        mixed = any(self.variable(n).kind is not Kind.REAL for n in names)
+        return self._by_type(names) if mixed else []
 
     def save(self) -> object:
         return self.instance.save()

@@ -17,6 +17,7 @@ from touchdown.master.coupling.connections import (
     connection,
     port_connections,
     recognised,
+    require_real,
     sensor_connections,
 )
 from touchdown.master.coupling.system import System
@@ -64,7 +65,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         component.set(values)
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
-    attachments = recognised(connections)
+    attachments = recognised(connections, components)
     bonds = found(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
@@ -72,7 +73,8 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     components = hear(components, attachments)
     told = [*left_out, *remarks(seats)]
-    return System(components, attachments, connections, settings, every, told, bonds)
+    start = scene.run.start_time
+    return System(components, attachments, connections, settings, every, told, bonds, start)
 
 
 def _seat(
@@ -116,11 +118,13 @@ def _check_zero(scene: Scene, components: Mapping[str, Component]) -> None:
 def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Component]) -> list[Connection]:
     """All that the scene attaches, senses and connects, checked."""
     attached = [attachment(pair, components) for pair in scene.attach]
-    connections = [c for a in attached for c in port_connections(a, components, scheme)]
-    connections += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    ports = [c for a in attached for c in port_connections(a, components, scheme)]
+    ports += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    require_real(ports, components, "what crosses at a port")
     declared = [wire for bond in scene.bond for wire in bond.wires]
+    require_real((connection(wire, components) for wire in declared), components, "a bond")
     wires = dict.fromkeys([*scene.connect, *declared])  # a bond's may stand among the others, too
-    connections += [connection(wire, components) for wire in wires]
+    connections = [*ports, *(connection(wire, components) for wire in wires)]
     check_connections(connections, components)
     for c in connections:
         if c.input in scene.components[c.target].set:
@@ -144,7 +148,8 @@ def _left_out(scene: Scene, component: Component, settings: Sequence[str]) -> li
         return []
     lost = [f"{component.name}.{key}" for key in settings]
     if scene.zero is not None and _lacks(component, scene.zero):
-        lost.append(f"zero = {scene.zero}, so times count from the start")
+        origin = "t = 0" if scene.run.start_time else "the start"
+        lost.append(f"zero = {scene.zero}, so times count from {origin}")
     if any(_lacks(component, name) for name in scene.energy_scale):
         lost.append("energy_scale, so energies are in J only")
     what = f"{component.name} is {spec.fmu} instead of {spec.instead_of}, and does not take over"

@@ -31,6 +31,11 @@ from touchdown.master.scene.schemes import Scheme
 from touchdown.master.scene.wires import Wire
 from touchdown.modelkit.variables import Causality
 
+CROSSING = {(kind, kind) for kind in (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)} | {
+    (Kind.INTEGER, Kind.ENUMERATION),
+    (Kind.ENUMERATION, Kind.INTEGER),
+    (Kind.INTEGER, Kind.REAL),
+}  # types of which one can feed the other, and nothing is lost
 GIVING = (Causality.OUTPUT, Causality.LOCAL, Causality.CALCULATED_PARAMETER)  # what a source may be
 
 
@@ -257,7 +262,7 @@ def connection(wire: Wire, components: Mapping[str, Component]) -> Connection:
     return Connection(source.name, output.name, target.name, given.name, wire.scale)
 
 
-def recognised(connections: Iterable[Connection]) -> list[Attachment]:
+def recognised(connections: Iterable[Connection], components: Mapping[str, Component]) -> list[Attachment]:
     """Bearings' ports on bodies' ports that the connections amount to: motion one way and load the other.
 
     A port is what stands before the last dot of the names; both sides call the variables the same.
@@ -266,7 +271,7 @@ def recognised(connections: Iterable[Connection]) -> list[Attachment]:
     for c in connections:
         output_port, _, output = c.output.rpartition(".")
         input_port, _, given = c.input.rpartition(".")
-        if output == given:
+        if output == given and components[c.source].variable(c.output).kind is Kind.REAL:
             ends = Port(c.source, output_port), Port(c.target, input_port)
             crossing.setdefault(ends, set()).add(output)
     return [
@@ -296,9 +301,32 @@ def _check_connection(c: Connection, output: Variable, given: Variable) -> None:
         raise TouchdownError(f"{what}: {c.source_name} has the causality {output.causality}, not output")
     if given.causality is not Causality.INPUT:
         raise TouchdownError(f"{what}: {c.target_name} has the causality {given.causality}, not input")
-    if (output.kind, given.kind) != (Kind.REAL, Kind.REAL):
-        raise TouchdownError(f"{what}: only Real variables can be connected")
+    if (output.kind, given.kind) not in CROSSING:
+        raise TouchdownError(
+            f"{what}: {_types(output, given)}; types must be the same, and Real, Integer, Boolean or "
+            "Enumeration (an Integer may feed a Real or an Enumeration, and an Enumeration an Integer)"
+        )
+    if output.kind is not Kind.REAL or given.kind is not Kind.REAL:
+        if c.scale is not None:
+            raise TouchdownError(
+                f"{what}: only what is Real can be scaled, and {_types(output, given)}; leave factor and "
+                "offset out"
+            )
+        return
     if c.scale is None and output.unit and given.unit and output.unit != given.unit:
         raise TouchdownError(
             f"{what}: the units {output.unit} and {given.unit} differ; give factor and offset"
         )
+
+
+def require_real(connections: Iterable[Connection], components: Mapping[str, Component], what: str) -> None:
+    """Raise TouchdownError where one is not of Real variables, as `what` (for people) must be."""
+    for c in connections:
+        output, given = components[c.source].variable(c.output), components[c.target].variable(c.input)
+        if (output.kind, given.kind) != (Kind.REAL, Kind.REAL):
+            where = f"connection {c.source_name} to {c.target_name}"
+            raise TouchdownError(f"{where}: {what} is Real, and {_types(output, given)}")
+
+
+def _types(output: Variable, given: Variable) -> str:
+    return f"it leads from the type {output.kind} to {given.kind}"

@@ -20,6 +20,7 @@ class Moment:
     system: System
     zero: float  # s, the scene's zero on the simulation's clock
     steps: int  # macro steps of the whole run
+    start: float = 0.0  # s, on the simulation's clock
     done: int = 0  # macro steps taken
     time: float = 0.0  # s, on the simulation's clock: the end of the last macro step
     last: bool = False  # whether no macro step is left
@@ -36,7 +37,7 @@ class Moment:
     def move(self, done: int, step: float) -> None:
         """On to the end of macro step `done` (from 1), each of `step` (s)."""
         self.done = done
-        self.time = done * step
+        self.time = self.start + done * step
         self.last = done == self.steps
         self.beat = self.last or done % BEAT == 0
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
@@ -20,6 +19,7 @@ from touchdown.master.coupling.bonds.told import exchange, unjoined
 from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
 from touchdown.master.coupling.ledger.heard import heard
 from touchdown.master.coupling.loop.retirement import Retirement
+from touchdown.master.coupling.loop.span import Values, named_zero, span, swapped_away
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.stretches import Stretches
 from touchdown.master.coupling.observer import BEAT, Moment, Observer
@@ -37,8 +37,10 @@ class Outcome:
     """What the loop reports beside the recording."""
 
     steps: int = 0
-    zero: float = 0.0  # s, the scene's zero on the simulation's clock
-    end: float = 0.0  # s, on the simulation's clock
+    start: float = 0.0  # s, on the simulation's clock, as the next ones
+    end: float = 0.0  # s
+    zero: float = 0.0  # s, what times count from
+    origin: float = 0.0  # s, what the duration counts from
     wall_time: float = 0.0  # s, stepping only
     start_up: float = 0.0  # s, loading, initialising, and compiling what is new in the first step
     residual: float = 0.0  # of the ledger, over its scale
@@ -56,6 +58,16 @@ class Outcome:
     exchange: str = ""  # how everything that is exchanged crosses
     unjoined: str = ""  # what is to be said where the scheme has nothing to act on
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
+
+    @property
+    def simulated(self) -> float:
+        """How much time it came on (s)."""
+        return self.end - self.start
+
+    @property
+    def duration(self) -> float:
+        """What run.duration (s) would have ended it there."""
+        return self.end - self.origin
 
     def after(self, problem: str) -> Outcome:
         """The outcome where that came to light after the run; "": nothing did."""
@@ -113,13 +125,15 @@ def simulate(
 ) -> Outcome:
     """Initialise `system` and run it to the scene's end, or until an observer ends it.
 
-    progress(time from zero in s, residual over turnover) is called now and then, begin() when nothing is
-    refused any more; `observers` are told of every macro step. The outcome says how it ended, and why.
+    progress(how much of run.duration is over in s, residual over turnover) is called now and then, begin()
+    when nothing is refused any more; `observers` are told of every macro step. The outcome says how it
+    ended, and why.
     """
     began = clock.perf_counter()
     with interrupts_noted() as interrupted:
-        zero = zero_of(scene, system)
-        now = Moment(system, zero, macro_steps(zero + scene.run.duration, scene.run.macro_step))
+        times = span(scene.run, named_zero(scene, system), impacts=bool(system.hit_together))
+        steps = macro_steps(times.length, scene.run.macro_step)
+        now = Moment(system, times.zero, steps, times.start, time=times.start)
         system.initialise()
         coupling = stepper(system, scene.run)
         with (
@@ -131,13 +145,14 @@ def simulate(
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
-            told.append(_Progress(lambda now: progress(now.since_zero, ledger.worst_share)))
+            told.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
             start_up = clock.perf_counter() - began
             one_by_one = MacroSteps(coupling, ledger, shortening)
-            steps = Stretches(one_by_one, judge, recorder, told)
-            wall_time, compiling = _loop(steps, told, now, interrupted)
+            stretches = Stretches(one_by_one, judge, recorder, told)
+            wall_time, compiling = _loop(stretches, told, now, interrupted)
     return replace(
         _seen(now, ledger, judge, shortening),
+        origin=times.origin,
         wall_time=wall_time,
         start_up=start_up + compiling,
         divided_in_impacts=one_by_one.impacts.divided,
@@ -151,8 +166,9 @@ def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> 
     """Where the run ended, what the ledger heard, and what came of it."""
     return Outcome(
         steps=now.done,
-        zero=now.zero,
+        start=now.start,
         end=now.time,
+        zero=now.zero,
         ended=now.ended or Ended.COMPLETED,
         reason=now.reason,
         shorter_steps=shortening.times(now),
@@ -184,39 +200,11 @@ def refuse_endless(duration: float, step: float) -> None:
         )
 
 
-class Values(Protocol):
-    """What knows the values of variables."""
-
-    def value(self, name: str) -> float:
-        """Value of COMPONENT.VARIABLE."""
-        ...
-
-    def __contains__(self, name: str) -> bool:
-        """Whether there is COMPONENT.VARIABLE."""
-        ...
-
-
-def zero_of(scene: Scene, system: Values) -> float:
-    """The scene's zero on the simulation's clock (s); 0 where it has none, or one that went in a swap."""
-    if scene.zero is None or _swapped_away(scene, scene.zero, system):
-        return 0.0
-    zero = system.value(scene.zero)
-    if not math.isfinite(zero):
-        raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
-    return zero
-
-
 def energy_scale(scene: Scene, system: Values) -> float:
     """Product of the scene's energy_scale variables (J); 0 where it names none, or one went in a swap."""
-    if any(_swapped_away(scene, name, system) for name in scene.energy_scale):
+    if any(swapped_away(scene, name, system) for name in scene.energy_scale):
         return 0.0
     return math.prod(system.value(name) for name in scene.energy_scale) if scene.energy_scale else 0.0
-
-
-def _swapped_away(scene: Scene, name: str, system: Values) -> bool:
-    """Whether COMPONENT.VARIABLE is not there because another FMU was put in for that component."""
-    spec = scene.components.get(name.partition(".")[0])
-    return spec is not None and bool(spec.instead_of) and name not in system
 
 
 def fall_energy(system: System) -> float:
@@ -314,7 +302,7 @@ def _recording(
         return
     recorder = Recorder(path, scene, now.system, now.steps + 1, begin)
     try:
-        recorder.append(-now.zero)
+        recorder.append(-(now.zero - now.start))  # the other way round 0 s would have another sign
         yield recorder
     finally:
         problem = recorder.close()

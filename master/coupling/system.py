@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import scaled
-from touchdown.master.components.component import Component
+from touchdown.master.components.component import EXACT, Component, Kind
 from touchdown.master.components.contract import REACH
 from touchdown.master.coupling.bonds.bond import Bond
 from touchdown.master.coupling.connections import Attachment, Connection, hit_together, split, used_modes
@@ -29,6 +29,7 @@ class System:
     every: dict[str, int]  # macro steps of the run that each component takes in one
     remarks: Sequence[str] = ()  # what is to be said of it before it runs, a line each
     bonds: Sequence[Bond] = ()
+    start: float = 0.0  # s, where its components begin
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
@@ -80,12 +81,14 @@ class System:
     def initialise(self) -> None:
         """Bring all components through initialisation, exchanging until every input has its value."""
         for component in self.components.values():
-            component.enter(0.0)
+            component.enter(self.start)
         bodies_first = list(reversed(self.order))
+        silent = set(bodies_first)  # what has not told its outputs yet
         for _ in range(2):  # bodies to bearings, and loads back
             for name in bodies_first:
-                self._feed_numbers(name)
+                self._feed_numbers(name, silent)
                 self.components[name].pull()
+                silent.discard(name)
         self._feed_constants()
         self.connections = used_modes(self.connections, self.components)
         self._lay_out()
@@ -96,16 +99,29 @@ class System:
             self.components[name].exit()
             self.components[name].pull()
 
-    def _feed_numbers(self, name: str) -> None:
-        """`feed`, but of numbers alone.
+    def _feed_numbers(self, name: str, silent: Container[str] = ()) -> None:
+        """`feed`, but of numbers alone; inputs that `silent` components feed keep their start values.
 
         A component that will refuse its parameters gives none until it exits from initialisation;
         those that are handed them would refuse, and be blamed, first.
         """
         self.take_inputs(name)
+        self._keep_starts(name, silent)
         component = self.components[name]
         if np.isfinite(component.inputs).all():
             component.push()
+
+    def _keep_starts(self, name: str, silent: Container[str]) -> None:
+        """Put start values into a component's inputs where what feeds them is `silent` as yet.
+
+        Others' components may not stand a pressure of 0, or a choice with that number.
+        """
+        component = self.components[name]
+        waiting = {c.input for c in self._live() if c.target == name and c.source in silent}
+        for place, given in enumerate(self.intakes[name].inputs):
+            start = component.variable(given).start
+            if given in waiting and start is not None:
+                component.inputs[place] = start
 
     def feed(self, name: str) -> None:
         """Hand a component its inputs from the signals."""
@@ -134,9 +150,9 @@ class System:
             for source in dict.fromkeys(c.source for c in mine):
                 theirs = [c for c in mine if c.source == source]
                 outputs = self.components[source].read([c.output for c in theirs])
-                values |= {
-                    c.input: scaled(value, c.scale) for c, value in zip(theirs, outputs, strict=True)
-                }
+                for c, value in zip(theirs, outputs, strict=True):
+                    _refuse_rounded(self.components[source], c.output, value)
+                    values[c.input] = scaled(value, c.scale)
             self.components[target].set(values)
 
     def _live(self) -> list[Connection]:
@@ -151,6 +167,18 @@ class System:
         watched = [(a.bearing, REACH) for a in self.hit_together]
         layout = lay_out(self.components, self._live(), attachments, watched)
         self.signals, self.position, self.intakes = layout.signals, layout.position, layout.intakes
+
+
+def _refuse_rounded(source: Component, output: str, value: float) -> None:
+    """Raise TouchdownError where the `value` of a whole number may not be all of its digits.
+
+    2^53 itself is refused, too: the next one is read as the same.
+    """
+    if source.variable(output).kind is not Kind.REAL and abs(value) >= EXACT:
+        raise TouchdownError(
+            f"component {source.name}: {output} = {value:.0f} cannot be handed over; constant whole "
+            "numbers can below 2^53"
+        )
 
 
 def _in_order(names: Sequence[str], before: Sequence[tuple[str, str]]) -> list[str]:

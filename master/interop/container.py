@@ -21,8 +21,9 @@ from touchdown.fmus.presentation.xml import document
 from touchdown.fmus.version import RELEASED
 from touchdown.master.common.archives import write_archive
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import NUMBERS
-from touchdown.master.coupling.simulation import opened, zero_of
+from touchdown.master.components.component import READABLE
+from touchdown.master.coupling.loop.span import named_zero, span
+from touchdown.master.coupling.simulation import opened
 from touchdown.master.coupling.system import System
 from touchdown.master.interop.packing import AS_IN_SCENE, Making, changes, packed_fmus, start_values
 from touchdown.master.scene.scene import Scene
@@ -46,13 +47,13 @@ def write_container(scene: Scene, path: Path, making: Making = AS_IN_SCENE) -> P
         tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
     ):
         _refuse_what_it_cannot(system)
-        zero = zero_of(scene, system)
+        times = span(scene.run, named_zero(scene, system))
         system.initialise()
         fmus = packed_fmus(scene, system, making, Path(folder) / "inside")
         about = amended(scene.title, changes(scene, system))
         try:
             container = toolbox.FMUContainer(re.sub(r"\W", "_", path.stem, flags=re.ASCII), folder)
-            container.start_time, container.stop_time = 0.0, zero + scene.run.duration
+            container.start_time, container.stop_time = times.start, times.end
             _fill(container, system, fmus, SEQUENTIAL[sequence])
             container.make_fmu("made.fmu", scene.run.macro_step, sequential=SEQUENTIAL[sequence])
         except toolbox.FMUContainerError as error:
@@ -106,7 +107,7 @@ def _fill(container: Any, system: System, fmus: Mapping[str, Path], sequential: 
         for variable in component.variables.values():
             given = variable.causality is Causality.OUTPUT
             given = given or (variable.causality is Causality.LOCAL and "[" not in variable.name)
-            if given and variable.kind in NUMBERS and (name, variable.name) not in linked:
+            if given and variable.kind in READABLE and (name, variable.name) not in linked:
                 own = component.own_name(variable.name)
                 container.add_output(f"{name}.fmu", own, f"{name}.{own}")
 

@@ -38,7 +38,7 @@ AS_IN_SCENE = Making()
 def start_values(system: System, name: str) -> dict[str, float]:
     """What a component of an initialised system starts from (SI, by the scene's names), integers as such.
 
-    Its settings, and what its connected inputs hold at t = 0.
+    Its settings, and what its connected inputs hold at the start.
     """
     component = system.components[name]
     starts: dict[str, float] = {

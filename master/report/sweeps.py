@@ -91,7 +91,7 @@ def _length(sweep: Sweep) -> str:
     firsts = [(m, first) for m in done if (first := first_contact(m.summary)) is not None]
     if not firsts:
         return f"{said}, and none touches."
-    after = [_duration(sweep, member) - first for member, first in firsts]
+    after = [_origin(sweep, member) + _duration(sweep, member) - first for member, first in firsts]
     some = "" if len(firsts) == len(done) else f" ({len(done) - len(firsts)} touch nothing)"
     return (
         f"{said}, {_reach(after, 's')} of it after the first contact{some}: what comes later is not told."
@@ -100,11 +100,21 @@ def _length(sweep: Sweep) -> str:
 
 def _duration(sweep: Sweep, member: Member) -> float:
     """Of a drop (s), from its shutdown on."""
+    return _of_run(sweep, member, "duration", 1.0)
+
+
+def _origin(sweep: Sweep, member: Member) -> float:
+    """What its duration counts from (s, as the time of its first contact): 0 where a zero is named."""
+    return 0.0 if sweep.definition.scene.get("zero") else _of_run(sweep, member, "start_time", 0.0)
+
+
+def _of_run(sweep: Sweep, member: Member, key: str, default: float) -> float:
+    """A number of [run] that a drop was run with; `default` where an older sweep does not say."""
     row = sweep.definition.values[member.number - 1]
     for column, value in zip(sweep.definition.columns, row, strict=True):
-        if "run.duration" in column.settings and (varied := number(value)) is not None:
+        if f"run.{key}" in column.settings and (varied := number(value)) is not None:
             return varied
-    return float(sweep.definition.scene["run"]["duration"])
+    return float(sweep.definition.scene["run"].get(key, default))
 
 
 def _reach(values: Sequence[float], unit: str) -> str:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import NUMBERS, Component, Variable
+from touchdown.master.components.component import READABLE, Component, Variable
 from touchdown.master.components.contract import MOUNTED
 from touchdown.master.coupling.connections import Attachment, Connection, full
 from touchdown.master.coupling.system import System
@@ -63,13 +63,13 @@ class Readable(Protocol):
 
 @dataclass(frozen=True)
 class LastValues:
-    """What a component gave in the end: the values of all its numbers, or of none where it refused."""
+    """What a component gave in the end: the values of all its numbers and Booleans, or of none."""
 
     variables: Mapping[str, Variable]  # those that have a value
     values: Mapping[str, float]
 
     def read(self, names: Sequence[str]) -> list[float]:
-        """Values of real and integer variables, integers as such."""
+        """Values of real, integer and Boolean variables, the last two as whole numbers."""
         return [self.values[name] for name in names]
 
 
@@ -110,7 +110,7 @@ def ending(system: System) -> Ending:
 
 
 def _last_values(component: Component) -> LastValues:
-    numbers = {name: v for name, v in component.variables.items() if v.kind in NUMBERS}
+    numbers = {name: v for name, v in component.variables.items() if v.kind in READABLE}
     try:
         return LastValues(numbers, dict(zip(numbers, component.read(list(numbers)), strict=True)))
     except TouchdownError:  # one that failed may answer nothing more

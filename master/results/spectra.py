@@ -21,12 +21,18 @@ def interval(time: np.ndarray) -> float:
     return float(np.median(np.diff(time)))
 
 
+def landed(time: np.ndarray) -> float:
+    """When the landing has died down (s): BEGIN from the shutdown, or from a start after that."""
+    return BEGIN + max(0.0, float(time[0]))
+
+
 def windows(time: np.ndarray) -> list[float]:
-    """Starts (s) of the windows of LENGTH, one after the other from BEGIN, that end within `time`."""
+    """Starts (s) of the windows of LENGTH, one after the other from `landed`, that end within `time`."""
     if len(time) < 2:
         return []
-    whole = (float(time[-1]) + SLACK * interval(time) - BEGIN) / LENGTH
-    return [BEGIN + k * LENGTH for k in range(int(whole))] if whole >= 1.0 else []
+    begin = landed(time)
+    whole = (float(time[-1]) + SLACK * interval(time) - begin) / LENGTH
+    return [begin + k * LENGTH for k in range(int(whole))] if whole >= 1.0 else []
 
 
 def samples(time: np.ndarray, length: float) -> int:

@@ -153,7 +153,8 @@ def _orbit_figures(
         frequency = dominant_frequency(time[settled], x[settled])
     loaded = None
     if touched != -1.0 and f"{a.bearing}.balls.loaded" in recording:
-        last = time >= outcome.end - outcome.zero - LAST_PART * (outcome.end - outcome.zero)
+        run = outcome.end - max(outcome.zero, outcome.start)
+        last = time >= outcome.end - outcome.zero - LAST_PART * run
         if last.any():  # a full disk ends a recording before its run
             loaded = float(np.mean(recording[f"{a.bearing}.balls.loaded"][last]))
     figures: dict[str, object] = {"largest_displacement_um": fall, "pendulum_frequency_Hz": frequency}
@@ -333,7 +334,7 @@ def _run_figures(
     balance = None
     if total is not None and scale > 0.0:
         balance = float(np.max(np.abs(total - total[0])) / scale)
-    simulated = outcome.end
+    simulated = outcome.simulated
     return {
         "energy_residual_relative": outcome.residual if scale > 0.0 else None,
         "energy_residual_of_turnover": outcome.share,

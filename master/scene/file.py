@@ -7,13 +7,15 @@ energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product,
 attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
 sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
 connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target; where the target is
-                                               # to be scaled, then factor and offset
+                                               # to be scaled, then factor and offset; also integers,
+                                               # Booleans and choices, each to its own kind, not scaled
 bond = [["s1.f", "s2.f"], ["s2.x", "s1.x2"]]   # a force and the motion it acts along: wires of a bond, or a
                                                # list of bonds; {force = [...], position = [...],
                                                # velocity = [...]} where units do not tell which is which
 
 [run]
-duration = 5.0        # s
+duration = 5.0        # s, from zero, or from the start of a scene without one
+start_time = 0.0      # s, where the simulation's clock begins (default: 0); a zero is a time on that clock
 macro_step = 2e-5     # s
 
 [components.rotor]

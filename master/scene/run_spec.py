@@ -15,7 +15,7 @@ CALL_TIMEOUT = 60.0  # s
 AUTO = "auto"  # as the scheme has it
 BONDS = (AUTO, "smooth", "contact", "hold")
 UNITS = {  # of the keys of [run] that are numbers
-    **dict.fromkeys(("duration", "macro_step", "call_timeout", "impact_step"), "s"),
+    **dict.fromkeys(("duration", "start_time", "macro_step", "call_timeout", "impact_step"), "s"),
     "tolerance": "m",
     **dict.fromkeys(("record_every", "warn_residual", "stop_residual", "whirl_halvings"), "1"),
 }
@@ -25,7 +25,8 @@ UNITS = {  # of the keys of [run] that are numbers
 class RunSpec:
     """How to run."""
 
-    duration: float = 1.0  # s, from the scene's zero
+    duration: float = 1.0  # s, from the scene's zero, or from the start where it has none
+    start_time: float = 0.0  # s, on the simulation's clock: where all components begin
     macro_step: float = 2e-5  # s
     scheme: Scheme = SCHEMES[DEFAULT]
     tolerance: float = 1e-10  # m, of the interface per macro step, for schemes that repeat or divide it
@@ -95,6 +96,7 @@ READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from wha
     "record_also": beginnings,
     "record_arrays": switch,
     "duration": _above_zero("s"),
+    "start_time": _time,
     "macro_step": _above_zero("s"),
     "tolerance": _above_zero("m"),
     "record_every": _steps_above_zero,

@@ -59,7 +59,7 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps
     notes how long (s) the kick will be that follows: half of this step and half of the next.
     fastest(m) is the largest angular frequency at the last evaluation (rad/s); lately: what it was when the
     span before this one ended. work: `dopri.scratch`, of which four rows (n,) are used; the first holds rhs
-    at the start. Returns (status, number of evaluations of rhs, `lately` of the span to come).
+    at the start, and at the end. Returns (status, number of evaluations of rhs, `lately` for what follows).
     """
     t = 0.0
     status = OK
@@ -92,10 +92,11 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps
         for i in range(n):
             q[i] = half[i] + 0.5 * h * f_new[i]
         drift(q, trial, half, 0.0, m)
-        for i in range(n):
-            f[i] = f_new[i]
+        f, f_new = f_new, f
         observe(t, q, m)
         h, frequency = following, of_late(fastest(m), frequency)
         if frequency * following > OVERRUN * steps.resolution:  # a hit found only now needs a shorter one
             h = min(following, step_length(frequency, span - t, steps))
+    for i in range(n):
+        work[0, i] = f[i]
     return status, taken, frequency

@@ -81,7 +81,7 @@ def call_advance(_: Any, address: Any, words: Any, work: Any, time: Any, step: A
 
 @intrinsic
 def call_exchange(_: Any, address: Any, component: Any, references: Any, count: Any, values: Any) -> Any:
-    """The fmi2SetReal, fmi2GetReal or fmi2GetInteger at an address, of addresses and a count: a status."""
+    """The fmi2SetReal, or a function that gets, at an address, of addresses and a count: a status."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         status, word = ir.IntType(32), context.get_value_type(types.intp)

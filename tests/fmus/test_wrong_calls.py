@@ -141,7 +141,7 @@ for name, (prepared, call) in WRONG.items():
     slave.fmu.reset()
     again = slave.start().run(0, 1) != []
     slave.free()
-    found[name] = [answer, said, again]
+    found[name] = [answer, said, again, None in slave.categories]
 print(json.dumps(found))
 """
 
@@ -194,10 +194,11 @@ def test_a_wrong_call_is_answered_by_an_error(folders: tuple[Path, Path], alone:
     """With its reason; and the instance can be reset, runs and is freed."""
     found = answered(alone(CALLS, *folders))
     assert len(found) > 30
-    assert {name: status for name, (status, _, _) in found.items() if status != ERROR} == {}
-    assert [name for name, (_, said, _) in found.items() if not said] == []
+    assert {name: status for name, (status, _, _, _) in found.items() if status != ERROR} == {}
+    assert [name for name, (_, said, _, _) in found.items() if not said] == []
     assert {name: found[name][1] for name, part in REASONS.items() if part not in found[name][1]} == {}
-    assert [name for name, (_, _, again) in found.items() if not again] == []
+    assert [name for name, (_, _, again, _) in found.items() if not again] == []
+    assert [name for name, (_, _, _, uncategorised) in found.items() if uncategorised] == []
 
 
 def test_only_a_step_that_is_too_long_is_discarded(folders: tuple[Path, Path], alone: Alone):

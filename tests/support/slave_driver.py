@@ -44,6 +44,7 @@ class Slave:
         description = description_in(str(folder))
         self.variables = {v.name: v for v in description.modelVariables}
         self.messages: list[str] = []
+        self.categories: set[bytes | None] = set()  # of the messages
         self._callbacks = self._make_callbacks()
         self.fmu = FMU2Slave(
             guid=description.guid,
@@ -54,8 +55,9 @@ class Slave:
         self.fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
-        def log(_: Any, __: bytes, status: int, ___: bytes, message: bytes) -> None:
+        def log(_: Any, __: bytes, status: int, category: bytes | None, message: bytes) -> None:
             self.messages.append(message.decode())
+            self.categories.add(category)
 
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = fmi2CallbackLoggerTYPE(log)

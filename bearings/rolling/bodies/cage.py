@@ -78,12 +78,13 @@ def _kick(b, place, rx, ry, m):
 
 @kernel
 def pocket_contacts(q, dq, m):
-    """All balls against their pockets; adds to the balls' derivatives in dq, sets the cage's."""
+    """All balls against their pockets; adds to the balls' accelerations, sets the cage's part of dq."""
     p, d = m.p, m.d
     rb, clearance = d.ball_radius, p.cage.clearance
     i = first_component(m)
     c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
     fx, fy, moment = 0.0, 0.0, 0.0
+    m.s.side.touching = 0
     for b in range(p.balls.count):
         rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
         ball, pocket = ball_motion(q, b, m), _pocket(q, i, rx, ry)
@@ -97,7 +98,8 @@ def pocket_contacts(q, dq, m):
         kick = _kick(b, at, rx, ry, m)
         push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, kick)
         note(m.s.side, b, push_out, at, d.cage_contact)
-        push(dq, b, push_out.fx, push_out.fy, push_out.first_moment, m)
+        m.s.side.touching += 1
+        push(b, push_out.fx, push_out.fy, push_out.first_moment, m)
         fx -= push_out.fx
         fy -= push_out.fy
         moment += push_out.second_moment - rx * push_out.fy + ry * push_out.fx

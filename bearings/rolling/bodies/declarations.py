@@ -34,6 +34,7 @@ from touchdown.bearings.rolling.micro_step import (
     refined,
     step_in_hit,
 )
+from touchdown.bearings.rolling.rubbing import FrictionLines
 from touchdown.bearings.rolling.sides.contact import SideContacts
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array, group, groups, integer, real
@@ -113,9 +114,20 @@ class BallBodiesDerived(RollingDerived):
 
 
 @dataclass(frozen=True)
+class BallRates:
+    """Accelerations of all balls, on their way through an evaluation."""
+
+    x: tuple = array(MOST_BALLS)  # m/s2
+    y: tuple = array(MOST_BALLS)
+    spin: tuple = array(MOST_BALLS)  # rad/s2
+
+
+@dataclass(frozen=True)
 class BallBodiesMemory(RollingMemory, KickMemory):
     """Memory between evaluations and steps."""
 
+    lines: FrictionLines = group(FrictionLines)
+    faster: BallRates = group(BallRates)
     inner: Contacts = group(Contacts)
     outer: Contacts = group(Contacts)
     side: SideContacts = group(SideContacts)

@@ -11,7 +11,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.peaks import Largest, watch_peaks
 from touchdown.bearings.rolling.balls import largest, watch_balls
 from touchdown.bearings.rolling.bodies.state import ball_motion
-from touchdown.bearings.rolling.sides.contact import stored
+from touchdown.bearings.rolling.sides.contact import highest, stored
 from touchdown.modelkit.kernel import kernel
 
 
@@ -26,7 +26,7 @@ def watch(time, m, sides):
     outer = largest(s.outer.normal, s.outer.indentation, count, rows)
     watch_peaks(time, inner, o.inner, s.inner_peaks)
     watch_peaks(time, outer, o.outer, s.outer_peaks)
-    watch_peaks(time, largest(s.side.highest, s.side.indentation, count, rows), sides, s.side_peaks)
+    watch_peaks(time, highest(s.side, count, rows), sides, s.side_peaks)
     force, contact = inner.force, inner.loaded
     if outer.force > force:
         force, contact = outer.force, outer.loaded + count

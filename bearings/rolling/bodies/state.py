@@ -11,7 +11,7 @@ import math
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.profile import active
-from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling import ball_state, ring
 from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.balls.geometry import inner_radius
 from touchdown.bearings.rolling.bodies.race import Balls
@@ -37,12 +37,11 @@ def balls_of(q, m):
 
 
 @kernel
-def push(dq, b, fx, fy, moment, m):
-    """Add a force (N) and a moment (N m) on ball `b` to its accelerations in dq."""
-    i, n = BALLS + b, m.p.balls.count
-    dq[i + VX * n] += fx / m.d.mass
-    dq[i + VY * n] += fy / m.d.mass
-    dq[i + SPIN * n] += moment / m.d.inertia
+def push(b, fx, fy, moment, m):
+    """Add a force (N) and a moment (N m) on ball `b` to its accelerations in m.s.faster."""
+    m.s.faster.x[b] += fx / m.d.mass
+    m.s.faster.y[b] += fy / m.d.mass
+    m.s.faster.spin[b] += moment / m.d.inertia
 
 
 @kernel
@@ -64,10 +63,8 @@ def drift(trial, q, mid, h, m):
     seat.drift(trial, q, mid, h, m)
     ring.drift(trial, q, mid, h)
     n = m.p.balls.count
-    for i in range(BALLS, BALLS + 2 * n):  # x and y of all balls
-        trial[i] = q[i] + h * mid[i + 2 * n]
-    for i in range(BALLS + ANGLE * n, BALLS + SPIN * n):
-        trial[i] = q[i] + h * mid[i + n]
+    ball_state.drift(trial, q, mid, h, BALLS + X * n, BALLS + VX * n, 2 * n)  # and y, which follows
+    ball_state.drift(trial, q, mid, h, BALLS + ANGLE * n, BALLS + SPIN * n, n)
     for i in range(BALLS + SIZE * n, m.s.seat.inside, SIZE):  # the cage
         trial[i + X] = q[i + X] + h * mid[i + VX]
         trial[i + Y] = q[i + Y] + h * mid[i + VY]

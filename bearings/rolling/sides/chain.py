@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from touchdown.bearings.contact.laws import elastic_and_damping
 from touchdown.bearings.contact.pair import OUTSIDE, Place, Squeeze, kick_of, rub, slip
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.bearings.rolling.sides.contact import note, note_apart
+from touchdown.bearings.rolling.sides.contact import all_apart, note, note_apart
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array
 
@@ -69,11 +69,15 @@ def link(b, count, first, second, rates, place, law, answers, m):
     chain.free[b] = (6.0 + z) * (elastic + damping * rate) + (3.0 + z) * damping * kick.rate
     c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
     c.indentation[b], c.sliding[b], c.rate[b] = place.indentation, sliding, rate
+    c.touching += 1
 
 
 @kernel
 def share(contacts, chain, count):
     """Set the normal forces (N) of all contacts, those of balls apart to zero."""
+    if contacts.touching == 0:  # of most kicks
+        all_apart(contacts, count)
+        return
     gap = _first_gap(contacts, count)
     # A full circle is cut at ball 0, where the forces of the kick before count.
     held, gain = (contacts.normal[count - 1] if gap < 0 else 0.0), 0.0

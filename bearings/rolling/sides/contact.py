@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from touchdown.bearings.contact.pair import Place, slip
-from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.contact.peaks import Largest
+from touchdown.bearings.rolling.balls import MOST_BALLS, largest
 from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import array
+from touchdown.modelkit.variables import array, integer
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class SideContacts:
     sliding: tuple = array(MOST_BALLS)  # m/s, before the kick
     rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
     damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
+    touching: int = integer(0, "how many of them touch")
 
 
 @kernel
@@ -62,6 +64,21 @@ def note_apart(contacts, b):
     """Remember that ball `b` has no contact (0 N)."""
     contacts.normal[b], contacts.highest[b], contacts.tangential[b] = 0.0, 0.0, 0.0
     contacts.indentation[b], contacts.stiffness[b] = -1.0, 0.0
+
+
+@kernel
+def all_apart(contacts, count):
+    """`note_apart` of all `count` balls."""
+    for b in range(count):
+        note_apart(contacts, b)
+
+
+@kernel
+def highest(contacts, count, rows):
+    """`Largest` of the contacts of `count` balls in the kick (m; N on one of the balls in `rows`)."""
+    if contacts.touching == 0:
+        return Largest(0.0, 0.0, 0, 0)
+    return largest(contacts.highest, contacts.indentation, count, rows)
 
 
 @kernel

@@ -32,7 +32,8 @@ class Shortening(Observer):
         self.ledger, self._step = ledger, run.macro_step
         self._taken: dict[int, int] = {}  # divided macro steps, by halvings
         self._told = 0  # the last macro step it knows of
-        self._since = self._turned = self._made = 0.0  # the window's begin: s, J, J
+        self._start = self._since = system.start  # s, the run's begin, and the window's
+        self._turned = self._made = 0.0  # J, at the window's begin
 
     def stepped(self, now: Moment) -> None:
         if self._most == 0:
@@ -45,8 +46,8 @@ class Shortening(Observer):
         """At the end of the window."""
         if self._most == 0:
             return now.steps
-        done = max(now.done + 1, int((self._since + WINDOW) / self._step) - 1)
-        while done * self._step - self._since < WINDOW:
+        done = max(now.done + 1, int((self._since - self._start + WINDOW) / self._step) - 1)
+        while self._start + done * self._step - self._since < WINDOW:
             done += 1
         return done
 

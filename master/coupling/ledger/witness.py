@@ -78,7 +78,7 @@ class Witness:
         self._accounts: Sequence[SeatAccount] = accounts  # none once it hears no more
         self._bearing = accounts[0].attachment.bearing
         self._component = system.components[self._bearing].second()
-        self._time = 0.0  # s
+        self._time = system.start  # s
         try:
             self._begin()
         except TouchdownError:
@@ -98,7 +98,7 @@ class Witness:
         forces = [a.attachment.bearing_end.own(force) for a in self._accounts for force in FORCE]
         self._forces = np.zeros(len(forces))
         component.bind(self._inputs, self._forces, forces)
-        component.enter(0.0)
+        component.enter(system.start)
         component.inputs[:] = [_value(system, c) for c in told]
         component.push()
         component.exit()

@@ -25,7 +25,7 @@ class MacroSteps:
 
     def take(self, now: Moment) -> None:
         """Take one, and move on to its end. Raises TouchdownError where a component cannot go on."""
-        number, begin = now.done, now.done * self.length
+        number, begin = now.done, now.start + now.done * self.length
         parts = max(self.parts, self.impacts.parts_of(begin, self.length))
         part = self.length / parts
         for k in range(parts):

@@ -117,7 +117,7 @@ class Stretches:
         """The plan of a stretch from now to the end of macro step `until`."""
         steps = self._steps
         self._plan[0] = (
-            self._at_once, steps.length, steps.parts, steps.impacts.parts, 0, now.done, until, 0.0,
-            steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero, 0, 0, 0,
+            self._at_once, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done, until,
+            0.0, steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero, 0, 0, 0,
         )  # fmt: skip
         return self._plan[0]

@@ -7,9 +7,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from touchdown.master.components.component import ByFunctions, Component, InMemory, Kind
+from touchdown.master.components.component import WHOLE, ByFunctions, Component, InMemory, Kind, Variable
 from touchdown.master.coupling.layout import Scaling
-from touchdown.master.coupling.loop.kernels.tables import COLUMN, INT, LONG, PART, READ, REAL, TURN
+from touchdown.master.coupling.loop.kernels.tables import (
+    COLUMN,
+    INT,
+    LONG,
+    PART,
+    READ,
+    REAL,
+    TRUTH,
+    TURN,
+)
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel, Turn
 from touchdown.master.coupling.steppers.rates import Part
@@ -139,12 +148,11 @@ def _add_columns(made: Tables, entries: Sequence[Entry], recorder: Recorder) -> 
             continue
         turn = by_name[name]
         entry, chosen = entries[turn], [made.components[turn].variable(v) for v in variables]
-        references = [(v.reference, v.kind is Kind.REAL) for v in chosen]
         if isinstance(entry, InMemory):
             words = _address(entry.words)
-            columns += [(words + 8 * at, REAL if real else LONG) for at, real in references]
+            columns += [(words + 8 * v.reference, REAL if v.kind is Kind.REAL else LONG) for v in chosen]
         else:
-            columns += _fetched(made, reads, turn, entry, references)
+            columns += _fetched(made, reads, turn, entry, chosen)
     made.reads = np.array(reads, READ)
     made.columns = np.array(columns, COLUMN)
 
@@ -154,17 +162,18 @@ def _fetched(
     reads: list[tuple[int, ...]],
     turn: int,
     entry: ByFunctions,
-    references: Sequence[tuple[int, bool]],
+    chosen: Sequence[Variable],
 ) -> list[tuple[int, int]]:
     """Columns of values that are fetched by calls, which are added to `reads`."""
-    columns = [(0, 0)] * len(references)
+    columns = [(0, 0)] * len(chosen)
     for call, wanted, dtype, kind in (
-        (entry.get_real, True, "f8", REAL),
-        (entry.get_integer, False, "i4", INT),
+        (entry.get_real, (Kind.REAL,), "f8", REAL),
+        (entry.get_integer, WHOLE, "i4", INT),
+        (entry.get_boolean, (Kind.BOOLEAN,), "i4", TRUTH),
     ):
-        at = [i for i, (_, real) in enumerate(references) if real is wanted]
+        at = [i for i, v in enumerate(chosen) if v.kind in wanted]
         if at:
-            of, into = np.array([references[i][0] for i in at], np.uint32), np.zeros(len(at), dtype)
+            of, into = np.array([chosen[i].reference for i in at], np.uint32), np.zeros(len(at), dtype)
             made.kept += [of, into]
             reads.append((turn, call, entry.component, _address(of), len(at), _address(into)))
             for k, i in enumerate(at):

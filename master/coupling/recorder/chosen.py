@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
 from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.components.component import NUMBERS, REPORTED, Variable
+from touchdown.master.components.component import READABLE, REPORTED, Variable
 from touchdown.master.components.contract import reported
 from touchdown.master.coupling.connections import full
 from touchdown.master.coupling.recorder.table import END, TIME
@@ -32,7 +32,7 @@ def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
     connected = {c.source_name for c in system.connections}
     found: dict[str, Chosen] = {}
     for name, component in components.items():
-        given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in NUMBERS]
+        given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in READABLE]
         chosen = [v.name for v in given if _chosen(full(name, v.name), v, run, connected)]
         known = set(chosen)
         found[name] = Chosen(chosen, [v.name for v in given if v.name not in known])

@@ -12,6 +12,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import Unit
 from touchdown.master.components.component import WHOLE, Component, Kind
 from touchdown.master.coupling.connections import Connection
+from touchdown.master.coupling.loop.span import Span
 from touchdown.master.coupling.system import System
 from touchdown.master.interop.packing import changes, start_values
 from touchdown.master.interop.ssp.annotations import write_hint, write_master, write_scene, write_steps
@@ -32,7 +33,7 @@ class Content:
     system: System
     connected: Sequence[Connection]
     sources: Mapping[str, str]  # by component: its FMU's place in the package
-    zero: float  # s
+    times: Span
 
     def there(self, name: str) -> str:
         """What COMPONENT, or COMPONENT.VARIABLE, is called in the package."""
@@ -89,7 +90,7 @@ def structure(content: Content) -> Element:
     declared = system.bonds[: len(scene.bond)]  # they come before those that units tell
     write_scene(whole, scene, declared, content.there)
     _unit_definitions(root, units)
-    times = {"startTime": "0.0", "stopTime": repr(content.zero + scene.run.duration)}
+    times = {"startTime": repr(content.times.start), "stopTime": repr(content.times.end)}
     write_steps(SubElement(root, "ssd:DefaultExperiment", times), scene.run.macro_step)
     return root
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import Scale, Unit, scaled, then
-from touchdown.master.components.component import Variable
+from touchdown.master.components.component import Kind, Variable
 from touchdown.master.components.interface import interface
 from touchdown.master.components.unpack import Format, unpack
 from touchdown.master.coupling.simulation import MOST_STEPS
@@ -121,8 +121,10 @@ def _with_run(scene: Scene, package: Package) -> Scene:
     settings: dict[str, object] = {f"run.{k}": said.scene[k] for k in RUN_KEYS if k in said.scene}
     if said.macro_step is not None:
         settings["run.macro_step"] = said.macro_step
+    if said.start:
+        settings["run.start_time"] = said.start
     if said.stop is not None:
-        zero = 0.0
+        zero = said.start
         if scene.zero:
             head, _, tail = scene.zero.partition(".")
             if head not in sides:
@@ -168,15 +170,19 @@ def _wire(package: Package, link: Link) -> Wire:
     """A connection, with the conversions between units on its way, and its transformations."""
     ends: list[_Named] = []
     names: list[str] = []
+    real = True  # what is not has no unit
     where = f"{package.where}: {link.title}"
     for part, name in ((link.start, link.output), (link.end, link.input)):
         side, connectors = package.sides[part], package.flat.parts[part].connectors
         variable = side.variable(name, where)
         declared = connectors[name].unit if name in connectors else None
         ends.append(_unit(declared or variable.unit, (package.said.units, side.units)))
+        real = real and variable.kind is Kind.REAL
         names.append(f"{part}.{_here(package.said, part, name)}")
+    if not real:
+        ends = [(None, None), (None, None)]
     scale = _along(ends[0], link.legs, ends[1], package, where)
-    if not all(leg.convert for leg in link.legs):
+    if real and not all(leg.convert for leg in link.legs):
         scale = scale or (1.0, 0.0)  # values stay as they are, whatever the units
     return Wire(names[0], names[1], scale)
 

@@ -72,6 +72,7 @@ class Structure:
 
     root: Node
     units: Mapping[str, Unit]
+    start: float  # s
     stop: float | None  # s
     macro_step: float | None  # s
     scene: Mapping[str, str]  # what a package of this project says beyond the structure
@@ -89,7 +90,7 @@ def read(folder: Path, where: str) -> Structure:
     system = xml.child(root, "ssd:System")
     if system is None:
         raise TouchdownError(f"{where} has no System")
-    stop, macro_step = _experiment(root, where)
+    start, stop, macro_step = _experiment(root, where)
     note = _annotation(system, SCENE_ANNOTATION, "touchdown:Scene")
     if note is None:  # older packages have it at the root, others' have none
         note = _annotation(root, SCENE_ANNOTATION, "touchdown:Scene")
@@ -98,6 +99,7 @@ def read(folder: Path, where: str) -> Structure:
     return Structure(
         root=_node(system, folder, where, root.get("name") or folder.name),
         units=xml.unit_definitions(root, "ssd:Units", where),
+        start=start,
         stop=stop,
         macro_step=macro_step or _masters_step(system, where),
         scene=dict(note.attrib),
@@ -211,17 +213,19 @@ def titled(end: End) -> str:
 # -- steps -------------------------------------------------------------------------------------------------
 
 
-def _experiment(root: Element, where: str) -> tuple[float | None, float | None]:
-    """Stop time and macro step (s), as far as they are given."""
+def _experiment(root: Element, where: str) -> tuple[float, float | None, float | None]:
+    """Start time, stop time and macro step (s), the last two as far as they are given."""
     experiment = xml.child(root, "ssd:DefaultExperiment")
     if experiment is None:
-        return None, None
+        return 0.0, None, None
     start = xml.number(experiment, "startTime", where, 0.0)
-    if start != 0.0:
-        raise TouchdownError(f"{where} starts at t = {start:g} s; only a start at 0 is supported")
+    if start < 0.0:
+        raise TouchdownError(f"{where} starts at t = {start:g} s; a start below 0 s is not supported")
     stop = xml.number(experiment, "stopTime", where) if experiment.get("stopTime") else None
+    if stop is not None and stop <= start:
+        raise TouchdownError(f"{where} stops at t = {stop:g} s, and starts at t = {start:g} s")
     step = _annotation(experiment, STEP_ANNOTATION, "osp:Algorithm/osp:FixedStepAlgorithm")
-    return stop, None if step is None else xml.number(step, "baseStepSize", where)
+    return start, stop, None if step is None else xml.number(step, "baseStepSize", where)
 
 
 def _masters_step(system: Element, where: str) -> float | None:

@@ -1,7 +1,7 @@
 """Write a scene as an SSP 1.0 package: the FMUs, their parameters, and every single connection.
 
 Connections are those the scheme lays out, between started FMUs, so that of a rotor's elastic modes only
-those in use are there. Inputs carry their value at t = 0 as start value, for tools that do not hand
+those in use are there. Inputs carry their value at the start as start value, for tools that do not hand
 constants such as `inv_m` over during initialisation; for those that cannot even connect them, as they are
 no outputs, they are start values only. The project's own FMUs start from all these values by themselves,
 for tools that set none. Equal scenes give equal bytes.
@@ -18,6 +18,7 @@ from xml.etree.ElementTree import indent
 
 from touchdown.fmus.presentation.xml import document
 from touchdown.master.common.archives import write_archive
+from touchdown.master.coupling.loop.span import named_zero, span
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.interop.packing import AS_IN_SCENE, Making, fixed, packed_fmus
 from touchdown.master.interop.ssp.describe import Content, structure
@@ -46,12 +47,12 @@ def write_package(
         opened(scene, listening=False) as system,
         tempfile.TemporaryDirectory(prefix="touchdown_") as folder,
     ):
-        zero = system.value(scene.zero) if scene.zero else 0.0
+        times = span(scene.run, named_zero(scene, system))
         system.initialise()
         places = _places(packed_fmus(scene, system, making, Path(folder)))
         connected = [c for c in system.connections if not (outputs_only and system.constant(c))]
         sources = {name: place for name, (place, _) in places.items()}
-        root = structure(Content(scene, system, connected, sources, zero))
+        root = structure(Content(scene, system, connected, sources, times))
         fmus = dict(sorted(places.values()))
         written = Written(path, len(sources), len(connected), tuple(fixed(scene, system)))
     indent(root)

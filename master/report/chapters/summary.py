@@ -29,7 +29,7 @@ def headline(subject: Subject) -> str:
     if not subject.seats:
         return f"The scene has no touchdown bearing.{cut}"
     if subject.first_contact is None:
-        seconds = quantity(float(subject.run.recording.time[-1]), "s")
+        seconds = quantity(subject.length, "s")
         return f"The rotor touches no bearing within {seconds} of the shutdown.{cut}"
     return f"{_verdict(subject)}{cut}"
 
@@ -68,8 +68,8 @@ def summary(subject: Subject) -> list[Block]:
 
 
 def _tiles(subject: Subject) -> Iterator[Tile]:
-    if subject.first_contact is not None:
-        yield Tile("First contact", quantity(subject.first_contact, "s"), "after the shutdown")
+    if subject.fall is not None:
+        yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
     for key, unit, factor, label in (
         ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
         ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
@@ -85,7 +85,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
         yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), "in the shaft")
     speed = number(subject.summary.get("rotor_speed_end_rpm"))
     if speed is not None:
-        end = quantity(float(subject.run.recording.time[-1]), "s")
+        end = quantity(subject.length, "s")
         yield Tile("Rotor at the end", f"{digits(speed, 4)} rpm", f"after {end}")
 
 
@@ -159,7 +159,7 @@ def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
         return
     spin = abs(subject.run.recording[name])
     if spin[-1] > SPINS * spin[0] > 0.0:
-        end = quantity(float(subject.run.recording.time[-1]), "s")
+        end = quantity(subject.length, "s")
         left = f"{digits(RPM * float(spin[-1]), 4)} of {digits(RPM * float(spin[0]), 4)} rpm"
         yield (
             f"The run ends {end} after the shutdown, when the rotor still has {left}: figures are of this "

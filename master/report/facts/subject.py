@@ -10,7 +10,7 @@ import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.simulation import zero_of
+from touchdown.master.coupling.loop.span import origin_of, zero_of
 from touchdown.master.report.facts.numbers import quantity
 from touchdown.master.report.facts.series import Chart, Line, chosen_rows
 from touchdown.master.report.page.blocks import Absent
@@ -51,6 +51,23 @@ class Subject:
             return zero_of(self.result.scene, self.result.ending)
         except TouchdownError:  # a component that failed tells nothing any more
             return 0.0
+
+    @cached_property
+    def _origin(self) -> float:
+        try:
+            return origin_of(self.result.scene, self.result.ending)
+        except TouchdownError:  # as above
+            return 0.0
+
+    @property
+    def length(self) -> float:
+        """How long the run was (s): from the scene's zero on, or from its start where it names none."""
+        return float(self.run.recording.time[-1]) - self._origin
+
+    @property
+    def fall(self) -> float | None:
+        """How long it was until the first contact (s), counted as `length`; None: nothing touched."""
+        return None if self.first_contact is None else self.first_contact - self._origin
 
     @property
     def rotor(self) -> str:

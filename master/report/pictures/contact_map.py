@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from touchdown.master.results.figures.style import TIME, sized
+from touchdown.master.results.figures.style import TIME, beginning, sized
 
 SECTORS = 72  # of the bore
 MOMENTS = 240  # of the run
@@ -30,8 +30,7 @@ class Presses:
 
         The field is (SECTORS, MOMENTS), masked where nothing pressed.
         """
-        end = float(self.time[-1])
-        moments = np.linspace(min(0.0, end), end, MOMENTS + 1)
+        moments = np.linspace(beginning(self.time), float(self.time[-1]), MOMENTS + 1)
         sectors = np.linspace(-180.0, 180.0, SECTORS + 1)
         degrees = (np.degrees(self.angle) + 90.0 + 180.0) % 360.0 - 180.0
         when = np.clip(np.searchsorted(moments, self.time, "right") - 1, 0, MOMENTS - 1)

@@ -13,6 +13,7 @@ from touchdown.master.results.figures.style import (
     ORANGE,
     PURPLE,
     TIME,
+    beginning,
     sized,
     thinned,
     within,
@@ -25,7 +26,7 @@ MOST = 3000  # points of a line: about two for each pixel
 
 def curves(figure: Figure, chart: Chart) -> None:
     """All of the chart, and beside it the first impact."""
-    whole = (min(0.0, float(chart.time[-1])), float(chart.time[-1]))
+    whole = (beginning(chart.time), float(chart.time[-1]))
     spans = [whole] if chart.impact is None else [chart.impact, whole]
     ratios = [1.0] if len(spans) == 1 else [1.0, 1.8]
     panels = sized(figure, 9.4, 3.1).subplots(1, len(spans), squeeze=False, width_ratios=ratios)[0]

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.loop.span import origin_of
 from touchdown.master.results.ending import Finished, Readable, housing_port
 from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sized
 from touchdown.master.results.recording import Recording
@@ -78,9 +79,10 @@ def draw_contacts(axes: Axes, run: Finished, a: Attachment) -> Axes:
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
     axes.legend(handles=_key(caged), loc="center")
+    after = recording.time[-1] - origin_of(run.scene, system)
     pressed = sum(ball.by_races for ball in balls)
     axes.set_title(
-        f"{run.scene.title}\n{recording.time[-1]:g} s after the shutdown both rings press {pressed} of "
+        f"{run.scene.title}\n{after:g} s after the shutdown both rings press {pressed} of "
         f"{len(balls)} balls (displacements {scale.factor:g} times as large)"
     )
     return axes

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.simulation import zero_of
+from touchdown.master.coupling.loop.span import zero_of
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.style import (
     BLUE,

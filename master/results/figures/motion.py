@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.simulation import zero_of
+from touchdown.master.coupling.loop.span import zero_of
 from touchdown.master.results.ending import Finished, Readable, housing_port
 from touchdown.master.results.figures.style import (
     BLACK,

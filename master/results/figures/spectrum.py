@@ -13,10 +13,10 @@ from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.spectra import (
-    BEGIN,
     LENGTH,
     POINTS,
     interval,
+    landed,
     samples,
     velocity_spectrum,
     windows,
@@ -78,7 +78,7 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
 
 def _pendulum(recording: Recording, a: Attachment) -> float | None:
     """Frequency of the rotor's swing in the bearing (Hz)."""
-    settled = recording.time >= BEGIN
+    settled = recording.time >= landed(recording.time)
     x = recording[a.motion("x")]
     return dominant_frequency(recording.time[settled], x[settled])
 

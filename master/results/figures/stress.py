@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from touchdown.master.coupling.simulation import zero_of
+from touchdown.master.coupling.loop.span import zero_of
 from touchdown.master.results.ending import Finished, Readable, Teller
 from touchdown.master.results.figures.style import (
     BLUE,

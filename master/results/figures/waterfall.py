@@ -30,7 +30,7 @@ def has_waterfall(recording: Recording, a: Attachment) -> bool:
     time = recording.time
     if (
         len(time) < 2
-        or time[-1] < SHORTEST * (1.0 - 1e-6)
+        or time[-1] - max(0.0, time[0]) < SHORTEST * (1.0 - 1e-6)
         or 1.0 / interval(time) < COARSEST * (1.0 - 1e-6)
     ):
         return False

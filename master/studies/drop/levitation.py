@@ -9,7 +9,7 @@ SHORT = 2e-3  # s
 
 
 def shortened(scene: Scene) -> Scene:
-    """A copy whose magnetic bearings shut down earlier, all by the same time, the first one at SHORT.
+    """A copy whose magnetic bearings shut down earlier, all by as much, the first SHORT after the start.
 
     One that shuts down as early already stays as it is. An unbalanced rotor then falls from another
     angle: it is another drop of the same machine.
@@ -20,7 +20,7 @@ def shortened(scene: Scene) -> Scene:
             for name, component in system.components.items()
             if "shutdown_time" in component.variables
         }
-    early = min(times.values(), default=0.0) - SHORT
+    early = min(times.values(), default=0.0) - scene.run.start_time - SHORT
     if early <= 0.0:
         return scene
     return scene.set({f"{name}.shutdown_time": time - early for name, time in times.items()})

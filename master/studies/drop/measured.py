@@ -42,6 +42,8 @@ class Landing:
     seats: Sequence[Attachment]
     impacts: Mapping[str, tuple[float, float]]  # s from zero: the first impact at each seat
     traces: Mapping[str, Trace]
+    start: float = 0.0  # s, on the simulation's clock
+    duration: float = 0.0  # s, what run.duration ends a run there
 
     def peaks(self, seat: str) -> Mapping[str, float]:
         """Largest momentary forces of its first impact (N): the contact's, and inside by part."""
@@ -95,7 +97,8 @@ def land(scene: Scene, duration: float | None) -> Landing:
     if not impacts:
         raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
     first = min(start for start, _ in impacts.values())
-    return Landing(first, outcome.end - outcome.zero, outcome.zero, seats, impacts, traces)
+    end = outcome.end - outcome.zero
+    return Landing(first, end, outcome.zero, seats, impacts, traces, outcome.start, outcome.duration)
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,7 @@ class Plan:
 
 def plan(landing: Landing, steps: Sequence[float]) -> Plan:
     """Instants from the scene's zero on at multiples of each macro step, as far apart as the longest."""
-    span, longest = landing.zero + landing.end, max(steps)
+    span, longest = landing.zero + landing.end - landing.start, max(steps)
     if longest > landing.end - landing.first:
         raise TouchdownError(
             f"--macro-steps: {1e6 * longest:g} us is longer than what is compared, "
@@ -117,7 +120,7 @@ def plan(landing: Landing, steps: Sequence[float]) -> Plan:
         )
     every = {step: math.ceil(longest / step - 1e-9) for step in steps}
     grids = [step * n * np.arange(1, math.floor(span / (step * n) + 1e-9) + 1) for step, n in every.items()]
-    clock = np.unique(np.round(np.concatenate(grids), 12))
+    clock = landing.start + np.unique(np.round(np.concatenate(grids), 12))
     return Plan(landing, every, clock[clock > landing.zero] - landing.zero)
 
 
@@ -139,7 +142,7 @@ class Sampler(Observer):
         if now.done % self._every == 0:
             self.times.append(now.time)
             self.motion.append([read().copy() for read in self._read])
-        step = now.time / now.done
+        step = (now.time - now.start) / now.done
         last = now.since_zero + step > self._end + ROUNDING  # that is known of the landing
         for seat in [seat for seat, (end, _) in self._ends.items() if last or now.since_zero >= end]:
             _, bearing = self._ends.pop(seat)

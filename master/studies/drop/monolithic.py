@@ -14,7 +14,8 @@ from scipy.integrate import solve_ivp
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.twin import TwinComponent
-from touchdown.master.coupling.simulation import open_system, zero_of
+from touchdown.master.coupling.loop.span import zero_of
+from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
@@ -44,7 +45,7 @@ class Monolith:
                     "equations to join, and there is no monolithic reference without them"
                 )
             self._twins[name] = component
-        self.zero = zero_of(scene, system)
+        self.start, self.zero = system.start, zero_of(scene, system)  # s, on the simulation's clock
         self._switches = _switches(system) | {self.zero}
         system.initialise()
         bearings = {a.bearing for a in system.attachments}
@@ -155,12 +156,12 @@ class Monolith:
         weight = self._weights()
         atol = tolerance / np.where(weight > 0.0, weight, np.inf)
         atol[weight == 0.0] = 1e3  # quadratures: nothing depends on them
-        state, now = self.initial(), 0.0
+        state, now = self.initial(), self.start
         self.evaluations = 0
         states: list[np.ndarray] = []
         clock = np.asarray(times) + self.zero
         last = float(clock[-1])
-        for end in (*sorted(s for s in self._switches if 0.0 < s < last), last):
+        for end in (*sorted(s for s in self._switches if self.start < s < last), last):
             asked = clock[(clock > now) & (clock <= end)]
             middle = 0.5 * (now + end)  # components switch between stretches, not within
             solution = solve_ivp(

@@ -114,7 +114,8 @@ def solve(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, solver: 
     monolith = Monolith(scene)
     began = clock.perf_counter()
     solution = monolith.solve(times, names, solver.tolerance, solver.method)
-    wall = (clock.perf_counter() - began) / (monolith.zero + float(times[-1]))
+    simulated = monolith.zero + float(times[-1]) - monolith.start
+    wall = (clock.perf_counter() - began) / simulated
     motion = np.stack([solution.series[name] for name in names], 1).reshape(len(times), len(seats), 4)
     return Solve(solver, motion, solution.evaluations, wall)
 

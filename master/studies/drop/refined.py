@@ -15,6 +15,7 @@ import numpy as np
 from touchdown.master.components.contract import SENSED
 from touchdown.master.components.library.sources import foreign
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.loop.span import until
 from touchdown.master.coupling.observer import Moment, Observer
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.coupling.system import System
@@ -49,13 +50,13 @@ def refine(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, by: Ref
 
     Raises TouchdownError where the run stops.
     """
-    finely = fine(scene, by.step).set({"run.duration": float(times[-1])})
+    finely = fine(scene, by.step)
     began = clock.perf_counter()
     with opened(finely, in_process=True) as system:
         kept = _Kept(system, seats, times, by.step)
-        outcome = simulate(finely, system, observers=[kept])
+        outcome = simulate(until(finely, system, float(times[-1])), system, observers=[kept])
     outcome.raise_if_stopped()
-    wall = (clock.perf_counter() - began) / outcome.end
+    wall = (clock.perf_counter() - began) / outcome.simulated
     return Solve(by, np.array(kept.motion), outcome.steps, wall)
 
 

@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import opened, refuse_endless, simulate
+from touchdown.master.coupling.loop.span import brief
+from touchdown.master.coupling.simulation import Outcome, opened, refuse_endless, simulate
 from touchdown.master.results.summary import seat_name, touchdown_seats
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.first_impact import LEAST, Peaks, Stop, Trace, run_watched
@@ -110,13 +111,15 @@ def compare_models(
     refuse_endless(duration or LONGEST, scene.run.macro_step)
     scene = _unjudged(scene)
     begin("the scene as it is")
-    exact, end = _dropped(scene, Stop(LONGEST if duration is None else duration, early=False))
-    stopwatch = _Stopwatch(scene.set({"run.duration": end}), repeat, in_process)
+    exact, outcome = _dropped(scene, Stop(LONGEST if duration is None else duration, early=False))
+    as_long = {"run.duration": outcome.duration}
+    stopwatch = _Stopwatch(scene.set(as_long), repeat, in_process)
     rows = []
     for variant in chosen:
         begin(variant.title)
-        run = _unjudged(variant.scene).set({"run.duration": end})
+        run = _unjudged(variant.scene).set(as_long)
         rows.append(_row(replace(variant, scene=run), exact, stopwatch))
+    end = outcome.end - outcome.zero
     return Comparison(scene, end, exact, stopwatch.own(), repeat, in_process, rows)
 
 
@@ -133,8 +136,8 @@ def _row(variant: Variant, exact: Drop, stopwatch: _Stopwatch) -> Row:
         return Row(variant.title, failed=str(error))
 
 
-def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, float]:
-    """The drop and its end (s from zero)."""
+def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
+    """The drop, and how its run ended."""
     with opened(scene, in_process=True) as system:
         seats = touchdown_seats(system)
         if not seats:
@@ -147,7 +150,7 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, float]:
     ends = {seat: end for seat, (_, end) in impacts.items()}
     peaks = {seat: traces[seat].peaks(end) for seat, end in ends.items()}
     first = min(touched[seat] for seat in impacts) - outcome.zero
-    return Drop(first, ends, peaks, traces), outcome.end - outcome.zero
+    return Drop(first, ends, peaks, traces), outcome
 
 
 def _price(drop: Drop, exact: Drop) -> Price:
@@ -220,13 +223,14 @@ class _Stopwatch:
 
     def _warm_up(self, variant: Variant) -> None:
         """Compile what is to be timed."""
-        scene = variant.scene
-        brief = scene.set({"run.duration": 2.0 * scene.run.macro_step})
-        self._once(replace(variant, scene=brief))
+        self._once(variant, 2)
 
-    def _once(self, variant: Variant) -> float:
-        with tempfile.TemporaryDirectory() as folder, opened(variant.scene, self._in_process) as system:
+    def _once(self, variant: Variant, steps: int | None = None) -> float:
+        """Wall time per simulated second, of the whole run or of its first macro steps."""
+        scene = variant.scene
+        with tempfile.TemporaryDirectory() as folder, opened(scene, self._in_process) as system:
             record_to = Path(folder) / "result.h5" if variant.recorded else None
-            outcome = simulate(variant.scene, system, record_to)
+            run = scene if steps is None else brief(scene, system, steps)
+            outcome = simulate(run, system, record_to)
         outcome.raise_if_stopped()
-        return outcome.wall_time / outcome.end
+        return outcome.wall_time / outcome.simulated

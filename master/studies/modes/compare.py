@@ -85,6 +85,7 @@ class Run:
     """What one run showed."""
 
     end: float  # s from zero
+    duration: float  # s, what run.duration ends a run there
     traces: Mapping[str, Trace]
     stresses: Stresses
     frequency: float | None
@@ -152,7 +153,7 @@ def compare_modes(
     done()
     judge = _Judge(exact, impacts)
     reference = judge.row(0, False, 0.5 * macro_step, exact, exact)
-    ended = {"run.duration": exact.end}
+    ended = {"run.duration": exact.duration}
     again = _run(whole.set(ended), rotor)
     done()
     rows = []
@@ -216,8 +217,8 @@ def _run(scene: Scene, rotor: str, stop: Stop | None = None) -> Run:
         raise TouchdownError(f"with {which}: {error}") from None
     finally:
         system.close()
-    wall = outcome.wall_time / outcome.end
-    return Run(outcome.end - outcome.zero, traces, Stresses(*peaks), frequency, wall, outcome.residual)
+    wall, end = outcome.wall_time / outcome.simulated, outcome.end - outcome.zero
+    return Run(end, outcome.duration, traces, Stresses(*peaks), frequency, wall, outcome.residual)
 
 
 def _highest(scene: Scene, system: System, rotor: str, ports: Sequence[str]) -> float | None:

@@ -17,6 +17,7 @@ from enum import StrEnum
 import numpy as np
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.loop.span import brief
 from touchdown.master.coupling.simulation import opened, refuse_endless, simulate
 from touchdown.master.scene.scene import Scene
 from touchdown.master.scene.schemes import SCHEMES
@@ -190,7 +191,7 @@ def compare_schemes(
     refuse_endless(max(asked.duration or LONGEST, asked.timed or 0.0), min(asked.steps))
     landing = land(scene, asked.duration)
     looks = plan(landing, (*asked.steps, 2.0 * FINE))
-    scene = scene.set({"run.duration": landing.end})
+    scene = scene.set({"run.duration": landing.duration})
     solves = _solves(scene, looks, begin)
     exact = reference(looks.times, solves[0], solves[1], AGREED * asked.wanted)
     judge = _Judge(looks, exact, *limits)
@@ -218,7 +219,7 @@ def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[S
     """Both solutions of the reference, then looser ones."""
     seats, solvers = looks.landing.seats, _solvers(scene)
     if has_equations(scene):
-        solve(scene, seats, np.array([FINE]), Solver(FIRST.method, 1e-3))  # compiles
+        solve(scene, seats, looks.times[:1], Solver(FIRST.method, 1e-3))  # compiles
     solves: list[Solve] = []
     for solver in solvers:
         begin(solver.title)
@@ -294,8 +295,8 @@ class _Judge:
 
 def _warm_up(scene: Scene, asked: Asked) -> None:
     """Compile what is to be timed."""
-    with opened(scene.set({"run.duration": 2.0 * scene.run.macro_step}), asked.in_process) as system:
-        simulate(scene, system).raise_if_interrupted()
+    with opened(scene, asked.in_process) as system:
+        simulate(brief(scene, system, 2), system).raise_if_interrupted()
 
 
 def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
@@ -310,7 +311,7 @@ def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
             with opened(scene, asked.in_process) as system:
                 outcome = simulate(scene, system)
             outcome.raise_if_stopped()
-            spent.append(outcome.wall_time / outcome.end)
+            spent.append(outcome.wall_time / outcome.simulated)
     except TouchdownError as error:
         return replace(row, failed=f"while it was timed: {error}")
     return replace(row, wall=statistics.median(spent))

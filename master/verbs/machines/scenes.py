@@ -46,8 +46,9 @@ def execute(options: argparse.Namespace) -> int:
         return 0
     chosen = find_scene(options.scene)
     print("\n".join(filter(None, (chosen.title, chosen.about.strip()))))
+    begins = f"begins at t = {chosen.run.start_time:g} s, " if chosen.run.start_time else ""
     print(
-        f"\nrun: {chosen.run.duration:g} s from {chosen.zero or 'the start'}, "
+        f"\nrun: {begins}{chosen.run.duration:g} s from {chosen.zero or 'the start'}, "
         f"macro step {_time(chosen.run.macro_step)}, scheme {chosen.run.scheme.name}"
     )
     if options.variables is not None:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from friction_records import prepared
+from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings.contact.friction import (
     COULOMB,
@@ -400,7 +400,7 @@ def rub_all(bunch: Bunch, h: float, friction: Any) -> None:
     around = Around(moved, push, Bore(1.0, 0.0, 1e-2, 0.0, 0.0))
     where = Inner(c["nx"][:n], c["ny"][:n], c["second"][:n], np.full(MOST_BALLS, 0.3)[:n])
     races = (this, other) if side == INSIDE else (other, this)
-    rub(h, count, curve(friction), answers, around, where, *races)
+    rub(h, count, curve(friction), answers, around, where, *races, unwritten_lines())
 
 
 def kick_alone(bunch: Bunch, b: int, h: float) -> Kick:

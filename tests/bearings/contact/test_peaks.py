@@ -102,6 +102,13 @@ def test_a_parabola_is_found_exactly():
     assert highest(times, 5.0 - (times - 0.55) ** 2) == pytest.approx(5.0, rel=1e-15)
 
 
+@pytest.mark.parametrize("start", [0.0, 0.25, 10.0])
+def test_time_may_begin_anywhere(start):
+    """The step before the first sample is none, however late it is on the clock."""
+    times = start + 0.5 * np.arange(8.0)
+    assert highest(times, np.sin(times - start)) == pytest.approx(1.0, abs=2e-3)
+
+
 def test_a_sliver_makes_no_peak():
     """A step of a billionth of the one before, over which the force jumps a little, as at a restart."""
     times = np.array([0.0, 1.0, 1.0 + 1e-9, 2.0, 3.0])

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from bearing_states import instance_of, pressed, state_in_contact
-from friction_records import prepared
+from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import COULOMB, MAKKAR, Curve, FrictionLaw, curve
+from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Curve, FrictionLaw, curve
 from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.rolling import ring, row
 from touchdown.bearings.rolling.ball_state import BALLS, rounded
@@ -28,6 +28,8 @@ every_kick = pytest.mark.parametrize("h", LENGTHS.values(), ids=LENGTHS)
 LAWS = {
     "Coulomb": FrictionLaw(kind=COULOMB),
     "Makkar": FrictionLaw(kind=MAKKAR),
+    "Makkar, three slopes": FrictionLaw(kind=MAKKAR, g2=300.0),
+    "Stribeck": FrictionLaw(kind=STRIBECK),
     "steep": FrictionLaw(kind=COULOMB, slope=1e5),
 }
 
@@ -89,7 +91,7 @@ def by_kernel(given: Set, h: float, law: Curve) -> tuple[np.ndarray, np.ndarray,
     of_balls, _ = jacobians(given)
     races = []
     for k in range(2):
-        arrays = np.full((7, MOST_BALLS), np.nan)  # past the last ball lies what may not matter
+        arrays = np.full((len(Rubbed._fields), MOST_BALLS), np.nan)  # what lies past the balls is no matter
         arrays[0, :count], arrays[1, :count], arrays[3, :count] = (
             given.normal[k], given.last[k], given.sliding[k]
         )  # fmt: skip
@@ -100,7 +102,8 @@ def by_kernel(given: Set, h: float, law: Curve) -> tuple[np.ndarray, np.ndarray,
     room[:, :count] = t[1, :, 1], -t[1, :, 0], given.lever, np.sum(t[0] * t[1], axis=1)
     answers = Answers(h / MASS, h / MASS, h * RADIUS**2 / INERTIA)
     around = Around(given.moved, given.push, given.bore)
-    on_journal, now = rub(h, count, law, answers, around, Inner(*(row[:n] for row in room)), *races)
+    at = Inner(*(row[:n] for row in room))
+    on_journal, now = rub(h, count, law, answers, around, at, *races, unwritten_lines())
     tangential, loss = (
         np.array([getattr(r, key)[:count] for r in races]) for key in ("tangential", "loss")
     )

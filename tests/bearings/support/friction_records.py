@@ -1,11 +1,14 @@
-"""Friction laws as the kernels of a bearing settle them."""
+"""Friction laws as the kernels of a bearing settle them, and room for what comes of them."""
 
 from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from touchdown.bearings.contact.friction import FrictionLaw, settle
-from touchdown.modelkit.variables import as_record
+from touchdown.bearings.rolling.rubbing import FrictionLines
+from touchdown.modelkit.variables import as_record, layout
 
 
 def prepared(law: FrictionLaw) -> Any:
@@ -13,3 +16,9 @@ def prepared(law: FrictionLaw) -> Any:
     record = as_record(law)
     settle(record)
     return record
+
+
+def unwritten_lines() -> Any:
+    """A record of `FrictionLines`, full of what is not a number."""
+    kept = layout(FrictionLines)
+    return np.full(kept.itemsize // 8, np.nan).view(kept).view(np.recarray)[0]

@@ -1,4 +1,5 @@
-/* An FMU of FMI 3.0: y = gain u, element by element; n counts steps. It returns early at t = 1 s. */
+/* An FMU of FMI 3.0: y = gain u, element by element; n counts steps, big is 2^53 + n, on whether n is odd,
+   choice 2 or 3. It returns early at t = 1 s. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@ typedef struct {
     double u[2], y[2], gain;
     int32_t n;
     uint8_t k;
+    bool heard;
+    int64_t chosen;
 } Probe;
 
 void *fmi3InstantiateCoSimulation(const char *name, const char *token, const char *resources, bool visible,
@@ -79,8 +82,42 @@ int fmi3SetFloat64(void *instance, const uint32_t *references, size_t count, con
 
 int fmi3GetInt32(void *instance, const uint32_t *references, size_t count, int32_t *values, size_t n)
 {
+    for (size_t i = 0; i < count; i++)
+        values[i] = references[i] == 4 ? ((Probe *)instance)->n : 300;
+    return count == n ? 0 : 3;
+}
+
+int fmi3GetInt64(void *instance, const uint32_t *references, size_t count, int64_t *values, size_t n)
+{
+    const Probe *probe = instance;
+    const int64_t most = (int64_t)1 << 53;
+    for (size_t i = 0; i < count; i++)
+        values[i] = references[i] == 7    ? most + probe->n
+                    : references[i] == 10 ? 2 + probe->n % 2
+                    : references[i] == 11 ? probe->chosen
+                                          : most + 1;
+    return count == n ? 0 : 3;
+}
+
+int fmi3SetInt64(void *instance, const uint32_t *references, size_t count, const int64_t *values, size_t n)
+{
     (void)references;
-    values[0] = ((Probe *)instance)->n;
+    ((Probe *)instance)->chosen = values[0];
+    return count == 1 && n == 1 && (values[0] == 2 || values[0] == 3) ? 0 : 3;
+}
+
+int fmi3GetBoolean(void *instance, const uint32_t *references, size_t count, bool *values, size_t n)
+{
+    const Probe *probe = instance;
+    for (size_t i = 0; i < count; i++)
+        values[i] = references[i] == 8 ? probe->n % 2 == 1 : probe->heard;
+    return count == n ? 0 : 3;
+}
+
+int fmi3SetBoolean(void *instance, const uint32_t *references, size_t count, const bool *values, size_t n)
+{
+    (void)references;
+    ((Probe *)instance)->heard = values[0];
     return count == 1 && n == 1 ? 0 : 3;
 }
 
@@ -116,10 +153,10 @@ int fmi3DoStep(void *instance, double time, double step, bool final, bool *event
 ABSENT(fmi3ActivateModelPartition) ABSENT(fmi3CompletedIntegratorStep) ABSENT(fmi3DeserializeFMUState)
 ABSENT(fmi3EnterConfigurationMode) ABSENT(fmi3EnterContinuousTimeMode) ABSENT(fmi3EnterEventMode)
 ABSENT(fmi3EnterStepMode) ABSENT(fmi3EvaluateDiscreteStates) ABSENT(fmi3ExitConfigurationMode)
-ABSENT(fmi3FreeFMUState) ABSENT(fmi3GetAdjointDerivative) ABSENT(fmi3GetBinary) ABSENT(fmi3GetBoolean)
+ABSENT(fmi3FreeFMUState) ABSENT(fmi3GetAdjointDerivative) ABSENT(fmi3GetBinary)
 ABSENT(fmi3GetClock) ABSENT(fmi3GetContinuousStateDerivatives) ABSENT(fmi3GetContinuousStates)
 ABSENT(fmi3GetDirectionalDerivative) ABSENT(fmi3GetEventIndicators) ABSENT(fmi3GetFMUState)
-ABSENT(fmi3GetFloat32) ABSENT(fmi3GetInt16) ABSENT(fmi3GetInt64) ABSENT(fmi3GetInt8)
+ABSENT(fmi3GetFloat32) ABSENT(fmi3GetInt16) ABSENT(fmi3GetInt8)
 ABSENT(fmi3GetIntervalDecimal) ABSENT(fmi3GetIntervalFraction) ABSENT(fmi3GetNominalsOfContinuousStates)
 ABSENT(fmi3GetNumberOfContinuousStates) ABSENT(fmi3GetNumberOfEventIndicators)
 ABSENT(fmi3GetNumberOfVariableDependencies) ABSENT(fmi3GetOutputDerivatives) ABSENT(fmi3GetShiftDecimal)
@@ -127,8 +164,8 @@ ABSENT(fmi3GetShiftFraction) ABSENT(fmi3GetString) ABSENT(fmi3GetUInt16) ABSENT(
 ABSENT(fmi3GetUInt64) ABSENT(fmi3GetVariableDependencies) ABSENT(fmi3GetVersion)
 ABSENT(fmi3InstantiateModelExchange) ABSENT(fmi3InstantiateScheduledExecution) ABSENT(fmi3Reset)
 ABSENT(fmi3SerializeFMUState) ABSENT(fmi3SerializedFMUStateSize) ABSENT(fmi3SetBinary)
-ABSENT(fmi3SetBoolean) ABSENT(fmi3SetClock) ABSENT(fmi3SetContinuousStates) ABSENT(fmi3SetDebugLogging)
+ABSENT(fmi3SetClock) ABSENT(fmi3SetContinuousStates) ABSENT(fmi3SetDebugLogging)
 ABSENT(fmi3SetFMUState) ABSENT(fmi3SetFloat32) ABSENT(fmi3SetInt16) ABSENT(fmi3SetInt32)
-ABSENT(fmi3SetInt64) ABSENT(fmi3SetInt8) ABSENT(fmi3SetIntervalDecimal) ABSENT(fmi3SetIntervalFraction)
+ABSENT(fmi3SetInt8) ABSENT(fmi3SetIntervalDecimal) ABSENT(fmi3SetIntervalFraction)
 ABSENT(fmi3SetShiftDecimal) ABSENT(fmi3SetShiftFraction) ABSENT(fmi3SetString) ABSENT(fmi3SetTime)
 ABSENT(fmi3SetUInt16) ABSENT(fmi3SetUInt32) ABSENT(fmi3SetUInt64) ABSENT(fmi3UpdateDiscreteStates)

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import subprocess
 import zipfile
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fmpy import platform_tuple
 from hosting import COMPILER
-from systems import history
+from systems import history, recorded
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import opened, simulate
+from touchdown.master.components.component import put_whole
+from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.doctor import why_not
 from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.scene.wires import Wire
@@ -24,10 +28,13 @@ from touchdown.master.scene.wires import Wire
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 
 TWO = '<Dimension start="2"/>'
+CALCULATED = 'initial="calculated"'
 DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="probe" instantiationToken="{{probe}}">
 <CoSimulation modelIdentifier="probe3"/>
 <UnitDefinitions><Unit name="m"><BaseUnit m="1"/></Unit></UnitDefinitions>
+<TypeDefinitions><EnumerationType name="Choice"><Item name="two" value="2"/>
+<Item name="three" value="3"/></EnumerationType></TypeDefinitions>
 <ModelVariables>
 <Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>
 <Float64 name="u" valueReference="1" causality="input" start="0 3" unit="m">{TWO}</Float64>
@@ -35,10 +42,21 @@ DESCRIPTION = f"""<?xml version="1.0" encoding="UTF-8"?>
 <Float64 name="y" valueReference="3" causality="output" initial="calculated">{TWO}</Float64>
 <Int32 name="n" valueReference="4" causality="output" initial="calculated"/>
 <UInt8 name="k" valueReference="5" causality="parameter" variability="fixed" start="7"/>
+<Int64 name="big" valueReference="7" causality="output" initial="calculated"/>
+<Boolean name="on" valueReference="8" causality="output" initial="calculated"/>
+<Boolean name="heard" valueReference="9" causality="input" start="false"/>
+<Enumeration name="choice" valueReference="10" declaredType="Choice" causality="output" {CALCULATED}/>
+<Enumeration name="chosen" valueReference="11" declaredType="Choice" causality="input" start="2"/>
+<Int32 name="many" valueReference="12" causality="calculatedParameter" variability="fixed" {CALCULATED}/>
+<Int64 name="most" valueReference="13" causality="calculatedParameter" variability="fixed" {CALCULATED}/>
 <Binary name="raw" valueReference="6" causality="input"><Start value="00"/></Binary>
 </ModelVariables>
 <ModelStructure><Output valueReference="3"/><Output valueReference="4"/>
-<InitialUnknown valueReference="3"/><InitialUnknown valueReference="4"/></ModelStructure>
+<Output valueReference="7"/><Output valueReference="8"/><Output valueReference="10"/>
+<InitialUnknown valueReference="3"/><InitialUnknown valueReference="4"/>
+<InitialUnknown valueReference="7"/><InitialUnknown valueReference="8"/>
+<InitialUnknown valueReference="10"/><InitialUnknown valueReference="12"/>
+<InitialUnknown valueReference="13"/></ModelStructure>
 </fmiModelDescription>"""
 
 
@@ -94,6 +112,117 @@ def test_a_probe_changes_no_bit_of_the_drop(isolate: bool, probe: Path) -> None:
         assert np.array_equal(values[name], without[name])
     assert np.array_equal(values["probe.y[2]"], 2.0 * without["rotor.A.y"])
     assert not values["probe.y[1]"].any()
+
+
+@pytest.fixture(scope="module")
+def fed(probe: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The probe, whose parameter k is an input."""
+    path = tmp_path_factory.mktemp("fed") / "fed.fmu"
+    given = DESCRIPTION.replace(
+        'causality="parameter" variability="fixed" start="7"', 'causality="input" start="7"'
+    )
+    assert given != DESCRIPTION
+    with zipfile.ZipFile(probe) as archive, zipfile.ZipFile(path, "w") as changed:
+        for name in archive.namelist():
+            changed.writestr(name, given if name.endswith(".xml") else archive.read(name))
+    return path
+
+
+def two(fed: Path, output: str, given: str, steps: int) -> Scene:
+    """Two probes, a whole number of the one to the other."""
+    parts = {name: {"fmu": str(fed)} for name in ("one", "other")}
+    run = {"duration": steps * 1e-3, "macro_step": 1e-3}
+    connect = [[f"one.{output}", f"other.{given}"]]
+    return parse({"components": parts, "connect": connect, "run": run}, "two", fed.parent)
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+def test_whole_numbers_cross_whatever_their_size(isolate: bool, fed: Path) -> None:
+    scene = two(fed, "n", "k", 9).set({"one.isolate": isolate, "other.isolate": isolate})
+    _, values, _ = history(scene, ["one.n", "other.k"], in_process=False)
+    assert np.array_equal(values["one.n"], np.arange(1, 10))
+    assert np.array_equal(values["other.k"], np.arange(1, 10))
+
+
+@pytest.mark.parametrize(
+    ("output", "given", "line"),
+    [
+        ("n", "k", "component other: k is given 256, and holds whole numbers from 0 to 255"),
+        (
+            "big",
+            "u[1]",
+            f"component one: big = {2**53 + 1} cannot be exchanged; whole numbers can up to 2^53",
+        ),
+    ],
+)
+def test_whole_numbers_that_would_become_others_are_refused(
+    output: str, given: str, line: str, fed: Path
+) -> None:
+    scene = two(fed, output, given, 300)
+    with opened(scene) as system:
+        assert simulate(scene, system).reason == line
+
+
+@pytest.mark.parametrize(
+    ("output", "given", "line"),
+    [
+        ("many", "k", "component other: k is given 300, and holds whole numbers from 0 to 255"),
+        (
+            "most",
+            "u[1]",
+            f"component one: most = {2**53} cannot be handed over; constant whole",
+        ),
+    ],
+)
+@pytest.mark.parametrize("isolate", [False, True])
+def test_constants_that_would_become_others_are_refused(
+    isolate: bool, output: str, given: str, line: str, fed: Path
+) -> None:
+    scene = two(fed, output, given, 3).set({"one.isolate": isolate, "other.isolate": isolate})
+    with opened(scene) as system, pytest.raises(TouchdownError) as refused:
+        simulate(scene, system)
+    assert str(refused.value).startswith(line)
+
+
+def test_constants_cross_as_they_are(fed: Path) -> None:
+    _, values, _ = history(two(fed, "many", "u[1]", 3), ["other.y[1]"], in_process=False)
+    assert np.array_equal(values["other.y[1]"], np.full(3, 600.0))
+
+
+def test_settings_that_a_type_cannot_hold_are_refused(probe: Path) -> None:
+    with pytest.raises(TouchdownError, match="k is given 256, and holds whole numbers from 0 to 255"):
+        open_system(alone(probe, set={"k": 256}))
+
+
+@pytest.mark.parametrize(
+    ("dtype", "least", "beyond"),
+    [("i8", -(2.0**63), 2.0**63), ("u8", 0.0, 2.0**64), ("i4", -(2.0**31), 2.0**31), ("u1", 0.0, np.nan)],
+)
+def test_no_type_is_given_more_than_it_holds(dtype: str, least: float, beyond: float, probe: Path) -> None:
+    data = np.zeros(2, dtype)
+    with opened(alone(probe)) as system:
+        put = partial(put_whole, system.components["probe"], ("n", "big", "k"), np.array([0, 2]))
+        put(np.array([least, 1.0]), data)
+        assert data.tolist() == [least, 1]
+        with pytest.raises(TouchdownError, match="k is given"):
+            put(np.array([least, beyond]), data)
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+def test_booleans_and_choices_are_recorded_and_cross(isolate: bool, fed: Path, tmp_path: Path) -> None:
+    """A choice to its like and to a whole number, which keep their starts until they are told."""
+    ends = ("one.on", "other.heard"), ("one.choice", "other.chosen"), ("one.choice", "other.k")
+    scene = two(fed, "on", "heard", 6).set({"one.isolate": isolate, "other.isolate": isolate})
+    scene = replace(scene, connect=tuple(Wire(output, given) for output, given in ends))
+    scene = scene.set({"run.record_every": 1})
+    _, heard, _ = history(scene, ["other.heard", "other.chosen", "other.k"], in_process=False)
+    run_scene(scene, tmp_path / "out", pictures=False)
+    values, odd = recorded(tmp_path / "out"), np.arange(7) % 2
+    assert np.array_equal(values["one/on"], odd)
+    assert np.array_equal(values["one/choice"], 2 + odd)
+    assert np.array_equal(heard["other.heard"], odd[1:])
+    assert np.array_equal(heard["other.chosen"], 2 + odd[1:])
+    assert np.array_equal(heard["other.k"], 2 + odd[1:])
 
 
 def test_a_step_that_ends_early_is_said(probe: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmpy import simulate_fmu
+from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
 from systems import history
 
@@ -40,6 +40,25 @@ def test_a_container_drops_the_rotor_as_the_master_does(scheme: str, close: floa
         assert np.max(np.abs(found[name][1:] - own)) <= close
     peaks = found["bearing.contact.peak_force"][-1], values["bearing.contact.peak_force"][-1]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)
+
+
+def test_a_container_starts_when_its_scene_does(tmp_path: Path) -> None:
+    """It says so, and its FMUs are told: the magnetic bearing holds the rotor until then."""
+    start = 0.25  # s
+    settings = {"run.start_time": start, "amb.shutdown_time": start + 1e-3, "run.duration": 2e-3}
+    scene = dropped(**settings, **{"run.scheme": "jacobi-lead"})
+    path = write_container(scene, tmp_path / "later.fmu")
+    experiment = read_model_description(str(path)).defaultExperiment
+    assert experiment is not None
+    times = float(str(experiment.startTime)), float(str(experiment.stopTime))
+    assert times == (start, pytest.approx(start + 3e-3))
+    step, stop = EVERY * scene.run.macro_step, start + 3e-3
+    found = simulate_fmu(
+        str(path), start_time=start, stop_time=stop, output_interval=step, output=["rotor.A.y"]
+    )
+    _, values, _ = history(scene, ["rotor.A.y"], in_process=False)
+    assert values["rotor.A.y"][-1] < values["rotor.A.y"][40] - 1e-6
+    assert found["rotor.A.y"][1:] == pytest.approx(values["rotor.A.y"][EVERY - 1 :: EVERY], abs=1e-12)
 
 
 def test_equal_scenes_give_equal_containers(tmp_path: Path) -> None:

@@ -103,14 +103,16 @@ Pack = Callable[..., Scene]
 
 @pytest.fixture
 def pack(tmp_path: Path) -> Pack:
-    def make(whole: str = WHOLE, version: str = "1.0", more: str = UNITS) -> Scene:
+    def make(
+        whole: str = WHOLE, version: str = "1.0", more: str = UNITS, times: str = 'stopTime="0.004"'
+    ) -> Scene:
         """The scene that a package of the system is read as."""
         path = tmp_path / "others.ssp"
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr(
                 HEART,
                 f'<ssd:SystemStructureDescription {ROOT} version="{version}" name="others">{whole}{more}'
-                '<ssd:DefaultExperiment stopTime="0.004"/></ssd:SystemStructureDescription>',
+                f"<ssd:DefaultExperiment {times}/></ssd:SystemStructureDescription>",
             )
             for fmu in ("rigid_rotor", "bushing"):
                 archive.writestr(f"resources/{fmu}.fmu", cached(recipe(fmu)).read_bytes())
@@ -208,6 +210,13 @@ def test_omsimulators_step_is_taken(told: str, step: float, pack: Pack) -> None:
     )
     whole = system("w", component("rotor", "rigid_rotor"), "").replace("</ssd:System>", annotation)
     assert pack(whole).run.macro_step == step
+
+
+@pytest.mark.parametrize(("stop", "duration"), [('stopTime="10.004"', 0.004), ("", 1.0)])
+def test_the_start_time_is_taken(stop: str, duration: float, pack: Pack) -> None:
+    """Without a stop time a run is as long as one of a scene that says nothing."""
+    run = pack(times=f'startTime="10" {stop}').run
+    assert (run.start_time, run.duration) == (10.0, duration)
 
 
 def test_a_binding_for_nothing_is_named_with_its_system(pack: Pack) -> None:

@@ -20,6 +20,7 @@ from touchdown.master.coupling.loop.kernels.tables import (
     NOT_FINITE,
     SET,
     STEP,
+    TRUTH,
 )
 from touchdown.modelkit.kernel.address import (
     call_advance,
@@ -131,7 +132,7 @@ def exchange(plan, turns, parts, signals, number, time):
 @kernel
 def take(plan, turns, parts, seats, books, signals):
     """One macro step, whole or divided, each part of it booked; whether it failed."""
-    begin, divided = plan.done * plan.length, plan.parts
+    begin, divided = plan.start + plan.done * plan.length, plan.parts
     if met(seats, signals, begin, plan.length):
         plan.hit += 1
         divided = max(divided, plan.impact_parts)
@@ -153,11 +154,13 @@ def record(plan, reads, columns, row):
         status = _answer(call_exchange(r.call, r.of, r.references, r.count, r.into))
         if status != 0:
             return note(plan, r.turn, FETCH, status)
-    row[0] = plan.done * plan.length - plan.zero
+    row[0] = plan.start + plan.done * plan.length - plan.zero
     for i in range(len(columns)):
         address, kind = columns[i].address, columns[i].kind
         if kind == INT:
             row[1 + i] = int32_at(address, 1)[0]
+        elif kind == TRUTH:
+            row[1 + i] = 1.0 if int32_at(address, 1)[0] != 0 else 0.0
         elif kind == LONG:
             row[1 + i] = int64_at(address, 1)[0]
         else:

@@ -53,11 +53,12 @@ READ = _table("turn", "call", "of", "references", "count", "into")
 
 COLUMN = _table("address", "kind")
 """Where a number of a recorded row is found, and of which kind it is."""
-REAL, LONG, INT = 0, 1, 2
+REAL, LONG, INT, TRUTH = 0, 1, 2, 3  # the last an int, of which all but 0 is true
 
 PLAN = np.dtype(
     [
         ("at_once", "i8"),  # whether all take their inputs before any steps
+        ("start", "f8"),  # of the run, s on the simulation's clock
         ("length", "f8"),  # of a macro step, s
         ("parts", "i8"),  # that each is divided into
         ("impact_parts", "i8"),  # that one is divided into in which a body is hit twice

@@ -30,8 +30,8 @@ def present(recording: Recording, bearing: str, curves: tuple[Curve, ...]) -> li
 
 
 def beginning(time: np.ndarray) -> float:
-    """Where pictures start (s): at the shutdown, or with the run where it ended before."""
-    return 0.0 if time[-1] > 0.0 else float(time[0])
+    """Where pictures start (s): at the shutdown, or with the run where it began later or ended before."""
+    return max(0.0, float(time[0])) if time[-1] > 0.0 else float(time[0])
 
 
 def zooms(time: np.ndarray, first: float) -> list[tuple[float, float]]:

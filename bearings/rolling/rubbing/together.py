@@ -20,8 +20,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.kick import friction_line
 from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.rolling.rubbing.lines import draw, gather, hand_back, in_full_lanes
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import array
 
@@ -35,18 +35,26 @@ class RubbedRace:
     loss: tuple = array(MOST_BALLS)  # W, heat
     sliding: tuple = array(MOST_BALLS)  # m/s, of the ball over the race, before the kick
     driven: tuple = array(MOST_BALLS)  # m/s, its change by all but friction at races
+    expected: tuple = array(MOST_BALLS)  # m/s, at which the kick would end but for its own friction
+    start: tuple = array(MOST_BALLS)  # N, of the `Line` of its friction
+    slope: tuple = array(MOST_BALLS)  # N s/m
+    base: tuple = array(MOST_BALLS)
     held: tuple = array(MOST_BALLS)  # N, friction as the ring keeps its velocity
     gain: tuple = array(MOST_BALLS)  # N s/m, and for each m/s by which its race runs ahead
 
 
 class Rubbed(NamedTuple):
-    """A `RubbedRace`, an array each; `tangential` is set anew, `loss` and the last two are set."""
+    """A `RubbedRace`, an array each; `tangential` is set anew, `loss` and all behind `driven` are set."""
 
     normal: object  # N
     tangential: object  # N
     loss: object  # W
     sliding: object  # m/s
     driven: object  # m/s
+    expected: object  # m/s
+    start: object  # N
+    slope: object  # N s/m
+    base: object
     held: object  # N
     gain: object  # N s/m
 
@@ -56,7 +64,8 @@ def rubbed_of(race, n):
     """`Rubbed` (n,) as views of `race` (RubbedRace)."""
     r = race
     acting = r.normal[:n], r.tangential[:n], r.loss[:n], r.sliding[:n]
-    return Rubbed(*acting, r.driven[:n], r.held[:n], r.gain[:n])
+    lines = r.expected[:n], r.start[:n], r.slope[:n], r.base[:n]
+    return Rubbed(*acting, r.driven[:n], *lines, r.held[:n], r.gain[:n])
 
 
 class Inner(NamedTuple):
@@ -119,26 +128,47 @@ def over_ring(nx, ny, lever, moved):
 
 
 @woven
-def _draw_lines(law, answers, moved, at, outer, inner):
-    """Set `held` and `gain` (n,) of both races; law: a `Curve`; moved: `Moved` in the kick before."""
+def _draw_lines(count, law, answers, moved, at, outer, inner, lines):
+    """Set `held` and `gain` (n,) of both races with `count` balls.
+
+    law: a `Curve`; moved: `Moved` in the kick before; lines: `FrictionLines`.
+    """
+    _expect(answers, moved, at, outer, inner)
+    pressing = gather(0, count, answers.outer + answers.spin, outer, lines)
+    pressing = gather(pressing, count, answers.inner + answers.spin, inner, lines)
+    draw(in_full_lanes(pressing), law, lines)
+    hand_back(hand_back(0, count, outer, lines), count, inner, lines)
+    _join(answers, at, outer, inner)
+
+
+@woven
+def _expect(answers, moved, at, outer, inner):
+    """Set the speeds (n,) at which the kick is expected to end but for each contact's own friction."""
+    for b in range(len(at.nx)):
+        w_oi = at.cross[b] * answers.inner - answers.spin
+        w_io = at.cross[b] * answers.outer - answers.spin
+        ahead = over_ring(at.nx[b], at.ny[b], at.lever[b], moved)
+        outer.expected[b] = outer.sliding[b] + outer.driven[b] + w_oi * inner.tangential[b]
+        inner.expected[b] = inner.sliding[b] + inner.driven[b] + w_io * outer.tangential[b] - ahead
+
+
+@woven
+def _join(answers, at, outer, inner):
+    """Set `held` and `gain` (n,) of both races from the lines of their contacts."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
     for b in range(len(at.nx)):
         w_oi = at.cross[b] * answers.inner - answers.spin
         w_io = at.cross[b] * answers.outer - answers.spin
-        e_o, e_i = outer.driven[b], inner.driven[b]
-        ahead = over_ring(at.nx[b], at.ny[b], at.lever[b], moved)
-        expected_o = outer.sliding[b] + e_o + w_oi * inner.tangential[b]
-        expected_i = inner.sliding[b] + e_i + w_io * outer.tangential[b] - ahead
-        line_o = friction_line(outer.sliding[b], expected_o, w_oo, outer.normal[b], law)
-        line_i = friction_line(inner.sliding[b], expected_i, w_ii, inner.normal[b], law)
-        alone_o, alone_i = line_o.start - line_o.slope * e_o, line_i.start - line_i.slope * e_i
-        d_o, d_i = line_o.base + line_o.slope * w_oo, line_i.base + line_i.slope * w_ii
-        c_o, c_i = line_o.slope * w_oi, line_i.slope * w_io
+        slope_o, slope_i = outer.slope[b], inner.slope[b]
+        alone_o = outer.start[b] - slope_o * outer.driven[b]
+        alone_i = inner.start[b] - slope_i * inner.driven[b]
+        d_o, d_i = outer.base[b] + slope_o * w_oo, inner.base[b] + slope_i * w_ii
+        c_o, c_i = slope_o * w_oi, slope_i * w_io
         inverse = 1.0 / (d_o * d_i - c_o * c_i)
         outer.held[b] = (d_i * alone_o - c_o * alone_i) * inverse
         inner.held[b] = (d_o * alone_i - c_i * alone_o) * inverse
-        outer.gain[b] = -c_o * line_i.slope * inverse
-        inner.gain[b] = d_o * line_i.slope * inverse
+        outer.gain[b] = -c_o * slope_i * inverse
+        inner.gain[b] = d_o * slope_i * inverse
 
 
 @woven
@@ -196,14 +226,14 @@ def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
 
 
 @woven
-def rub(h, count, law, answers, around, at, outer, inner):
+def rub(h, count, law, answers, around, at, outer, inner, lines):
     """Friction of `count` balls at both races and of the journal in the bore over a kick of h (s).
 
     law: `Curve` of the races; answers: `Answers`; around: `Around`; at: `Inner`; outer, inner: `Rubbed`,
-    where friction and its heat are set. Returns (friction on the journal along t (N), `Moved`: what the
-    kick does to the ring).
+    where friction and its heat are set; lines: `FrictionLines`, overwritten. Returns (friction on the
+    journal along t (N), `Moved`: what the kick does to the ring).
     """
-    _draw_lines(law, answers, around.moved, at, outer, inner)
+    _draw_lines(count, law, answers, around.moved, at, outer, inner, lines)
     now = _turn_ring(h, count, around, at, inner)
     _settle(answers, now, at, outer, inner)
     bore = around.bore

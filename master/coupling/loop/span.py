@@ -1,0 +1,111 @@
+"""When a run begins and ends, and what its times count from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.scene import Scene
+
+FINENESS = 1e-3  # of a macro step, that times must tell apart
+
+
+class Values(Protocol):
+    """What knows the values of variables."""
+
+    def value(self, name: str) -> float:
+        """Value of COMPONENT.VARIABLE."""
+        ...
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is COMPONENT.VARIABLE."""
+        ...
+
+
+@dataclass(frozen=True)
+class Span:
+    """The times of a run, s on the simulation's clock."""
+
+    start: float
+    end: float
+    zero: float  # what its times count from: the scene's zero, or that of the clock
+    origin: float  # what its duration counts from: the scene's zero, or the start
+
+    @property
+    def length(self) -> float:
+        """How long it is (s)."""
+        return self.end - self.start
+
+
+def span(run: RunSpec, zero: float | None, impacts: bool = False) -> Span:
+    """The times of `run`; `zero`: s on the simulation's clock, None where the scene names none.
+
+    impacts: whether macro steps may be divided in impacts. Raises TouchdownError where it would end before
+    it starts, or times are too large for its macro steps, or for parts of them.
+    """
+    start = run.start_time
+    origin = start if zero is None else zero
+    end = origin + run.duration
+    if end <= start:
+        raise TouchdownError(
+            f"run.start_time = {start:g} s is not before the run's end at t = {end:g} s: run.duration = "
+            f"{run.duration:g} s counts from the scene's zero at t = {origin:g} s; set that later"
+        )
+    _refuse_lost(start, run, impacts)
+    return Span(start, end, 0.0 if zero is None else zero, origin)
+
+
+def _refuse_lost(start: float, run: RunSpec, impacts: bool) -> None:
+    """Raise TouchdownError where times as late as `start` (s) do not tell steps apart, or parts of them."""
+    parts = run.impact_step if impacts and run.impact_step > 0.0 else math.inf
+    for length, what, remedy in (
+        (run.macro_step, "macro steps of", "take longer steps"),
+        (parts, "parts of macro steps, of run.impact_step =", "take a longer one, or 0 to divide none"),
+    ):
+        if math.ulp(start) > FINENESS * length:
+            raise TouchdownError(
+                f"run.start_time = {start:g} s is too late: beside it {what} {length:g} s are lost in "
+                f"rounding; start earlier, or {remedy}"
+            )
+
+
+def named_zero(scene: Scene, system: Values) -> float | None:
+    """The scene's zero (s, simulation's clock); None where it has none, or one that went in a swap."""
+    if scene.zero is None or swapped_away(scene, scene.zero, system):
+        return None
+    zero = system.value(scene.zero)
+    if not math.isfinite(zero):
+        raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")
+    return zero
+
+
+def zero_of(scene: Scene, system: Values) -> float:
+    """What times count from (s, simulation's clock): the scene's zero, or 0, that of the clock."""
+    zero = named_zero(scene, system)
+    return 0.0 if zero is None else zero
+
+
+def origin_of(scene: Scene, system: Values) -> float:
+    """What a run's duration counts from, in s from what its times count from: 0 where a zero is named."""
+    return scene.run.start_time if named_zero(scene, system) is None else 0.0
+
+
+def until(scene: Scene, system: Values, time: float) -> Scene:
+    """A copy of `scene` that ends at `time`, in s from what its times count from."""
+    return scene.set({"run.duration": time - origin_of(scene, system)})
+
+
+def brief(scene: Scene, system: Values, steps: int) -> Scene:
+    """A copy of `scene` that ends `steps` macro steps after its start, or after a zero that is later."""
+    zero = named_zero(scene, system)
+    before = 0.0 if zero is None else max(scene.run.start_time - zero, 0.0)
+    return scene.set({"run.duration": before + steps * scene.run.macro_step})
+
+
+def swapped_away(scene: Scene, name: str, system: Values) -> bool:
+    """Whether COMPONENT.VARIABLE is not there because another FMU was put in for that component."""
+    spec = scene.components.get(name.partition(".")[0])
+    return spec is not None and bool(spec.instead_of) and name not in system

@@ -1,0 +1,316 @@
+"""Connections of integers, Booleans and choices: held over a macro step, never scaled, types that fit."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from misbehaving import COMPILER, compiled, misbehaving
+from pythonfmu import FmuBuilder
+from systems import history, recorded
+
+import touchdown
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.interface import interface
+from touchdown.master.coupling.loop.steps import MacroSteps
+from touchdown.master.coupling.observer import Moment
+from touchdown.master.coupling.simulation import open_system, opened
+from touchdown.master.interop.container import write_container
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.results.run import run_scene
+from touchdown.master.scene.file import load_scene, parse
+from touchdown.master.scene.scene import ComponentSpec, Scene
+from touchdown.master.scene.wires import Wire
+
+STEP, STEPS = 1e-3, 12  # s
+GIVER = '''
+from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Integer, Real, String
+
+
+class Giver(Fmi2Slave):
+    """Counts its steps from 5 on."""
+
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.n, self.on, self.choice, self.x, self.word = 5, True, 3, 0.5, "a"
+        out = {"causality": Fmi2Causality.output}
+        self.register_variable(Integer("n", **out))
+        self.register_variable(Boolean("on", **out))
+        self.register_variable(Integer("choice", **out))
+        self.register_variable(Real("x", **out))
+        self.register_variable(String("word", **out))
+
+    def do_step(self, current_time, step_size):
+        self.n, self.on, self.choice = self.n + 1, not self.on, 5 - self.choice
+        self.x += 0.25
+        return True
+'''
+TAKER = '''
+from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Integer, Real, String
+
+
+class Taker(Fmi2Slave):
+    """Tells what it is given, as it was throughout its last step."""
+
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.n, self.on, self._choice, self.x, self.word = 1, False, 2, 0.0, "true"
+        self.told_n = self.told_choice = -1
+        self.told_on, self.told_x = False, -1.0
+        taken, out = {"causality": Fmi2Causality.input}, {"causality": Fmi2Causality.output}
+        self.register_variable(Integer("n", **taken))
+        self.register_variable(Boolean("on", **taken))
+        self.register_variable(Integer("choice", **taken))
+        self.register_variable(Real("x", **taken))
+        self.register_variable(String("word", **taken))
+        self.register_variable(Integer("told_n", **out))
+        self.register_variable(Boolean("told_on", **out))
+        self.register_variable(Integer("told_choice", **out))
+        self.register_variable(Real("told_x", **out))
+
+    @property
+    def choice(self):
+        return self._choice
+
+    @choice.setter
+    def choice(self, value):
+        if value not in (2, 3):
+            raise ValueError(f"{value} is no choice")
+        self._choice = value
+
+    def do_step(self, current_time, step_size):
+        self.told_n, self.told_on, self.told_choice, self.told_x = self.n, self.on, self.choice, self.x
+        return True
+'''
+CHOICES = (
+    '<TypeDefinitions><SimpleType name="Choice"><Enumeration><Item name="two" value="2"/>'
+    '<Item name="three" value="3"/></Enumeration></SimpleType></TypeDefinitions>'
+)
+FED = ("n", "on", "choice", "x")
+
+
+def change(path: Path, name: tuple[str, str], kind: tuple[str, str], types: str = "") -> None:
+    """Put a variable of another name and kind into an FMU's description, before and after, and types."""
+    with zipfile.ZipFile(path) as archive:
+        entries = {name: archive.read(name) for name in archive.namelist()}
+    head, found, tail = entries["modelDescription.xml"].decode().partition(f'name="{name[0]}')
+    assert found
+    head = head.replace("<ModelVariables>", f"{types}<ModelVariables>")
+    entries["modelDescription.xml"] = f'{head}name="{name[1]}{tail.replace(*kind, 1)}'.encode()
+    with zipfile.ZipFile(path, "w") as archive:
+        for entry, content in entries.items():
+            archive.writestr(entry, content)
+
+
+def chosen(path: Path) -> None:
+    """Make the Integer `choice` of an FMU an Enumeration of 2 and 3, without a 0."""
+    change(path, ('choice"', 'choice"'), ("<Integer", '<Enumeration declaredType="Choice"'), CHOICES)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Giver.fmu, and Taker.fmu, whose `choice` is an enumeration."""
+    folder = tmp_path_factory.mktemp("kinds")
+    for name, source in (("giver", GIVER), ("taker", TAKER)):
+        (folder / f"{name}.py").write_text(source)
+        FmuBuilder.build_FMU(folder / f"{name}.py", dest=folder)
+    chosen(folder / "Taker.fmu")
+    return folder
+
+
+def pair(folder: Path, **more: object) -> Scene:
+    """The one feeds the other."""
+    parts = {name: {"fmu": f"{name.title()}.fmu"} for name in ("giver", "taker")}
+    run = {"duration": STEPS * STEP, "macro_step": STEP, "record_every": 1}
+    connect = [[f"giver.{name}", f"taker.{name}"] for name in FED]
+    return parse({"components": parts, "connect": connect, "run": run, **more}, "pair", folder)
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+@pytest.mark.parametrize(("scheme", "late"), [("interface", 0), ("jacobi-hold", 1)])
+def test_values_are_held_over_a_step(
+    scheme: str, late: int, isolate: bool, folder: Path, tmp_path: Path
+) -> None:
+    """Those of the step just taken, or all at once of the one before; all of them are recorded."""
+    scene = pair(folder).set({"run.scheme": scheme, "giver.isolate": isolate, "taker.isolate": isolate})
+    run_scene(scene, tmp_path / "out")
+    values = recorded(tmp_path / "out")
+    steps = np.arange(STEPS + 1)
+    given = {"n": 5 + steps, "on": 1 - steps % 2, "choice": 3 - steps % 2, "x": 0.5 + 0.25 * steps}
+    for name in FED:
+        assert np.array_equal(values[f"giver/{name}"], given[name]), name
+        assert np.array_equal(values[f"taker/told_{name}"][1:], given[name][1 - late : STEPS + 1 - late]), (
+            name
+        )
+
+
+def test_compiled_code_records_what_it_does_not_exchange(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Booleans and whole numbers, where all that is connected is Real."""
+    taken: list[int] = []
+    take = MacroSteps.take
+
+    def counting(steps: MacroSteps, now: Moment) -> None:
+        taken.append(now.done)
+        take(steps, now)
+
+    monkeypatch.setattr(MacroSteps, "take", counting)
+    run_scene(pair(folder, connect=[["giver.x", "taker.x"]]), tmp_path / "out", pictures=False)
+    assert taken == [0]  # the others are taken in compiled code
+    values, steps = recorded(tmp_path / "out"), np.arange(STEPS + 1)
+    assert np.array_equal(values["giver/on"], 1 - steps % 2)
+    assert np.array_equal(values["giver/n"], 5 + steps)
+
+
+def test_inputs_of_one_output_start_each_from_its_own(folder: Path) -> None:
+    """The one would refuse the other's start."""
+    scene = pair(folder, connect=[["giver.choice", "taker.choice"], ["giver.choice", "taker.n"]])
+    _, values, _ = history(scene, ["taker.told_choice", "taker.told_n"], in_process=False)
+    assert np.array_equal(values["taker.told_choice"], values["taker.told_n"])
+    assert set(values["taker.told_n"]) == {2, 3}
+
+
+def test_words_are_no_starts_but_those_of_booleans(folder: Path) -> None:
+    variables, _ = interface(folder / "Taker.fmu", folder / "cache")
+    assert variables["on"].start == 0.0
+    assert variables["word"].start is None
+
+
+def test_booleans_can_be_asked_for_after_the_run(folder: Path, tmp_path: Path) -> None:
+    """In memory, and in what its folder keeps."""
+    result = run_scene(pair(folder), tmp_path / "out", pictures=False)
+    for told in (result, touchdown.open_result(tmp_path / "out")):
+        assert told.ending.value("giver.on") == 1 - STEPS % 2
+        assert told.ending.value("taker.told_on") == 1 - STEPS % 2
+
+
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler")
+@pytest.mark.parametrize("listens", [False, True])
+def test_true_is_one_whatever_an_fmu_says(listens: bool, folder: Path, tmp_path: Path) -> None:
+    """It says 2; where none listens, compiled code records it."""
+    fmu = misbehaving(compiled(tmp_path), "never", "nothing")
+    change(fmu, ('journal.jump"', 'on"'), ('<Real unit="J"/>', "<Boolean/>"))
+    parts = {"says": {"fmu": str(fmu)}, "taker": {"fmu": "Taker.fmu"}}
+    connect = [["says.on", "taker.on"]] if listens else []
+    run_scene(pair(folder, components=parts, connect=connect), tmp_path / "out", pictures=False)
+    values = recorded(tmp_path / "out")
+    assert values["says/on"] == pytest.approx(1.0)
+    assert values["taker/told_on"][1:] == pytest.approx(float(listens))
+
+
+def test_booleans_are_outputs_of_containers(folder: Path, tmp_path: Path) -> None:
+    scene = pair(folder, connect=[["giver.x", "taker.x"]])
+    path = write_container(scene, tmp_path / "pair.fmu")
+    found = simulate_fmu(str(path), stop_time=STEPS * STEP, output_interval=STEP, output=["giver.on"])
+    assert np.array_equal(found["giver.on"], np.arange(STEPS + 1) % 2 == 0)
+
+
+def test_an_integer_may_feed_what_is_real(folder: Path) -> None:
+    scene = pair(folder, connect=[["giver.n", "taker.x"]])
+    _, values, _ = history(scene, ["taker.told_x"], in_process=False)
+    assert np.array_equal(values["taker.told_x"], 6.0 + np.arange(STEPS))
+
+
+@pytest.mark.parametrize("in_process", [True, False])
+def test_a_drop_is_the_same_beside_a_component_that_listens(
+    in_process: bool, folder: Path, tmp_path: Path
+) -> None:
+    """To whether the magnetic bearing is active: step by step, where compiled code takes the drop alone."""
+    scene = load_scene("disk-caged-simplified").set({"amb.shutdown_time": 1e-3, "run.duration": 9e-3})
+    listening = {**scene.components, "taker": ComponentSpec(str(folder / "Taker.fmu"))}
+    beside = replace(scene, components=listening, connect=(Wire("amb.active", "taker.n"),))
+    with opened(beside, in_process) as system:
+        assert system.components["amb"].by_address() is None
+    alone, heard = (
+        recorded(run_scene(s, tmp_path / name, in_process, pictures=False).folder)
+        for s, name in ((scene, "alone"), (beside, "beside"))
+    )
+    assert alone["bearing/contact.force"].max() > 100.0
+    assert [name for name in alone if not np.array_equal(alone[name], heard[name])] == []
+    told = heard["taker/told_n"][1:]
+    assert (told[0], told[-1]) == (1, 0)
+    assert np.array_equal(told, heard["amb/active"][1:])
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        (
+            {"connect": [["giver.x", "taker.n"]]},
+            "it leads from the type Real to Integer; types must be the same",
+        ),
+        (
+            {"connect": [["giver.n", "taker.on"]]},
+            "it leads from the type Integer to Boolean; types must be",
+        ),
+        ({"connect": [["giver.on", "taker.x"]]}, "it leads from the type Boolean to Real; types must be"),
+        (
+            {"connect": [["giver.word", "taker.word"]]},
+            "it leads from the type String to String; types must be",
+        ),
+        (
+            {"connect": [["giver.n", "taker.n", 2.0, 0.0]]},
+            "only what is Real can be scaled, and it leads from the type Integer to Integer; leave",
+        ),
+        (
+            {"connect": [], "bond": [["giver.x", "taker.x"], ["taker.told_n", "giver.n"]]},
+            "a bond is Real, and it leads from the type Integer to Integer",
+        ),
+    ],
+)
+def test_what_does_not_fit_is_one_line(change: dict[str, object], line: str, folder: Path) -> None:
+    with pytest.raises(TouchdownError, match=line) as refused:
+        open_system(pair(folder, **change)).close()
+    assert "\n" not in str(refused.value)
+
+
+def test_packages_have_such_connections(folder: Path, tmp_path: Path) -> None:
+    """Written, with their types, and read again; a choice goes as its number."""
+    scene = pair(folder)
+    path = write_package(scene, tmp_path / "pair.ssp").path
+    with zipfile.ZipFile(path) as archive:
+        said = archive.read("SystemStructure.ssd").decode()
+    assert said.count("<ssc:Boolean") == 2
+    assert said.count("<ssc:Integer") == 4
+    assert "LinearTransformation" not in said
+    names = [f"taker.told_{name}" for name in FED]
+    _, values, _ = history(scene, names, in_process=False)
+    _, again, _ = history(find_scene(str(path)), names, in_process=False)
+    for name in names:
+        assert np.array_equal(values[name], again[name]), name
+
+
+@pytest.mark.parametrize(
+    ("inside", "switch", "refused"),
+    [
+        ("", ' suppressUnitConversion="true"', False),  # there is nothing to convert
+        ('<ssc:LinearTransformation factor="2"/>', "", True),
+    ],
+)
+def test_a_package_scales_no_integers(
+    inside: str, switch: str, refused: bool, folder: Path, tmp_path: Path
+) -> None:
+    path = write_package(pair(folder), tmp_path / "pair.ssp").path
+    with zipfile.ZipFile(path) as archive:
+        entries = {name: archive.read(name) for name in archive.namelist()}
+    said = entries["SystemStructure.ssd"].decode()
+    ends = 'startElement="giver" startConnector="n" endElement="taker" endConnector="n"'
+    assert f"<ssd:Connection {ends} />" in said
+    said = said.replace(
+        f"<ssd:Connection {ends} />", f"<ssd:Connection {ends}{switch}>{inside}</ssd:Connection>"
+    )
+    with zipfile.ZipFile(tmp_path / "changed.ssp", "w") as archive:
+        for name, entry in {**entries, "SystemStructure.ssd": said.encode()}.items():
+            archive.writestr(name, entry)
+    scene = find_scene(str(tmp_path / "changed.ssp"))
+    if refused:
+        with pytest.raises(TouchdownError, match="only what is Real can be scaled"):
+            open_system(scene).close()
+    else:
+        open_system(scene).close()
