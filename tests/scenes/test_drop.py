@@ -119,7 +119,7 @@ def test_held_motion_errs_a_thousand_times_more(reference: tuple[np.ndarray, np.
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "loaded", "pendulum", "speed"),
-    [(CAGED, (1, 2, 3), (26.5, 28.0), 8952.0), (CAGELESS, (8, 9), (27.0, 29.0), 8975.0)],
+    [(CAGED, (1, 2, 3), (25.0, 29.0), 8952.0), (CAGELESS, (8, 9), (27.0, 29.0), 8975.0)],
 )
 def test_what_five_seconds_bring(
     tmp_path: Path, name: str, loaded: tuple, pendulum: tuple, speed: float
@@ -127,7 +127,8 @@ def test_what_five_seconds_bring(
     """Synchronism, pendulum, run-down and the loaded balls at the end.
 
     With no play and no ball off the pitch circle, half of the 17 balls are loaded at any time, 8 or 9;
-    the 7 of the source's Fig 27 are the detailed model's.
+    the 7 of the source's Fig 27 are the detailed model's. Caged balls rattle: from start to start, 1e-5 deg
+    apart, the pendulum's frequency differs by 0.5 Hz (standard deviation) about 26.9 Hz.
     """
     summary = run_to_end(load_scene(name), tmp_path)
     assert 0.07 < float(summary["ring_sync_time_s"]) < 0.15  # type: ignore[arg-type]
