@@ -105,7 +105,7 @@ def _neighbour_contacts(q, m):
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
     share(s.side, s.chain, count)
-    for b in range(count if s.side.touching > 0 else 0):
+    for b in range(count):
         if s.side.indentation[b] > 0.0:
             c = press_of(b, d.ball_contact, d.ball_friction, m)
             push(after(b, count), c.fx, c.fy, c.first_moment, m)

@@ -20,7 +20,7 @@ from touchdown.modelkit.kernel.linked import KernelDispatcher
 
 def whole(function: Callable) -> Any:
     """A kernel that is compiled as the models' are, and not kept."""
-    return KernelDispatcher(function, targetoptions={"nopython": True, "error_model": "numpy"})
+    return KernelDispatcher(function)
 
 
 def make(module: ModuleType) -> dict[str, Callable]:

@@ -176,7 +176,7 @@ def neighbour_forces(q, m):
     _find_neighbours(q, m)
     share(s.side, s.chain, count)
     faster, turning = s.balls.faster, s.balls.turning
-    for b in range(count if s.side.touching > 0 else 0):
+    for b in range(count):
         if s.side.indentation[b] > 0.0:
             k = after(b, count)
             c = press_of(b, d.ball_contact, d.ball_friction, m)

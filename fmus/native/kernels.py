@@ -33,7 +33,7 @@ from touchdown.modelkit.kernel.tried import NUMBA
 from touchdown.modelkit.model import Model
 
 ENTRIES = ("settle", "start", "advance")
-OPTIONS = {"nopython": True, "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # entries are for C alone
 PREFIX = "kernel_"  # of the entries' names
 
 
@@ -201,7 +201,7 @@ def _compiled_entry(name: str, kernel: Any, words: int, state: int) -> Any:
     stepping = name == "advance"
     signature = (pointer, pointer, real, real) if stepping else (pointer,)
     carray = cast(Any, numba).carray
-    entry = KernelDispatcher(on_words_and_scratch if stepping else on_words, targetoptions=OPTIONS)
+    entry = KernelDispatcher(on_words_and_scratch if stepping else on_words, targetoptions=BARE)
     entry.compile(signature)
     compiled = entry.overloads[signature]
     module = compiled.library._get_module_for_linking()

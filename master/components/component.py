@@ -262,15 +262,15 @@ def value_of(component: Component, variable: Variable, given: object) -> float:
     raise TouchdownError(f"{name} = {given!r} is none of its choices: {known}")
 
 
-def put_whole(
+def put(
     component: Component, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray
 ) -> None:
-    """Put `values` into `data`, of a type of whole numbers, or of Booleans.
+    """Put `values` into `data`, of any type of numbers, or of Booleans.
 
     values, data: (n,), of the variables `names[i]` for `i` in `which`. Raises TouchdownError where it
     cannot hold one.
     """
-    if data.dtype.kind != "b":
+    if data.dtype.kind in "iu":
         limits = np.iinfo(data.dtype)
         # the largest of 64 bits is no number here, the one above it is; what is no number holds for neither
         held = (values >= float(limits.min)) & (values < float(limits.max) + 1.0)

@@ -34,7 +34,7 @@ from touchdown.master.components.component import (
     Component,
     InMemory,
     Kind,
-    put_whole,
+    put,
 )
 from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
 from touchdown.master.components.unpack import unpack
@@ -85,20 +85,28 @@ def _release_interpreter(library: ctypes.CDLL) -> None:
         release()
 
 
+TYPES = (("Real", (Kind.REAL,), "f8"), ("Integer", WHOLE, "i4"), ("Boolean", (Kind.BOOLEAN,), "i4"))
+"""In the names of FMI 2.0's functions, which kinds they are for, and numpy's name of the values."""
+
+
+class _Function(NamedTuple):
+    """What hands over or fetches values of one type."""
+
+    title: str
+    call: Callable[..., int]
+    kinds: Sequence[Kind]
+    dtype: str  # numpy's name of its values
+
+
 class _Exchange(NamedTuple):
     """A call that fetches or hands over all values of one type; arrays must outlive their addresses."""
 
-    call: Callable[..., int]
-    boolean: bool
+    function: _Function
     at: np.ndarray  # where the values go, or come from
     references: np.ndarray
     data: np.ndarray
     of: int  # address of `references`
     into: int  # address of `data`
-
-
-Functions = Sequence[tuple[Sequence[Kind], Callable[..., int], str]]
-"""What exchanges values: of which types, the function, and numpy's name of its values."""
 
 
 def _address(held: Any) -> int:
@@ -289,20 +297,16 @@ class FmuComponent(LoadedFmu):
         pointer, size, real, integer = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_double, ctypes.c_int
         exchange = ctypes.PYFUNCTYPE(integer, pointer, pointer, size, pointer)
         step = ctypes.PYFUNCTYPE(integer, pointer, real, real, integer)
-        self._set_real = exchange(("fmi2SetReal", self._fmu.dll))
-        self._get_real = exchange(("fmi2GetReal", self._fmu.dll))
-        self._get_integer = exchange(("fmi2GetInteger", self._fmu.dll))
-        self._get_boolean = exchange(("fmi2GetBoolean", self._fmu.dll))
-        self._setters = (
-            ((Kind.REAL,), self._set_real, "f8"),
-            (WHOLE, exchange(("fmi2SetInteger", self._fmu.dll)), "i4"),
-            ((Kind.BOOLEAN,), exchange(("fmi2SetBoolean", self._fmu.dll)), "i4"),
-        )
-        self._getters = (
-            ((Kind.REAL,), self._get_real, "f8"),
-            (WHOLE, self._get_integer, "i4"),
-            ((Kind.BOOLEAN,), self._get_boolean, "i4"),
-        )
+
+        def functions(verb: str) -> list[_Function]:
+            return [
+                _Function(f"fmi2{verb}{name}", exchange((f"fmi2{verb}{name}", self._fmu.dll)), kinds, dtype)
+                for name, kinds, dtype in TYPES
+            ]
+
+        self._setters, self._getters = functions("Set"), functions("Get")
+        self._set_real = self._setters[0].call
+        self._get_real, self._get_integer, self._get_boolean = (f.call for f in self._getters)
         self._do_step = step(("fmi2DoStep", self._fmu.dll))
 
     # -- values --------------------------------------------------------------------------------------
@@ -311,38 +315,31 @@ class FmuComponent(LoadedFmu):
         return np.array([self.variable(n).reference for n in names], dtype=np.uint32)
 
     def set(self, values: Mapping[str, float]) -> None:
-        titles = ("fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean")
-        for title, (kinds, call, dtype) in zip(titles, self._setters, strict=True):
-            names = [n for n in values if self.variable(n).kind in kinds]
-            if names:
-                self._told(title)
-                references, data = self._references(names), np.zeros(len(names), dtype)
-                self._put(names, np.arange(len(names)), np.array([values[n] for n in names], float), data)
-                self._check(
-                    call(self._component, references.ctypes.data, len(names), data.ctypes.data),
-                    "setting values",
-                )
+        names, given = list(values), np.array(list(values.values()), float)
+        for exchange in self._exchanges(names, self._setters):
+            self._told(exchange.function.title)
+            self._hand_over(exchange, names, given, "setting values")
 
-    def _put(self, names: Sequence[str], which: np.ndarray, values: np.ndarray, data: np.ndarray) -> None:
-        """`put_whole`, or what is Real as it is."""
-        if data.dtype.kind == "f":
-            data[:] = values
-        else:
-            put_whole(self, names, which, values, data)
+    def _hand_over(
+        self, exchange: _Exchange, names: Sequence[str], values: np.ndarray, doing: Call | str
+    ) -> None:
+        """Those of `values`, (n,) of the variables called `names`, that are of its type."""
+        function, at, references, data, of, into = exchange
+        put(self, names, at, values[at], data)
+        self._check(function.call(self._component, of, len(references), into), doing)
 
-    def _exchanges(self, names: Sequence[str], functions: Functions) -> list[_Exchange]:
+    def _exchanges(self, names: Sequence[str], functions: Sequence[_Function]) -> list[_Exchange]:
         """Those that exchange the variables called `names`, type by type."""
         found: list[_Exchange] = []
-        for kinds, call, dtype in functions:
-            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in kinds], dtype=np.intp)
+        for f in functions:
+            at = np.array([i for i, n in enumerate(names) if self.variable(n).kind in f.kinds], np.intp)
             if len(at):
-                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), dtype)
+                references, data = self._references([names[int(i)] for i in at]), np.zeros(len(at), f.dtype)
                 addresses = references.ctypes.data, data.ctypes.data
-                boolean = Kind.BOOLEAN in kinds
-                found.append(_Exchange(call, boolean, at, references, data, *addresses))
+                found.append(_Exchange(f, at, references, data, *addresses))
         return found
 
-    def _typed(self, names: Sequence[str], functions: Functions) -> list[_Exchange]:
+    def _typed(self, names: Sequence[str], functions: Sequence[_Function]) -> list[_Exchange]:
         """`_exchanges` of variables of which some are not Real; where all are, none is needed."""
         mixed = any(self.variable(n).kind is not Kind.REAL for n in names)
         return self._exchanges(names, functions) if mixed else []
@@ -361,9 +358,8 @@ class FmuComponent(LoadedFmu):
         status = self._set_real(self._component, *self._in)
         if status > WARNING:
             self._check(status, Call.SET)
-        for call, _, at, references, data, of, into in self._taken:
-            self._put(self._inputs, at, self.inputs[at], data)
-            self._check(call(self._component, of, len(references), into), Call.SET)
+        for exchange in self._taken:
+            self._hand_over(exchange, self._inputs, self.inputs, Call.SET)
 
     def pull(self) -> None:
         status = self._get_real(self._component, *self._out)
@@ -373,10 +369,11 @@ class FmuComponent(LoadedFmu):
             self._fetch(self._given, self.outputs, Call.GET)
 
     def _fetch(self, exchanges: Sequence[_Exchange], values: np.ndarray, doing: Call) -> None:
-        for call, boolean, at, references, data, of, into in exchanges:
-            status = call(self._component, of, len(references), into)
+        for function, at, references, data, of, into in exchanges:
+            status = function.call(self._component, of, len(references), into)
             if status > WARNING:
                 self._check(status, doing)
+            boolean = Kind.BOOLEAN in function.kinds
             values[at] = data != 0 if boolean else data  # some say -1 or 255 for true
 
     def by_address(self) -> InMemory | ByFunctions | None:

@@ -16,7 +16,7 @@ import numpy as np
 from fmpy.fmi3 import FMU3Slave
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import EXACT, READABLE, Call, put_whole
+from touchdown.master.components.component import EXACT, READABLE, Call, put
 from touchdown.master.components.fmu import OK, WARNING, LoadedFmu
 
 CALLS = (  # in the order of FMI 2.0's, `fmu.CALLS`
@@ -137,13 +137,9 @@ class Fmu3Component(LoadedFmu):
 
     def _put(self, vector: _Vector, names: Sequence[str], values: np.ndarray) -> None:
         """Fill `vector` with those of `values`, (n,) of the variables called `names`, that it is for."""
-        mine = values[vector.which]
-        if vector.data.dtype.kind == "f":
-            vector.data[vector.at] = mine
-        else:
-            held = np.zeros(len(mine), vector.data.dtype)
-            put_whole(self, names, vector.which, mine, held)
-            vector.data[vector.at] = held
+        held = np.zeros(len(vector.which), vector.data.dtype)
+        put(self, names, vector.which, values[vector.which], held)
+        vector.data[vector.at] = held
 
     def _keep(self, reference: int, names: Sequence[str], values: Mapping[str, float]) -> None:
         for name in names:

@@ -94,8 +94,7 @@ def _dispatcher(function: Callable[..., object], forceinline: bool) -> object:
         return numba.njit(error_model="numpy", forceinline=forceinline)(function)
     from touchdown.modelkit.kernel.linked import KernelDispatcher
 
-    options = {"nopython": True, "error_model": "numpy", "forceinline": forceinline}
-    return KernelDispatcher(function, targetoptions=options)
+    return KernelDispatcher(function, targetoptions={"forceinline": forceinline})
 
 
 @cache

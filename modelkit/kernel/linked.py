@@ -20,6 +20,7 @@ from numba.core.typing.templates import make_concrete_template
 
 from touchdown.modelkit.kernel.front_end import FrontEnd
 
+OPTIONS = {"nopython": True, "error_model": "numpy"}  # of every kernel
 COUNTING = "NRT_"  # begins the names of functions that count references
 
 
@@ -66,7 +67,7 @@ class KernelDispatcher(CPUDispatcher):
     _compiling_counter: Any  # by which numba finds recursion
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
-        super().__init__(py_func, locals, targetoptions, pipeline_class=_Whole)
+        super().__init__(py_func, locals, OPTIONS | (targetoptions or {}), pipeline_class=_Whole)
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
 
     def get_call_template(self, args: Any, kws: Any) -> Any:

@@ -15,7 +15,7 @@ from hosting import COMPILER
 from systems import history, recorded
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import put_whole
+from touchdown.master.components.component import put as put_values
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.doctor import why_not
@@ -201,7 +201,7 @@ def test_settings_that_a_type_cannot_hold_are_refused(probe: Path) -> None:
 def test_no_type_is_given_more_than_it_holds(dtype: str, least: float, beyond: float, probe: Path) -> None:
     data = np.zeros(2, dtype)
     with opened(alone(probe)) as system:
-        put = partial(put_whole, system.components["probe"], ("n", "big", "k"), np.array([0, 2]))
+        put = partial(put_values, system.components["probe"], ("n", "big", "k"), np.array([0, 2]))
         put(np.array([least, 1.0]), data)
         assert data.tolist() == [least, 1]
         with pytest.raises(TouchdownError, match="k is given"):
