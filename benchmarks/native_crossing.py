@@ -10,6 +10,7 @@ called again and again from compiled code. Once with macro steps in compiled cod
 from __future__ import annotations
 
 import argparse
+import itertools
 import statistics
 import time as clock
 from pathlib import Path
@@ -37,7 +38,7 @@ def row(housings: int, steps: int) -> Scene:
         "components": {name: {"fmu": "housing", "native": True} for name in names},
         "connect": [
             [f"{giver}.seat.{given}", f"{taker}.seat.{taken}", 1.0, 0.0]
-            for giver, taker in zip(names, names[1:], strict=False)
+            for giver, taker in itertools.pairwise(names)
             for given, taken in CROSSING
         ],
         "run": {"duration": steps * MACRO_STEP, "macro_step": MACRO_STEP},
