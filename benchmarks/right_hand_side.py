@@ -1,4 +1,4 @@
-"""The right-hand side of the detailed cageless bearing, beside the same arithmetic in vectorised C.
+"""The right-hand side of the detailed bearings, beside the same arithmetic in vectorised C.
 
 All forces and accelerations of one inner step, by the project's kernels, and by a program written by hand
 in C (`in_c/`): structures of arrays, aligned and padded, in plain loops that the compiler turns into vector
@@ -8,11 +8,11 @@ g2 = slope, its journal is a point mass.
 
     python benchmarks/right_hand_side.py [--turns 41] [--flags="-ffast-math"]
 
-First both evaluate states along drops, undamped and damped, with 3 to 12 loaded balls. Their largest
+First both evaluate states along drops, undamped and damped, with loaded balls in them. Their largest
 difference is printed, of a number over itself, of balls' over the largest ball's; above 1e-12 this ends
 with an error. Then they take turns in one process, `TIMES` evaluations of a state each in compiled code,
-over states of the first impact with nine loaded balls. Printed are medians of the turns, and that of their
-ratios.
+over states of the first impact with nine loaded balls of 17, or three of nine in the cage. Printed are
+medians of the turns, and that of their ratios.
 
 It takes a C compiler: CC, cc or gcc. What `--flags` says comes behind `FLAGS`.
 """
@@ -31,6 +31,7 @@ import tempfile
 import time as clock
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,12 +47,30 @@ from touchdown.modelkit.instance import Instance
 SOURCE = Path(__file__).with_name("in_c") / "right_hand_side.c"
 FLAGS = "-std=c11 -O3 -march=native -ffp-contract=off -fno-math-errno -fno-trapping-math"
 LIMIT = 1e-12  # of the difference
-LOADED = range(3, 13)  # balls, in states that are compared
-NINE = 9  # loaded balls, in those that are timed
 STATES, TIMED = 60, 5  # of a drop that are compared, and timed
 TIMES = 4000  # evaluations of a state in a turn
 STRETCH, IMPACT, DROP = 1e-5, 1.3e-3, 4e-3  # s, from state to state; to the end of the first impact; in all
-DROPS = ({}, {"balls": 0.05, "ball_contact": 0.05})  # damping ratios
+DAMPED = 0.05  # damping ratio of the balls
+
+
+class Case(NamedTuple):
+    """A bearing, and which of its states are compared and timed."""
+
+    name: str
+    side: str  # group of the law between a ball and what touches it beside
+    compared: range  # loaded balls
+    timed: int  # loaded balls
+
+    @property
+    def module(self) -> ModuleType:
+        """The model."""
+        return MODULES[self.name]
+
+
+CASES = (
+    Case("cageless", "ball", range(3, 13), 9),
+    Case("caged", "cage", range(1, 10), 3),
+)
 
 
 def numbers(names: str, size: int = 1) -> np.dtype:
@@ -60,7 +79,7 @@ def numbers(names: str, size: int = 1) -> np.dtype:
 
 
 # The structs of in_c/bearing.h.
-STATE = np.dtype([("head", "f8", 32), ("balls", "f8", (6, MOST_BALLS))])
+STATE = np.dtype([("head", "f8", 32), ("cage", "f8", 8), ("balls", "f8", (6, MOST_BALLS))])
 RACE = numbers(
     "normal tangential indentation stiffness loss nx ny second sliding rate damped driven expected "
     "start slope base held gain",
@@ -75,22 +94,24 @@ LAW, FRICTION = numbers("stiffness damping dissipation viscous"), numbers("g1 g2
 BEARING = np.dtype(
     [
         *[("inner", RACE), ("outer", RACE), ("side", SIDE), ("chain", CHAIN), ("lines", LINES)],
-        *[("faster", numbers("x y spin", MOST_BALLS)), ("cross", "f8", MOST_BALLS), ("before", STATE)],
+        *[("faster", numbers("x y spin", MOST_BALLS)), ("cross", "f8", MOST_BALLS)],
+        *numbers("pocket_x pocket_y", MOST_BALLS).descr,
+        ("before", STATE),
         *[("kick", "f8"), ("rubbed", "f8"), ("ahead", "f8", len(COPIES)), ("half", "f8")],
         *[("ring", numbers("normal indentation rate elastic")), ("brake", numbers("jx jy jm hx hy"))],
         *numbers("gravity journal_radius clearance ring_mass ring_inertia").descr,
         *numbers("mass inertia ball_radius inner_radius outer_radius").descr,
-        *[(name, LAW) for name in ("inner_law", "outer_law", "contact", "ball_contact")],
-        *[(name, FRICTION) for name in ("friction", "race_friction", "ball_friction")],
+        *numbers("cage_mass cage_inertia cage_clearance").descr,
+        *[(name, LAW) for name in ("inner_law", "outer_law", "contact", "side_contact")],
+        *[(name, FRICTION) for name in ("friction", "race_friction", "side_friction")],
         ("journal", numbers("ax_free ay_free inv_m alpha_free inv_I")),
         ("housing", numbers("x y vx vy ax_free ay_free inv_m k_over_m c_over_m")),
-        ("count", "i8"),
+        *[("count", "i8"), ("caged", "i8")],
     ]
 )
 GIVEN = {  # by group of the project's memory, what goes by the same name in both
-    "s": "inner outer side chain faster cross kick rubbed ahead ring brake",
-    "d": "mass inertia ball_radius inner_radius outer_radius contact ball_contact "
-    "friction race_friction ball_friction",
+    "s": "inner outer side kick rubbed ahead ring",
+    "d": "mass inertia ball_radius inner_radius outer_radius contact friction race_friction",
     "p": "gravity journal_radius clearance",
     "u": "journal housing",
 }
@@ -138,33 +159,44 @@ def copy(name: str, to: Any, given: Any) -> None:
 
 def lay_out(to: Any, vector: np.ndarray, count: int) -> None:
     """Set a STATE to the project's state vector; the first ball stands in where there are no more."""
-    balls = vector[BALLS : BALLS + 6 * count].reshape(6, count)
-    to["head"][:BALLS], to["balls"][:], to["balls"][:, :count] = vector[:BALLS], balls[:, :1], balls
+    cage = BALLS + 6 * count  # what lies there without one is as good as nothing
+    balls = vector[BALLS:cage].reshape(6, count)
+    to["head"][:BALLS], to["cage"][:6] = vector[:BALLS], vector[cage : cage + 6]
+    to["balls"][:], to["balls"][:, :count] = balls[:, :1], balls
 
 
 class InC:
     """The C program on the state of a bearing. Ends where that has what the program has not."""
 
     def __init__(self, program: ctypes.CDLL, instance: Instance) -> None:
-        r, m = instance.record, aligned(BEARING)
-        laws = [r["d"][name] for name in ("friction", "race_friction", "ball_friction")]
-        if r["d"]["searched"] or any(f["kind"] != MAKKAR or f["g2"] != f["slope"] for f in laws):
-            raise SystemExit("the C program has circles for races and Makkar's friction with g2 = slope")
+        self.bearing, self.state, self.slope = aligned(BEARING), aligned(STATE), aligned(STATE)
+        self._take(instance.record)
+        given = (self.state, self.slope, self.bearing)
+        self._at = [ctypes.c_void_p(one.__array_interface__["data"][0]) for one in given]
+        self._repeat = program.repeat
+
+    def _take(self, r: Any) -> None:
+        """Take constants and state from the project's memory."""
+        m, p, d, caged = self.bearing, r["p"], r["d"], "cage" in r["p"].dtype.names
+        side = "cage" if caged else "ball"
+        laws = [d[name] for name in ("friction", "race_friction", f"{side}_friction")]
+        if d["searched"] or any(law["kind"] != MAKKAR or law["g2"] != law["slope"] for law in laws):
+            raise SystemExit("the C program has circles for races, and Makkar's friction with g2 = slope")
         for group, names in GIVEN.items():
             for name in names.split():
                 copy(name, m, r[group])
-        for side in ("inner", "outer"):
-            for name in LAW.names or ():
-                m[f"{side}_law"][name] = r["d"][side][name]
-        m["ring_mass"], m["ring_inertia"] = r["p"]["ring"]["mass"], r["p"]["ring"]["inertia"]
-        m["half"], m["count"] = r["half"], r["p"]["balls"]["count"]
-        self.bearing, self.state, self.slope = m, aligned(STATE), aligned(STATE)
+        copy("inner_law", m, {"inner_law": d["inner"]})
+        copy("outer_law", m, {"outer_law": d["outer"]})
+        copy("side_contact", m, {"side_contact": d[f"{side}_contact"]})
+        copy("side_friction", m, {"side_friction": d[f"{side}_friction"]})
+        m["ring_mass"], m["ring_inertia"] = p["ring"]["mass"], p["ring"]["inertia"]
+        m["half"], m["count"], m["caged"] = r["half"], p["balls"]["count"], caged
+        if caged:
+            m["cage_mass"], m["cage_clearance"] = p["cage"]["mass"], p["cage"]["clearance"]
+            for name in ("cage_inertia", "pocket_x", "pocket_y"):
+                m[name] = d[name]
         lay_out(self.state, r["q"], int(m["count"]))
         lay_out(m["before"], r["s"]["before"], int(m["count"]))
-        self._repeat = program.repeat
-        self._at = [
-            ctypes.c_void_p(one.__array_interface__["data"][0]) for one in (self.state, self.slope, m)
-        ]
 
     def evaluate(self, times: int) -> None:
         """The right-hand side, `times` over."""
@@ -191,9 +223,8 @@ class Kernels:
         return slope
 
 
-def repeater() -> Callable:
-    """A kernel repeat(words, rows, times) that evaluates the bearing's right-hand side `times` over."""
-    module = MODULES["cageless"]
+def repeater(module: ModuleType) -> Callable:
+    """A kernel repeat(words, rows, times) that evaluates a model's right-hand side `times` over."""
     rhs, memory, scratch = module.rhs, module.MEMORY, module.SCRATCH
 
     @whole
@@ -216,6 +247,7 @@ class Pair(NamedTuple):
         """The largest in what both found."""
         theirs, ours, count = self.in_c, self.kernels, self.kernels.count
         pairs = list(zip(theirs.slope["head"], ours.slope["head"], strict=True))
+        pairs += zip(theirs.slope["cage"], ours.slope["cage"], strict=True)
         pairs += zip(theirs.slope["balls"][:, :count], ours.slope["balls"][:, :count], strict=True)
         for group, names in FOUND.items():
             for name in names.split():
@@ -236,10 +268,10 @@ def loaded(instance: Instance) -> int:
     return int(np.sum((s["inner"]["normal"][:count] > 0.0) & (s["outer"]["normal"][:count] > 0.0)))
 
 
-def landed(damping: dict[str, float]) -> Instance:
-    """The bearing at first touch, with damping ratios by group of its parameters."""
-    instance = released(MODULES["cageless"])
-    for group, ratio in damping.items():
+def landed(case: Case, ratio: float) -> Instance:
+    """The bearing at first touch, with a damping ratio of all contacts of balls."""
+    instance = released(case.module)
+    for group in ("balls", f"{case.side}_contact"):
         instance.record["p"][group]["damping_ratio"] = ratio
     instance.start(0.0)
     return instance
@@ -267,9 +299,9 @@ def evenly(states: list[Seen], count: int) -> list[Seen]:
     return [states[round(i)] for i in np.linspace(0, len(states) - 1, count)]
 
 
-def pair(state: Seen, damping: dict[str, float], program: ctypes.CDLL, repeat: Callable) -> Pair:
+def pair(case: Case, state: Seen, program: ctypes.CDLL, repeat: Callable) -> Pair:
     """Both on a state of a drop."""
-    instance = landed(damping)
+    instance = Instance(case.module.MODEL)
     instance.words[:] = state.words
     return Pair(InC(program, instance), Kernels(repeat, instance))
 
@@ -295,20 +327,20 @@ class Comparison(NamedTuple):
     states: int  # in which that is the largest
 
 
-def compared(program: ctypes.CDLL, turns: int) -> Comparison:
-    """Both on states of drops, then by turns on those with nine loaded balls."""
-    repeat, carry = repeater(), kept(MODULES["cageless"])
+def compared(case: Case, program: ctypes.CDLL, turns: int) -> Comparison:
+    """Both on states of drops, then by turns on those with so many loaded balls as are to be timed."""
+    repeat, carry = repeater(case.module), kept(case.module)
     off, timed = [], []
-    for damping in DROPS:
-        seen = drop(landed(damping), carry)
-        for state in evenly([one for one in seen if one.loaded in LOADED], STATES):
-            both = pair(state, damping, program, repeat)
+    for ratio in (0.0, DAMPED):
+        seen = drop(landed(case, ratio), carry)
+        for state in evenly([one for one in seen if one.loaded in case.compared], STATES):
+            both = pair(case, state, program, repeat)
             for one in both:
                 one.evaluate(1)
             off.append(both.difference())
-        if not damping:
-            timed = evenly([one for one in seen if one.loaded == NINE and one.time < IMPACT], TIMED)
-    pairs = [pair(state, {}, program, repeat) for state in timed]
+        if not ratio:
+            timed = evenly([one for one in seen if one.loaded == case.timed and one.time < IMPACT], TIMED)
+    pairs = [pair(case, state, program, repeat) for state in timed]
     turn(pairs, 1)
     costs = [turn(pairs, (1, -1)[k % 2]) for k in range(turns)]
     off += [both.difference() for both in pairs]  # they went the same way ever since
@@ -325,13 +357,19 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     flags = f"{FLAGS} {options.flags}".strip()
     with tempfile.TemporaryDirectory() as folder:
-        found = compared(library(flags, Path(folder)), options.turns)
-    print(f"C compiled with {flags}; {found.states} states compared")
+        program = library(flags, Path(folder))
+        found = {case: compared(case, program, options.turns) for case in CASES}
+    print(
+        f"C compiled with {flags}; states compared: {', '.join(str(one.states) for one in found.values())}"
+    )
     print(f"{'bearing':<20}{'loaded balls':>14}{'C':>12}{'project':>12}{'ratio':>8}{'difference':>12}")
-    times = f"{found.in_c * 1e6:>9.3f} us{found.kernels * 1e6:>9.3f} us"
-    print(f"{'detailed, cageless':<20}{NINE:>14}{times}{found.ratio:>8.2f}{found.difference:>12.1g}")
-    if not found.difference <= LIMIT:
-        print(f"they do not compute the same: the difference is above {LIMIT:g}", file=sys.stderr)
+    for case, one in found.items():
+        times = f"{one.in_c * 1e6:>9.3f} us{one.kernels * 1e6:>9.3f} us"
+        print(
+            f"{'detailed, ' + case.name:<20}{case.timed:>14}{times}{one.ratio:>8.2f}{one.difference:>12.1g}"
+        )
+    if not all(one.difference <= LIMIT for one in found.values()):
+        print(f"they do not compute the same: a difference is above {LIMIT:g}", file=sys.stderr)
         return 1
     return 0
 

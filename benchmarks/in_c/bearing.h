@@ -15,7 +15,8 @@ enum {
 };
 
 typedef struct { double x[MOST], y[MOST], vx[MOST], vy[MOST], angle[MOST], spin[MOST]; } Balls;
-typedef struct { double head[HEAD]; Balls balls; } State; /* or its derivative */
+typedef struct { double x, y, vx, vy, angle, spin, spare[2]; } Cage;
+typedef struct { double head[HEAD]; Cage cage; Balls balls; } State; /* or its derivative */
 
 typedef struct { /* all balls at one race; the first two are those of the kick before, on entry */
     double normal[MOST], tangential[MOST], indentation[MOST], stiffness[MOST], loss[MOST];
@@ -23,7 +24,7 @@ typedef struct { /* all balls at one race; the first two are those of the kick b
     double expected[MOST], start[MOST], slope[MOST], base[MOST], held[MOST], gain[MOST];
 } Race;
 
-typedef struct { /* each ball and the next one */
+typedef struct { /* each ball and the next one, or its pocket in the cage */
     double normal[MOST], highest[MOST], tangential[MOST], indentation[MOST], stiffness[MOST];
     double nx[MOST], ny[MOST], first[MOST], second[MOST], sliding[MOST], rate[MOST], damped[MOST];
 } Side;
@@ -52,18 +53,19 @@ typedef struct {
     Chain chain;
     Lines lines;
     Rates faster;
-    double cross[MOST];
+    double cross[MOST], pocket_x[MOST], pocket_y[MOST];
     State before; /* derivative in the kick before */
     double kick, rubbed, ahead[5], half;
     Touched ring;
     Brake brake;
     double gravity, journal_radius, clearance, ring_mass, ring_inertia;
     double mass, inertia, ball_radius, inner_radius, outer_radius;
-    Law inner_law, outer_law, contact, ball_contact;
-    Friction friction, race_friction, ball_friction;
+    double cage_mass, cage_inertia, cage_clearance;
+    Law inner_law, outer_law, contact, side_contact;
+    Friction friction, race_friction, side_friction;
     Journal journal;
     Housing housing;
-    int64_t count;
+    int64_t count, caged;
 } Bearing;
 
 /* How many balls the loops run over: what lies past the last one does not matter. */

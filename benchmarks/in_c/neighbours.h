@@ -2,21 +2,9 @@
 #ifndef NEIGHBOURS_H
 #define NEIGHBOURS_H
 
-#include "contact.h"
+#include "sides.h"
 
 static inline int64_t after(int64_t b, int64_t count) { return b + 1 < count ? b + 1 : 0; }
-
-static inline Motion ball_of(const Balls *balls, int64_t b)
-{
-    const Motion ball = {balls->x[b], balls->y[b], balls->vx[b], balls->vy[b], balls->spin[b]};
-    return ball;
-}
-
-static inline void note_apart(Side *c, int64_t b)
-{
-    c->normal[b] = c->highest[b] = c->tangential[b] = c->stiffness[b] = 0.0;
-    c->indentation[b] = -1.0;
-}
 
 /* Write the equation of ball `b` and the next, whose centres are (ex, ey) (m) apart. */
 static void link(int64_t b, double ex, double ey, double square, const Balls *q, Bearing *m)
@@ -34,7 +22,7 @@ static void link(int64_t b, double ex, double ey, double square, const Balls *q,
                               c->normal[b] - 0.5 * beside);
     double elastic, damping;
     slip(ball_of(q, on), ball_of(q, b), at, OUTSIDE, &c->sliding[b], &c->rate[b]);
-    elastic_and_damping(at.indentation, &m->ball_contact, &elastic, &damping);
+    elastic_and_damping(at.indentation, &m->side_contact, &elastic, &damping);
     const double z = kick.along * damping;
     chain->elastic[b] = elastic, chain->driven[b] = kick.sliding, chain->across[b] = kick.across;
     chain->pull[b] = 0.5 * (3.0 + z) * z;
@@ -79,34 +67,20 @@ static void share(Side *c, Chain *chain, int64_t count)
     }
 }
 
-static inline void push(int64_t b, double fx, double fy, double moment, Bearing *m)
-{
-    m->faster.x[b] += fx / m->mass;
-    m->faster.y[b] += fy / m->mass;
-    m->faster.spin[b] += moment / m->inertia;
-}
-
 /* Ball `b` and the next push and rub each other. */
 static void press_neighbours(int64_t b, Bearing *m)
 {
-    Side *c = &m->side;
+    const Side *c = &m->side;
     const Chain *chain = &m->chain;
     const Place at = {c->nx[b], c->ny[b], c->indentation[b], c->first[b], c->second[b]};
     const Squeeze s = {c->sliding[b], c->rate[b], c->normal[b], c->normal[b] - chain->elastic[b]};
-    const Line line =
-        line_of(s.sliding, s.sliding + chain->driven[b], chain->across[b], s.normal, &m->ball_friction);
-    const double friction =
-        (line.start - line.slope * chain->driven[b]) / (line.base + line.slope * chain->across[b]);
-    const Press press = rubbed(at, OUTSIDE, s, friction);
-    c->highest[b] = larger(press.normal, m->ball_contact.viscous * s.rate);
-    c->tangential[b] = friction, c->damped[b] = s.damped;
-    c->stiffness[b] = 1.5 * (press.normal - s.damped) / at.indentation;
+    const Press press = rub_side(b, at, OUTSIDE, s, chain->across[b], chain->driven[b], m);
     push(after(b, m->count), press.fx, press.fy, press.first_moment, m);
     push(b, -press.fx, -press.fy, press.second_moment, m);
 }
 
 /* Each ball against the next. Returns whether any touch. */
-static int neighbours(const State *restrict q, Bearing *restrict m)
+static int press_all_neighbours(const State *restrict q, Bearing *restrict m)
 {
     const int64_t count = m->count;
     const double *x = q->balls.x, *y = q->balls.y, apart = 2.0 * m->ball_radius;
@@ -134,15 +108,10 @@ static int neighbours(const State *restrict q, Bearing *restrict m)
 /* Heat (W) between neighbours over the kick whose accelerations are in dq. */
 static double heat_between(const State *dq, const Bearing *m)
 {
-    const Side *c = &m->side;
     double loss = 0.0;
     for (int64_t b = 0; b < m->count; b++) {
-        if (c->indentation[b] <= 0.0) continue;
-        const Place at = {c->nx[b], c->ny[b], c->indentation[b], c->first[b], c->second[b]};
-        double sliding, rate;
-        slip(ball_of(&dq->balls, after(b, m->count)), ball_of(&dq->balls, b), at, OUTSIDE, &sliding, &rate);
-        const double damping = c->damped[b] * (c->rate[b] + 0.5 * m->kick * rate);
-        loss += damping - c->tangential[b] * (c->sliding[b] + 0.5 * m->kick * sliding);
+        if (m->side.indentation[b] <= 0.0) continue;
+        loss += heat_at(b, ball_of(&dq->balls, after(b, m->count)), ball_of(&dq->balls, b), OUTSIDE, m);
     }
     return loss;
 }

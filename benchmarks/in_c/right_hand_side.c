@@ -1,8 +1,9 @@
-/* The right-hand side of the detailed cageless bearing, written by hand for comparison: the arithmetic of
-   the project's kernels in the order in which they do it, so that results agree, in loops over all balls
-   that the compiler turns into vector code. Races are circles, the journal has no elastic modes. SI. */
+/* The right-hand side of the detailed bearings, written by hand for comparison: the arithmetic of the
+   project's kernels in the order in which they do it, so that results agree, in loops over all balls that
+   the compiler turns into vector code. Races are circles, the journal has no elastic modes. SI. */
 #include "copies.h"
 #include "neighbours.h"
+#include "pockets.h"
 #include "rubbing.h"
 
 /* ---- balls pressed by both races ---- */
@@ -144,7 +145,10 @@ static __attribute__((noinline)) void rhs(double t, const State *restrict q, Sta
     const double h = m->kick, *before = m->before.head;
     const int64_t count = m->count;
     press_races(q, m);
-    const int touching = neighbours(q, m);
+    int touching = 0;
+    Turned by = {1.0, 0.0};
+    if (m->caged) by = press_pockets(q, dq, m);
+    else touching = press_all_neighbours(q, m);
     const Total pressed = pressing(&m->inner, OUTSIDE, count);
     const Total pressed_out = pressing(&m->outer, INSIDE, count);
     const Answers answers = {h / m->mass, h / m->mass, h * m->ball_radius * m->ball_radius / m->inertia};
@@ -172,7 +176,8 @@ static __attribute__((noinline)) void rhs(double t, const State *restrict q, Sta
     z[RVX] = (inner.fx - j.fx) / m->ring_mass;
     z[RVY] = (inner.fy - j.fy) / m->ring_mass - m->gravity;
     z[RW] = (j.second_moment + inner.moment) / m->ring_inertia;
-    z[LOSS] = heat + inner.loss + outer.loss + (touching ? heat_between(dq, m) : 0.0);
+    const double beside = m->caged ? heat_in_pockets(dq, by, m) : touching ? heat_between(dq, m) : 0.0;
+    z[LOSS] = heat + inner.loss + outer.loss + beside;
     const Load load = {j.fx, j.fy, j.first_moment, outer.fx, outer.fy};
     copy_rates(t, q->head, z, load, m);
     book(z, load, m);
