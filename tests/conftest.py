@@ -18,6 +18,8 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
 from touchdown.modelkit.kernel.cache_folder import VARIABLE
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other: one thread each
+
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
 import importlib.abc, sys

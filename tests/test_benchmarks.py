@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -41,6 +42,32 @@ def test_the_tried_integrators_advance() -> None:
     plain = detailed_speed.carrier(module, detailed_speed.make(module)["leapfrog, friction as it stands"])
     runner = detailed_speed.Runner("", plain, 2e-7)
     assert runner.run(module, 2e-6)[2] > 10
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_the_right_hand_side_in_c_finds_what_the_kernels_find(number: int, tmp_path: Path) -> None:
+    """Of a bearing that has landed, its balls damped; a mass that is 1e-9 off is noticed."""
+    import right_hand_side
+
+    if shutil.which("cc") is None and shutil.which("gcc") is None:
+        pytest.skip("there is no C compiler")
+    case = right_hand_side.CASES[number]
+    instance = right_hand_side.landed(case, right_hand_side.DAMPED)
+    instance.record["u"]["journal"]["y"] -= 1e-5
+    instance.step(0.0, 2e-4)
+    assert right_hand_side.loaded(instance) in case.compared
+    both = right_hand_side.Pair(
+        right_hand_side.InC(right_hand_side.library(right_hand_side.FLAGS, tmp_path), instance),
+        right_hand_side.Kernels(right_hand_side.repeater(case.module), instance),
+    )
+    for _ in range(2):
+        for one in both:
+            one.evaluate(3)
+        assert both.difference() <= right_hand_side.LIMIT
+    both.in_c.bearing["mass"] *= 1.0 + 1e-9
+    both.in_c.evaluate(1)
+    both.kernels.evaluate(1)
+    assert both.difference() > right_hand_side.LIMIT
 
 
 @pytest.mark.parametrize("model", ["detailed_caged", "detailed_cageless", "simplified_cageless"])

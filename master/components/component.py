@@ -74,6 +74,7 @@ class ByFunctions:
     taken: np.ndarray  # uint32, value references of the exchanged inputs
     given: np.ndarray  # and of the exchanged outputs
     checked: bool  # whether it is to be seen that these are finite numbers
+    any_thread: bool  # whether it may be stepped by any thread, beside other components
 
 
 @dataclass(frozen=True)

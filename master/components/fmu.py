@@ -394,6 +394,7 @@ class FmuComponent(LoadedFmu):
             taken=taken,
             given=given,
             checked=False,
+            any_thread=not by_pythonfmu(self.description),
         )
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:

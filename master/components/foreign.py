@@ -70,7 +70,7 @@ class _Foreign(LoadedFmu):
 
     def by_address(self) -> InMemory | ByFunctions | None:
         found = super().by_address()
-        return replace(found, checked=True) if isinstance(found, ByFunctions) else found
+        return replace(found, checked=True, any_thread=False) if isinstance(found, ByFunctions) else found
 
     def refuse(self, call: Call, status: int, time: float, step: float) -> None:
         self._stepped_to = time + step

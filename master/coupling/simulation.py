@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -148,8 +148,8 @@ def simulate(
             told.append(_Progress(lambda now: progress(now.time - times.origin, ledger.worst_share)))
             start_up = clock.perf_counter() - began
             one_by_one = MacroSteps(coupling, ledger, shortening)
-            stretches = Stretches(one_by_one, judge, recorder, told)
-            wall_time, compiling = _loop(stretches, told, now, interrupted)
+            with closing(Stretches(one_by_one, judge, recorder, told)) as stretches:
+                wall_time, compiling = _loop(stretches, told, now, interrupted)
     return replace(
         _seen(now, ledger, judge, shortening),
         origin=times.origin,

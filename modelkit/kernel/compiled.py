@@ -8,7 +8,7 @@ packages: any edit starts a fresh folder, and nothing stale is ever run.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -60,14 +60,14 @@ def kernel(function: F) -> F:
     return _compiled(function, PHYSICS_PACKAGES)
 
 
-def kernel_of(*folders: str) -> Callable[[F], F]:
+def kernel_of(*folders: str, nogil: bool = False) -> Callable[[F], F]:
     """`kernel` for functions that call none but those in `folders`, which stand beside `modelkit`.
 
-    Their machine code hangs on these sources alone.
+    Their machine code hangs on these sources alone. nogil: while Python calls one, other threads run.
     """
 
     def kernel(function: F) -> F:
-        return _compiled(function, folders)
+        return _compiled(function, folders, nogil=nogil)
 
     return kernel
 
@@ -80,21 +80,21 @@ def woven(function: F) -> F:
     return _compiled(function, PHYSICS_PACKAGES, forceinline=True)
 
 
-def _compiled(function: F, packages: tuple[str, ...], forceinline: bool = False) -> F:
-    compiled = _dispatcher(function, forceinline)
+def _compiled(function: F, packages: tuple[str, ...], **options: bool) -> F:
+    compiled = _dispatcher(function, options)
     folder = _machine_code_folder(packages)
     if folder is not None and isinstance(compiled, Dispatcher):  # not where numba is told not to compile
         cast(Any, compiled)._cache = KernelCache(function, folder, _shipped(packages))
     return cast(F, compiled)
 
 
-def _dispatcher(function: Callable[..., object], forceinline: bool) -> object:
+def _dispatcher(function: Callable[..., object], options: Mapping[str, bool]) -> object:
     """`linked`, or, with a numba that this was not tried with, what numba makes of it: the same results."""
     if cast(Any, config).DISABLE_JIT or not is_tried():
-        return numba.njit(error_model="numpy", forceinline=forceinline)(function)
+        return cast(Any, numba).njit(error_model="numpy", **options)(function)
     from touchdown.modelkit.kernel.linked import KernelDispatcher
 
-    return KernelDispatcher(function, targetoptions={"forceinline": forceinline})
+    return KernelDispatcher(function, targetoptions=options)
 
 
 @cache

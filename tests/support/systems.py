@@ -102,3 +102,18 @@ def recorded(folder: Path) -> dict[str, np.ndarray]:
     with h5py.File(folder / "result.h5") as file:
         file.visititems(take)
     return found
+
+
+def bits(path: Path) -> dict[str, object]:
+    """All that a recording holds: numbers as words, attributes as they are said."""
+    found: dict[str, object] = {}
+
+    def keep(name: str, item: h5py.Dataset | h5py.Group) -> None:
+        found[name] = (
+            item[:].tobytes() if isinstance(item, h5py.Dataset) else repr(sorted(item.attrs.items()))
+        )
+
+    with h5py.File(path) as file:
+        file.visititems(keep)
+    assert len(found["time"]) > 8 * 2  # type: ignore[arg-type]
+    return found

@@ -15,7 +15,8 @@ import numpy as np
 
 from touchdown.master.components.component import Call
 from touchdown.master.coupling.ledger import Judge
-from touchdown.master.coupling.loop.kernels.stretch import run
+from touchdown.master.coupling.loop.helpers import Helpers, helpers
+from touchdown.master.coupling.loop.kernels.stretch import run, run_beside
 from touchdown.master.coupling.loop.kernels.tables import FETCH, GET, PLAN, SET, STEP
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.tables import Tables, tables
@@ -46,6 +47,7 @@ class Stretches:
         self._able = self._at_once is not None and not seen and not steps.ledger.listens
         self._signals: np.ndarray | None = None  # those that the tables are of
         self._tables: Tables | None = None
+        self._helpers: Helpers | None = None
         self._plan = np.zeros(1, PLAN)
         self._longest = 1  # macro steps that a stretch may take
 
@@ -65,6 +67,11 @@ class Stretches:
         elif now.done - done == self._longest:
             self._longest = min(2 * self._longest, MOST)
 
+    def close(self) -> None:
+        """Send the helpers away."""
+        if self._helpers is not None:
+            self._helpers.close()
+
     def _get_ready(self, now: Moment) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""
         found = self._found()
@@ -76,8 +83,11 @@ class Stretches:
         """Tables of the system as it is laid out now."""
         coupling = cast(GaussSeidel, self._steps.coupling)
         if self._signals is not coupling.system.signals:
-            self._signals, self._tables = coupling.system.signals, tables(coupling, self._recorder)
+            self.close()
+            self._signals = coupling.system.signals
+            self._tables = tables(coupling, bool(self._at_once), self._recorder)
             self._steps.impacts.follow()
+            self._helpers = None if self._tables is None else helpers(self._tables.turns)
         return self._tables
 
     def _stretch(self, found: Tables, now: Moment) -> None:
@@ -96,8 +106,11 @@ class Stretches:
 
     def _run(self, found: Tables, rows: np.ndarray) -> bool:
         steps, f = self._steps, found
+        if self._helpers is not None:
+            self._helpers.call()
+        take = run if self._helpers is None else run_beside
         seats, books = steps.impacts.seats, steps.ledger.books
-        return run(self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows)
+        return take(self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows)
 
     def _refuse(self, found: Tables, plan: Any) -> None:
         """Raise what the component that failed has to say."""
@@ -115,9 +128,10 @@ class Stretches:
 
     def _planned(self, now: Moment, until: int) -> Any:
         """The plan of a stretch from now to the end of macro step `until`."""
-        steps = self._steps
+        steps, board = self._steps, 0 if self._helpers is None else self._helpers.board
         self._plan[0] = (
-            self._at_once, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done, until,
-            0.0, steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero, 0, 0, 0,
+            self._at_once, board, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done,
+            until, 0.0, steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero,
+            0, 0, 0,
         )  # fmt: skip
         return self._plan[0]

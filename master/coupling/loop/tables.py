@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from touchdown.master.components.component import WHOLE, ByFunctions, Component, InMemory, Kind, Variable
+from touchdown.master.components.contract import REACH
 from touchdown.master.coupling.layout import Scaling
 from touchdown.master.coupling.loop.kernels.tables import (
     COLUMN,
@@ -39,8 +40,11 @@ class Tables:
     kept: list[object] = field(default_factory=list[object])
 
 
-def tables(stepper: GaussSeidel, recorder: Recorder | None) -> Tables | None:
-    """The tables of a stepper's system; None where a component cannot be stepped by address."""
+def tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None) -> Tables | None:
+    """The tables of a stepper's system; None where a component cannot be stepped by address.
+
+    at_once: whether all components take their inputs before any steps.
+    """
     entries: list[Entry] = []
     for turn in stepper.turns:
         entry = turn.component.by_address() if _as_written(turn.component) else None
@@ -49,6 +53,9 @@ def tables(stepper: GaussSeidel, recorder: Recorder | None) -> Tables | None:
         entries.append(entry)
     made = Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
     _add_turns(made, stepper.turns, entries)
+    _group(made, stepper.turns, at_once)
+    if all(map(_any_thread, entries)):
+        _share(made)
     if recorder is not None:
         _add_columns(made, entries, recorder)
     return made
@@ -85,6 +92,29 @@ def _add_turns(made: Tables, turns: Sequence[Turn], entries: Sequence[Entry]) ->
         parts += own
     made.parts = np.array([_part(part) for part in parts], PART)
     made.kept += [turns, entries, parts]
+
+
+def _group(made: Tables, turns: Sequence[Turn], at_once: bool) -> None:
+    """Put together what takes nothing that others of its group give in the same step."""
+    first, given = 0, set[int]()
+    for i, turn in enumerate(turns):
+        if not at_once and given.intersection(turn.places.tolist()):
+            first, given = i, set[int]()
+        outputs = turn.component.outputs
+        start = (_address(outputs) - _address(made.signals)) // outputs.dtype.itemsize
+        given.update(range(start, start + len(outputs)))
+        made.turns["end"][first] = i + 1
+
+
+def _share(made: Tables) -> None:
+    """Have threads share groups of touchdown bearings; others' steps take less than handing them over."""
+    for first, row in enumerate(made.turns):
+        row["shared"] = sum(REACH in c.variables for c in made.components[first : row["end"]]) > 1
+
+
+def _any_thread(entry: Entry) -> bool:
+    """Whether a component may be stepped by any thread."""
+    return isinstance(entry, InMemory) or entry.any_thread
 
 
 def _exchanged(turn: Turn, entry: Entry) -> dict[str, int]:

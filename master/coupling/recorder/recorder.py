@@ -17,7 +17,7 @@ from touchdown.master.coupling.recorder.table import Column, Contents, Table
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.scene import Scene
 
-HELD = 2**17  # numbers held before they are written, at most: 1 MiB
+HELD = 2**20  # numbers held before they are written, at most: 8 MiB
 LOSS = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
 SHARE = 0.05  # of the time that writing takes, at most: with very many columns more is lost instead
 

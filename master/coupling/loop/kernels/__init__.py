@@ -7,4 +7,7 @@ from __future__ import annotations
 
 from touchdown.modelkit.kernel import kernel_of
 
-kernel = kernel_of("modelkit/kernel", "master/coupling/loop/kernels")
+FOLDERS = "modelkit/kernel", "master/coupling/loop/kernels"
+
+kernel = kernel_of(*FOLDERS)
+kernel_without_gil = kernel_of(*FOLDERS, nogil=True)

@@ -34,8 +34,12 @@ TURN = np.dtype(
         ("set_real", "i8"),
         ("get_real", "i8"),
         ("finite", "i8"),  # whether it is to be seen that outputs are finite numbers
+        ("end", "i8"),  # of the group that begins with it, whose steps do not hang on each other
+        ("shared", "i8"),  # whether threads share this group's steps
+        ("due", "i8"),  # whether it takes the present step
         ("time", "f8"),  # of its last step, s
         ("span", "f8"),
+        ("status", "i8"),  # that this had
     ]
 )
 """What a component does in a macro step. In the order of their steps."""
@@ -58,6 +62,7 @@ REAL, LONG, INT, TRUTH = 0, 1, 2, 3  # the last an int, of which all but 0 is tr
 PLAN = np.dtype(
     [
         ("at_once", "i8"),  # whether all take their inputs before any steps
+        ("board", "i8"),  # address of the one that helpers look at; 0: there are none
         ("start", "f8"),  # of the run, s on the simulation's clock
         ("length", "f8"),  # of a macro step, s
         ("parts", "i8"),  # that each is divided into

@@ -5,15 +5,14 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 from misbehaving import COMPILER, compiled, misbehaving, scene_with
-from systems import rotor_on
+from systems import bits, rotor_on
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.components.twin import TwinComponent
@@ -77,21 +76,6 @@ class Both:
         assert repr(found) == repr(wanted)
         assert bits(paths[0]) == bits(paths[1])
         return found
-
-
-def bits(path: Path) -> Mapping[str, object]:
-    """All that a recording holds: numbers as words, attributes as they are said."""
-    found: dict[str, object] = {}
-
-    def keep(name: str, item: h5py.Dataset | h5py.Group) -> None:
-        found[name] = (
-            item[:].tobytes() if isinstance(item, h5py.Dataset) else repr(sorted(item.attrs.items()))
-        )
-
-    with h5py.File(path) as file:
-        file.visititems(keep)
-    assert len(found["time"]) > 8 * 2  # type: ignore[arg-type]
-    return found
 
 
 @pytest.fixture
