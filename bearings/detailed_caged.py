@@ -98,10 +98,10 @@ CONSTANTS, PROBLEMS = constants(
 def react(t, q, dq, m):
     """Derivative dq of ring, balls and cage in q, and the `Load` (N, N m) on journal and housing."""
     press_races(q, m)
-    cage.pocket_contacts(q, dq, m)
+    turned = cage.pocket_contacts(q, dq, m)
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + cage.rubbing(q, dq, m)
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + cage.rubbing(dq, turned, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
 
 

@@ -42,8 +42,9 @@ from touchdown.bearings.rolling.bodies.state import (
 )
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.sides.chain import Chain, after, link, part_ways, press_of, share
-from touchdown.bearings.rolling.sides.contact import heat_of, stored
+from touchdown.bearings.rolling.sides.chain import Chain, after, link, part_ways, share
+from touchdown.bearings.rolling.sides.contact import heat_of, press_of, stored
+from touchdown.bearings.rolling.sides.friction import rub_sides
 from touchdown.modelkit.integrators import dopri
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, constants
@@ -105,9 +106,10 @@ def _neighbour_contacts(q, m):
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
     share(s.side, s.chain, count)
+    rub_sides(s.side, count, d.ball_friction, s.lines)
     for b in range(count):
         if s.side.indentation[b] > 0.0:
-            c = press_of(b, d.ball_contact, d.ball_friction, m)
+            c = press_of(s.side, b, OUTSIDE, d.ball_contact)
             push(after(b, count), c.fx, c.fy, c.first_moment, m)
             push(b, -c.fx, -c.fy, c.second_moment, m)
 

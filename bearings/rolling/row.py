@@ -17,8 +17,9 @@ from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
-from touchdown.bearings.rolling.sides.chain import after, link, part_ways, press_of, share
-from touchdown.bearings.rolling.sides.contact import heat_of
+from touchdown.bearings.rolling.sides.chain import after, link, part_ways, share
+from touchdown.bearings.rolling.sides.contact import heat_of, press_of
+from touchdown.bearings.rolling.sides.friction import rub_sides
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.numerics.angles import cosine_and_sine
 from touchdown.modelkit.ports import Motion
@@ -175,11 +176,12 @@ def neighbour_forces(q, m):
     d, s, count = m.d, m.s, m.p.balls.count
     _find_neighbours(q, m)
     share(s.side, s.chain, count)
+    rub_sides(s.side, count, d.ball_friction, s.lines)
     faster, turning = s.balls.faster, s.balls.turning
     for b in range(count):
         if s.side.indentation[b] > 0.0:
             k = after(b, count)
-            c = press_of(b, d.ball_contact, d.ball_friction, m)
+            c = press_of(s.side, b, OUTSIDE, d.ball_contact)
             push = c.normal * s.lever[b] / (d.pitch_radius * d.pitch_radius * d.mass)
             faster[b] -= push
             faster[k] += push

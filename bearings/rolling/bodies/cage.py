@@ -10,10 +10,11 @@ import math
 from dataclasses import dataclass
 
 from touchdown.bearings import seat
-from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, press
+from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, squeeze
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
-from touchdown.bearings.rolling.sides.contact import heat_of, note, note_apart
+from touchdown.bearings.rolling.sides.contact import heat_of, lay, note_apart, press_of
+from touchdown.bearings.rolling.sides.friction import rub_sides
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import real
@@ -78,47 +79,66 @@ def _kick(b, place, rx, ry, m):
 
 @kernel
 def pocket_contacts(q, dq, m):
-    """All balls against their pockets; adds to the balls' accelerations, sets the cage's part of dq."""
-    p, d = m.p, m.d
-    rb, clearance = d.ball_radius, p.cage.clearance
-    i = first_component(m)
-    c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
+    """All balls against their pockets; adds to the balls' accelerations, sets the cage's part of dq.
+
+    Returns (cosine, sine) of the cage's angle.
+    """
+    p, d, side, i = m.p, m.d, m.s.side, first_component(m)
+    turned = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
+    _find_pockets(q, turned, m)
+    rub_sides(side, p.balls.count, d.cage_friction, m.s.lines)
     fx, fy, moment = 0.0, 0.0, 0.0
-    m.s.side.touching = 0
     for b in range(p.balls.count):
-        rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
-        ball, pocket = ball_motion(q, b, m), _pocket(q, i, rx, ry)
-        ex, ey = ball.x - pocket.x, ball.y - pocket.y
-        square = ex * ex + ey * ey
-        if square <= clearance * clearance:
-            note_apart(m.s.side, b)
-            continue
-        distance = math.sqrt(square)
-        at = Place(ex / distance, ey / distance, distance - clearance, rb, distance + rb, 0.0)
-        kick = _kick(b, at, rx, ry, m)
-        push_out = press(ball, pocket, at, INSIDE, d.cage_contact, d.cage_friction, kick)
-        note(m.s.side, b, push_out, at, d.cage_contact)
-        m.s.side.touching += 1
-        push(b, push_out.fx, push_out.fy, push_out.first_moment, m)
-        fx -= push_out.fx
-        fy -= push_out.fy
-        moment += push_out.second_moment - rx * push_out.fy + ry * push_out.fx
+        if side.indentation[b] > 0.0:
+            rx, ry = _arm(b, turned, d)
+            out = press_of(side, b, INSIDE, d.cage_contact)
+            push(b, out.fx, out.fy, out.first_moment, m)
+            fx -= out.fx
+            fy -= out.fy
+            moment += out.second_moment - rx * out.fy + ry * out.fx
     dq[i + X], dq[i + Y], dq[i + ANGLE] = q[i + VX], q[i + VY], q[i + SPIN]
     dq[i + VX] = fx / p.cage.mass
     dq[i + VY] = fy / p.cage.mass - p.gravity
     dq[i + SPIN] = moment / d.cage_inertia
+    return turned
 
 
 @kernel
-def rubbing(q, dq, m):
-    """Heat (W) of all pockets over the kick whose accelerations are in dq."""
-    d, i = m.d, first_component(m)
-    c, s = math.cos(q[i + ANGLE]), math.sin(q[i + ANGLE])
-    loss = 0.0
+def _arm(b, turned, d):
+    """Where the pocket of ball `b` lies (m) from the middle of the cage, `turned` (cosine, sine)."""
+    c, s = turned
+    return c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
+
+
+@kernel
+def _find_pockets(q, turned, m):
+    """Balls in the state q that press their pockets, how hard, and what their friction hangs on."""
+    d, side, clearance, i = m.d, m.s.side, m.p.cage.clearance, first_component(m)
+    side.touching = 0
     for b in range(m.p.balls.count):
-        if m.s.side.indentation[b] > 0.0:
-            rx, ry = c * d.pocket_x[b] - s * d.pocket_y[b], s * d.pocket_x[b] + c * d.pocket_y[b]
-            loss += heat_of(m.s.side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
+        rx, ry = _arm(b, turned, d)
+        ball, pocket = ball_motion(q, b, m), _pocket(q, i, rx, ry)
+        ex, ey = ball.x - pocket.x, ball.y - pocket.y
+        distance = math.sqrt(ex * ex + ey * ey)
+        if distance <= clearance:
+            note_apart(side, b)
+            continue
+        reach = distance + d.ball_radius
+        at = Place(ex / distance, ey / distance, distance - clearance, d.ball_radius, reach, 0.0)
+        kick = _kick(b, at, rx, ry, m)
+        squeezed = squeeze(ball, pocket, at, INSIDE, d.cage_contact, kick)
+        lay(side, b, at, squeezed.sliding, squeezed.rate, kick)
+        side.normal[b], side.damped[b] = squeezed.normal, squeezed.damped
+
+
+@kernel
+def rubbing(dq, turned, m):
+    """Heat (W) of all pockets over the kick whose accelerations are in dq; turned: of `pocket_contacts`."""
+    i, side, loss = first_component(m), m.s.side, 0.0
+    for b in range(m.p.balls.count):
+        if side.indentation[b] > 0.0:
+            rx, ry = _arm(b, turned, m.d)
+            loss += heat_of(side, b, m.s.kick, ball_motion(dq, b, m), _pocket(dq, i, rx, ry), INSIDE)
     return loss
 
 

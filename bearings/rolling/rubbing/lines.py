@@ -2,7 +2,7 @@
 
 Of a bearing's balls few touch both races at a time, and a line costs more than all else at a contact. So
 those that press are gathered from both races, one behind the other, and what comes of them is handed back:
-four of them become one pass of vector code, however they lie. The passes are short ones, each over all
+eight of them become one pass of vector code, however they lie. The passes are short ones, each over all
 contacts, as one long chain of operations would keep the processor waiting for its own results.
 """
 
@@ -16,7 +16,7 @@ from touchdown.bearings.rolling.balls import MOST_BALLS
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.variables import array
 
-LANES = 4  # contacts that are computed at once
+LANES = 8  # contacts that are computed at once, as vectors of 8 or two of 4
 ROOM = 2 * MOST_BALLS  # a multiple of it
 
 

@@ -21,9 +21,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from touchdown.bearings.contact.laws import elastic_and_damping
-from touchdown.bearings.contact.pair import OUTSIDE, Place, Squeeze, kick_of, rub, slip
+from touchdown.bearings.contact.pair import OUTSIDE, kick_of, slip
 from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.bearings.rolling.sides.contact import all_apart, note, note_apart
+from touchdown.bearings.rolling.sides.contact import all_apart, lay, note_apart
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array
 
@@ -33,8 +33,6 @@ class Chain:
     """Contacts of each ball with the next on their way through a kick."""
 
     elastic: tuple = array(MOST_BALLS)  # N
-    driven: tuple = array(MOST_BALLS)  # m/s, change of the sliding speed by all but its own friction
-    across: tuple = array(MOST_BALLS)  # s/kg, as `bearings.contact.kick.Kick.across`
     base: tuple = array(MOST_BALLS)  # of the equation above: what is before N_i
     pull: tuple = array(MOST_BALLS)  # p_i; then what N_i gains with N_(i+1)
     free: tuple = array(MOST_BALLS)  # N, the right-hand side; then N_i without N_(i+1)
@@ -63,13 +61,11 @@ def link(b, count, first, second, rates, place, law, answers, m):
     sliding, rate = slip(first, second, place, OUTSIDE)
     elastic, damping = elastic_and_damping(place.indentation, law)
     z = kick.along * damping
-    chain.elastic[b], chain.driven[b], chain.across[b] = elastic, kick.sliding, kick.across
+    chain.elastic[b] = elastic
     chain.pull[b] = 0.5 * (3.0 + z) * z
     chain.base[b] = 6.0 + z * (4.0 + z)
     chain.free[b] = (6.0 + z) * (elastic + damping * rate) + (3.0 + z) * damping * kick.rate
-    c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
-    c.indentation[b], c.sliding[b], c.rate[b] = place.indentation, sliding, rate
-    c.touching += 1
+    lay(c, b, place, sliding, rate, kick)
 
 
 @kernel
@@ -96,7 +92,7 @@ def share(contacts, chain, count):
     for _ in range(count):
         beyond = max(chain.free[b] + chain.pull[b] * beyond, 0.0)
         if contacts.indentation[b] > 0.0:
-            contacts.normal[b] = beyond
+            contacts.normal[b], contacts.damped[b] = beyond, beyond - chain.elastic[b]
         else:
             note_apart(contacts, b)
         b = b - 1 if b > 0 else count - 1
@@ -121,14 +117,3 @@ def _first_gap(contacts, count):
         if contacts.indentation[b] <= 0.0:
             return b
     return -1
-
-
-@kernel
-def press_of(b, law, friction, m):
-    """The `Press` (N, N m, m/s) of ball `b` and the next, remembered; law, friction: records."""
-    c, chain = m.s.side, m.s.chain
-    place = Place(c.nx[b], c.ny[b], c.indentation[b], c.first[b], c.second[b], 0.0)
-    squeezed = Squeeze(c.sliding[b], c.rate[b], c.normal[b], c.normal[b] - chain.elastic[b])
-    pressed = rub(place, OUTSIDE, squeezed, friction, chain.across[b], chain.driven[b])
-    note(c, b, pressed, place, law)
-    return pressed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings.contact.pair import Place, slip
+from touchdown.bearings.contact.pair import Place, Squeeze, rubbed, slip
 from touchdown.bearings.contact.peaks import Largest
 from touchdown.bearings.rolling.balls import MOST_BALLS, largest
 from touchdown.modelkit.kernel import kernel
@@ -27,22 +27,38 @@ class SideContacts:
     sliding: tuple = array(MOST_BALLS)  # m/s, before the kick
     rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
     damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
+    driven: tuple = array(MOST_BALLS)  # m/s, change of the sliding speed by all but its own friction
+    across: tuple = array(MOST_BALLS)  # s/kg, as `bearings.contact.kick.Kick.across`
     touching: int = integer(0, "how many of them touch")
 
 
 @kernel
-def note(contacts, b, press, place, law):
-    """Remember the contact of ball `b`: its `Press` (N, m/s) at a `Place` (m); law: a record.
+def lay(contacts, b, place, sliding, rate, kick):
+    """Remember that ball `b` touches at a `Place` (m), its speeds (m/s) before the kick, and the `Kick`."""
+    c = contacts
+    c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
+    c.indentation[b], c.sliding[b], c.rate[b] = place.indentation, sliding, rate
+    c.driven[b], c.across[b] = kick.sliding, kick.across
+    c.touching += 1
+
+
+@kernel
+def press_of(contacts, b, side, law):
+    """The `Press` (N, N m, m/s) of ball `b`'s contact, its forces known; side: as in `pair`; law: a record.
 
     Linear damping pushes at once where bodies meet, at the speed before the kick, and least at its end.
     """
     c = contacts
-    c.highest[b] = max(press.normal, law.viscous * press.rate)
-    c.normal[b], c.tangential[b], c.damped[b] = press.normal, press.tangential, press.damped
-    c.sliding[b], c.rate[b] = press.sliding, press.rate
-    c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
-    c.indentation[b] = place.indentation
-    c.stiffness[b] = law.exponent * (press.normal - press.damped) / place.indentation
+    c.highest[b] = max(c.normal[b], law.viscous * c.rate[b])
+    c.stiffness[b] = law.exponent * (c.normal[b] - c.damped[b]) / c.indentation[b]
+    squeezed = Squeeze(c.sliding[b], c.rate[b], c.normal[b], c.damped[b])
+    return rubbed(_place_of(c, b), side, squeezed, c.tangential[b])
+
+
+@kernel
+def _place_of(c, b):
+    """The `Place` of ball `b`'s contact."""
+    return Place(c.nx[b], c.ny[b], c.indentation[b], c.first[b], c.second[b], 0.0)
 
 
 @kernel
@@ -53,8 +69,7 @@ def heat_of(contacts, b, h, first, second, side):
     `pair`.
     """
     c = contacts
-    place = Place(c.nx[b], c.ny[b], c.indentation[b], c.first[b], c.second[b], 0.0)
-    sliding, rate = slip(first, second, place, side)
+    sliding, rate = slip(first, second, _place_of(c, b), side)
     damping = c.damped[b] * (c.rate[b] + 0.5 * h * rate)
     return damping - c.tangential[b] * (c.sliding[b] + 0.5 * h * sliding)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from touchdown.bearings.contact.laws import ContactLaw
-from touchdown.bearings.contact.pair import Place, Press
+from touchdown.bearings.contact.pair import OUTSIDE
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from touchdown.bearings.rolling.sides.contact import SideContacts, note
+from touchdown.bearings.rolling.sides.contact import SideContacts, press_of
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.variables import as_record
@@ -44,8 +44,10 @@ def test_the_stiffest_contact_decides(name: str) -> None:
 def test_damping_is_no_stiffness() -> None:
     """A dashpot pushes at once where bodies meet, over no indentation: no step could resolve that."""
     law = as_record(ContactLaw(exponent=1.5, stiffness=1e8, viscous=250.0))
-    place = Place(1.0, 0.0, 1e-9, 0.0, 0.0, 0.0)
     contacts = as_record(SideContacts())
     elastic, damped = 1e8 * 1e-9**1.5, 25.0
-    note(contacts, 3, Press(0.0, 0.0, 0.0, 0.0, elastic + damped, 0.0, 0.0, 0.1, damped), place, law)
+    found = {"nx": 1.0, "indentation": 1e-9, "rate": 0.1, "normal": elastic + damped, "damped": damped}
+    for name, value in found.items():
+        contacts[name][3] = value
+    press_of(contacts, 3, OUTSIDE, law)
     assert contacts["stiffness"][3] == pytest.approx(1.5 * elastic / 1e-9, rel=1e-6)
