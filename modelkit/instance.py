@@ -156,4 +156,6 @@ def explanation(instance: Instance, status: int, time: float, step: float) -> st
         return refusals.BAD_LOAD.format(time=time)
     if status == TOO_MANY_STEPS:
         return refusals.TOO_MANY_STEPS.format(most=MOST_STEPS, step=step, time=time)
+    if status < 0:
+        return refusals.GAVE_UP.format(time=time)
     return refusals.UNRESOLVED.format(time=time, step=step)

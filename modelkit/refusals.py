@@ -23,6 +23,7 @@ TOO_MANY_STEPS = (
     "more than {most:d} micro-steps within one macro step of {step:g} s at t = {time:.9g} s; "
     "take a smaller macro step or a larger interface.tolerance"
 )
+GAVE_UP = "the model's code gave up at t = {time:.9g} s; there may be no memory left"
 UNRESOLVED = (
     "the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; take a "
     "smaller macro step, or look for a contact that starts with a deep overlap"

@@ -1,4 +1,4 @@
-"""How a macro step ended."""
+"""How a macro step ended; below zero, its code raised an error."""
 
 OK = 0
 BAD_INPUT = 1  # an input is not a finite number

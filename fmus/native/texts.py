@@ -15,7 +15,6 @@ from touchdown.modelkit.integrators.control import MOST_STEPS
 OWN = {  # what only a native FMU has to say
     "NOT_HELD": "this FMU holds no constants for {chosen}; it was built for {held}; build it for others "
     "with touchdown build --native --modes",
-    "GAVE_UP": "the model's code gave up at t = {time:.9g} s; there may be no memory left",
     "NO_MEMORY": "there is no memory left",
     "NO_MODEL_EXCHANGE": "it is an FMU for co-simulation only",
     "FOREIGN_GUID": "the GUID is not this FMU's; its description and its library do not belong together",

@@ -64,7 +64,10 @@ float64_at, int64_at, int32_at = map(_array, (types.float64, types.int64, types.
 
 @intrinsic
 def call_advance(_: Any, address: Any, words: Any, work: Any, time: Any, step: Any) -> Any:
-    """The `advance` at an address, of its memory, its scratch, time (s) and step (s): a status."""
+    """The `advance` at an address, of its memory, its scratch, time (s) and step (s): a status.
+
+    Where it raises an error, that is -1: who waits for it in another thread would not hear of it.
+    """
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         convention = context.call_conv
@@ -72,9 +75,7 @@ def call_advance(_: Any, address: Any, words: Any, work: Any, time: Any, step: A
         kind = convention.get_function_type(types.int64, of)
         code = builder.inttoptr(given[0], kind.as_pointer())
         status, result = convention.call_function(builder, code, types.int64, of, given[1:])
-        with builder.if_then(status.is_error, likely=False):
-            convention.return_status_propagate(builder, status)
-        return result
+        return builder.select(status.is_error, context.get_constant(types.int64, -1), result)
 
     return types.int64(types.intp, *ADVANCE), generate
 

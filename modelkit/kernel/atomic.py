@@ -43,7 +43,7 @@ def store(_: Any, address: Any, word: Any) -> Any:
 
 
 @intrinsic
-def replace(_: Any, address: Any, expected: Any, word: Any) -> Any:
+def swap(_: Any, address: Any, expected: Any, word: Any) -> Any:
     """Store a word at an address if the `expected` one still stands there; whether it did."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:

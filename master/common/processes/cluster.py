@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.processes.pool import TaskOutcome, told_as_they_end, tried
+from touchdown.master.common.processes.pool import TaskOutcome, one_thread, told_as_they_end, tried
 
 PATIENCE = 30.0  # s, for a scheduler to answer
 AHEAD = 2  # tasks that a worker's thread is given at a time: one waits while one runs
@@ -90,7 +90,7 @@ def _outcomes(
 
 def _one_by_one(work: Callable[[Any], Value], task: Any) -> TaskOutcome[Value]:
     """Do a task in a worker."""
-    with _alone:
+    with _alone, one_thread():
         return tried(work, task)
 
 

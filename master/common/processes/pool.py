@@ -24,7 +24,7 @@ from touchdown.master.common.processes.watched import way_of
 GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
 TRIES = 2  # of a task whose process is killed: it may be to blame, or the machine
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""Of linear algebra: one each, since processes share the cores, and sums then have one order."""
+"""Of linear algebra and of runs: one each, since processes share the cores, and sums have one order."""
 
 Task = TypeVar("Task")
 Value = TypeVar("Value")
@@ -147,7 +147,7 @@ class _Worker:
         self.place = -1  # of its task
         self.begun = False
         self.process = context.Process(target=_serve, args=(work, there, os.getpid()))
-        with interrupts_ignored(), _one_thread():
+        with interrupts_ignored(), one_thread():
             self.process.start()
         there.close()
 
@@ -235,8 +235,8 @@ class _Crew(Generic[Value]):
 
 
 @contextmanager
-def _one_thread() -> Generator[None]:
-    """Processes started meanwhile have one thread for linear algebra."""
+def one_thread() -> Generator[None]:
+    """Runs and processes started meanwhile have one thread each."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:

@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.processes.cores import cores
 from touchdown.master.common.processes.watched import way_of
 from touchdown.master.components.isolation.board import Ask, Board, Word, board_size
 from touchdown.master.components.isolation.crossing import CUT_OFF, SPIN, GoneError, Side
@@ -22,7 +23,7 @@ _START = "import json, runpy, sys; sys.path[:] = json.loads(sys.argv.pop(1)); " 
     f"runpy.run_module({HOST!r}, run_name='__main__', alter_sys=False)"
 )
 UP = 120.0  # s that it may take to come up
-CORES = len(os.sched_getaffinity(0))
+CORES = cores()
 REAP = 5.0  # s that the end of a process which is gone may take
 
 _running: weakref.WeakSet[Worker] = weakref.WeakSet()

@@ -22,6 +22,7 @@ from typing import Any
 from touchdown.fmus.python.sources import package_name
 from touchdown.fmus.recipes import Recipe
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.processes.cores import cores
 from touchdown.master.common.processes.orphans import die_with_parent
 from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.components.library.sources import locate
@@ -61,7 +62,7 @@ def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> 
 
     say(what is being done, and why) is called once where that is worth it: for two models and processors.
     """
-    workers = min(len(os.sched_getaffinity(0)), len(models))
+    workers = min(cores(), len(models))
     if workers < 2:
         return
     say(f"compiling {', '.join(model.title for model in models)}: new here, and kept for later runs")

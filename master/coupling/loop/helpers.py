@@ -1,73 +1,133 @@
-"""Threads that step some of a system's components while the run's own thread steps others."""
+"""Threads that step some of a system's bearings while the run's own thread steps others."""
 
 from __future__ import annotations
 
 import ctypes
+import math
 import os
-from concurrent.futures import Future, ThreadPoolExecutor
+import time as clock
 from contextlib import suppress
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 
-from touchdown.master.coupling.loop.kernels.board import LINE, OPEN, SIZE, YIELD, help_out
+from touchdown.master.common.processes.cores import cores
+from touchdown.master.coupling.loop.kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
 
-THREADS = "OMP_NUM_THREADS"  # an environment variable; parallel libraries keep to it, too
+LIMIT = "OMP_NUM_THREADS"  # an environment variable; parallel libraries keep to it, too
 QUOTA = Path("/sys/fs/cgroup/cpu.max")  # of processor time, in a container
 PATIENCE = 20_000  # looks in vain, some ms, after which a helper leaves
+FREE = 0.9  # share of a stretch that a helper has its processor, where nobody else wants that
+JUDGED = 5e-4  # s that a stretch takes, at least, to tell
+MOST_ALONE = 64  # stretches without helpers before they are asked again
 WORD = 8  # bytes
 
 
 class Helpers:
-    """So many threads beside the run's own, for one system as it is laid out now."""
+    """So many threads beside the run's own, for one system as it is laid out now.
 
-    def __init__(self, count: int, turns: np.ndarray) -> None:
+    On a busy machine a step may wait for a helper whose processor is taken by others, for milliseconds.
+    After a stretch in which one was kept from its work they are left out: for one stretch, then two, four
+    and so on, until they have their processors again.
+    """
+
+    def __init__(self, count: int, turns: np.ndarray, leave: int) -> None:
         self._turns = turns
         room = np.zeros((SIZE + LINE) // WORD, np.int64)
         self._board = room[-room.ctypes.data % LINE // WORD :]
-        self._board[OPEN // WORD] = 1
-        self._board[YIELD // WORD] = _yield_address()
-        self._pool = ThreadPoolExecutor(count, "touchdown-helper")
-        self._helping: list[Future[None] | None] = [None] * count
+        self._board[YIELD // WORD] = leave
+        self._threads: list[Thread | None] = [None] * count
+        self._failure: BaseException | None = None
+        self._able, self._beside = True, False  # whether there can be threads, and are in this stretch
+        self._alone = self._rests = 0  # stretches without them: those to come, and how many they were
+        self._began = 0.0, 0.0  # s of wall time, and of processors by helpers
 
     @property
-    def board(self) -> int:
-        """The address of the board that they look at."""
-        return self._board.ctypes.data
+    def helped(self) -> int:
+        """How many steps they took."""
+        return int(self._board[HELPED // WORD])
 
-    def call(self) -> None:
-        """Call those who are not there, or left as there was nothing to do."""
-        for i, helping in enumerate(self._helping):
-            if helping is None or helping.done():
-                self._helping[i] = self._pool.submit(help_out, self.board, self._turns, PATIENCE)
+    def call(self) -> int:
+        """Have them at hand for a stretch; the address of the board that they look at, 0: of none."""
+        self._beside = self._able and self._alone == 0 and self._all_there()
+        self._alone = max(self._alone - 1, 0)
+        self._began = clock.perf_counter(), self._spent()
+        return self._board.ctypes.data if self._beside else 0
+
+    def look(self) -> None:
+        """See after a stretch whether they had their processors. Raises what went wrong in a helper."""
+        if self._failure is not None:
+            raise self._failure
+        took, spent = clock.perf_counter() - self._began[0], self._spent() - self._began[1]
+        if self._beside and took > JUDGED:
+            kept = spent < FREE * took * len(self._threads)
+            self._rests = min(2 * self._rests or 1, MOST_ALONE) if kept else 0
+            self._alone = self._rests
+            self._board[OPEN // WORD] = 0 if kept else 1
 
     def close(self) -> None:
         """Send them away; back when they are gone."""
-        self._board[OPEN // WORD] = 0
-        self._pool.shutdown()
+        self._able, self._board[OPEN // WORD] = False, 0
+        for thread in self._threads:
+            if thread is not None and thread.is_alive():
+                thread.join()
+
+    def _all_there(self) -> bool:
+        """Call those who left; whether all can be had."""
+        self._board[OPEN // WORD] = 1
+        for i, thread in enumerate(self._threads):
+            if thread is None or not thread.is_alive():
+                self._threads[i] = started = Thread(target=self._help, name="touchdown-helper", daemon=True)
+                try:
+                    started.start()
+                except RuntimeError:  # there can be no more of them, or the interpreter is about to end
+                    self._threads[i] = None
+                    self._able, self._board[OPEN // WORD] = False, 0
+                    return False
+        return True
+
+    def _spent(self) -> float:
+        """s of processor time of all helpers; no number where the system does not tell, or one is gone."""
+        try:
+            return sum(
+                clock.clock_gettime(_clock_of(t.native_id)) for t in self._threads if t and t.native_id
+            )
+        except (OSError, AttributeError):
+            return math.nan
+
+    def _help(self) -> None:
+        try:
+            help_out(self._board.ctypes.data, self._turns, PATIENCE)
+        except BaseException as error:
+            self._failure = error
+
+
+def _clock_of(thread: int) -> int:
+    """Linux's clock of the processor time of a thread, by its number; one that is gone has none."""
+    return (~thread << 3) | 6
 
 
 def helpers(turns: np.ndarray) -> Helpers | None:
     """Those that the groups of `turns` can use; None where there are none."""
-    most = max((row["end"] - first for first, row in enumerate(turns) if row["shared"]), default=1)
-    count = min(most, threads()) - 1
-    return Helpers(count, turns) if count > 0 else None
+    count, leave = min(int(turns["shared"].max(initial=0)), threads()) - 1, _leave_address()
+    return Helpers(count, turns, leave) if count > 0 and leave else None
 
 
 def threads() -> int:
     """How many threads a run may have."""
-    given = os.environ.get(THREADS, "").partition(",")[0]
+    given = os.environ.get(LIMIT, "").partition(",")[0]
     if given.strip().isdecimal() and int(given) > 0:
         return int(given)
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    found = cores()
     with suppress(OSError, ValueError):
         quota, period = map(float, QUOTA.read_text().split())
-        cores = min(cores, int(quota / period))
-    return max(cores, 1)
+        found = min(found, int(quota / period))
+    return max(found, 1)
 
 
-def _yield_address() -> int:
-    """The system's function that leaves the processor to other threads."""
-    library = ctypes.WinDLL("kernel32") if os.name == "nt" else ctypes.CDLL(None)  # pyright: ignore
-    function = library.SwitchToThread if os.name == "nt" else library.sched_yield
-    return ctypes.cast(function, ctypes.c_void_p).value or 0
+def _leave_address() -> int:
+    """The system's function that leaves the processor to others; 0 where there is none by that name."""
+    with suppress(OSError, TypeError, AttributeError):
+        return ctypes.cast(ctypes.CDLL(None).sched_yield, ctypes.c_void_p).value or 0
+    return 0

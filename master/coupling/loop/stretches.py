@@ -71,6 +71,7 @@ class Stretches:
         """Send the helpers away."""
         if self._helpers is not None:
             self._helpers.close()
+            self._helpers = None
 
     def _get_ready(self, now: Moment) -> None:
         """Compile what stretches need with all that the first macro step compiles: by one of no length."""
@@ -106,11 +107,14 @@ class Stretches:
 
     def _run(self, found: Tables, rows: np.ndarray) -> bool:
         steps, f = self._steps, found
-        if self._helpers is not None:
-            self._helpers.call()
-        take = run if self._helpers is None else run_beside
         seats, books = steps.impacts.seats, steps.ledger.books
-        return take(self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows)
+        given = self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows
+        if self._helpers is None:
+            return run(*given)
+        self._plan["board"] = self._helpers.call()
+        failed = run_beside(*given)
+        self._helpers.look()
+        return failed
 
     def _refuse(self, found: Tables, plan: Any) -> None:
         """Raise what the component that failed has to say."""
@@ -128,9 +132,9 @@ class Stretches:
 
     def _planned(self, now: Moment, until: int) -> Any:
         """The plan of a stretch from now to the end of macro step `until`."""
-        steps, board = self._steps, 0 if self._helpers is None else self._helpers.board
+        steps = self._steps
         self._plan[0] = (
-            self._at_once, board, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done,
+            self._at_once, 0, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done,
             until, 0.0, steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero,
             0, 0, 0,
         )  # fmt: skip

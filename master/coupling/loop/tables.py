@@ -53,9 +53,7 @@ def tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None) -> Ta
         entries.append(entry)
     made = Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
     _add_turns(made, stepper.turns, entries)
-    _group(made, stepper.turns, at_once)
-    if all(map(_any_thread, entries)):
-        _share(made)
+    _group(made, stepper.turns, at_once, shared=all(map(_any_thread, entries)))
     if recorder is not None:
         _add_columns(made, entries, recorder)
     return made
@@ -94,22 +92,23 @@ def _add_turns(made: Tables, turns: Sequence[Turn], entries: Sequence[Entry]) ->
     made.kept += [turns, entries, parts]
 
 
-def _group(made: Tables, turns: Sequence[Turn], at_once: bool) -> None:
-    """Put together what takes nothing that others of its group give in the same step."""
+def _group(made: Tables, turns: Sequence[Turn], at_once: bool, shared: bool) -> None:
+    """Put together what steps beside each other: all at once, or, where threads may share the steps, those
+    who take nothing that others of their group give in the same step.
+
+    Touchdown bearings are worth it, two and more: others' steps take less than handing them over.
+    """
     first, given = 0, set[int]()
     for i, turn in enumerate(turns):
-        if not at_once and given.intersection(turn.places.tolist()):
+        alone = not shared or given.intersection(turn.places.tolist())
+        if alone and not at_once:
             first, given = i, set[int]()
         outputs = turn.component.outputs
         start = (_address(outputs) - _address(made.signals)) // outputs.dtype.itemsize
         given.update(range(start, start + len(outputs)))
         made.turns["end"][first] = i + 1
-
-
-def _share(made: Tables) -> None:
-    """Have threads share groups of touchdown bearings; others' steps take less than handing them over."""
-    for first, row in enumerate(made.turns):
-        row["shared"] = sum(REACH in c.variables for c in made.components[first : row["end"]]) > 1
+        if shared and REACH in turn.component.variables:
+            made.turns["shared"][first] += 1
 
 
 def _any_thread(entry: Entry) -> bool:

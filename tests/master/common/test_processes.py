@@ -11,6 +11,7 @@ import pytest
 from places import ROOT
 
 from touchdown.master.common.ended import Ended
+from touchdown.master.common.processes import cluster
 from touchdown.master.common.processes.pool import run_all
 
 PARENT = """
@@ -63,3 +64,10 @@ def test_what_ctrl_c_keeps_from_being_heard_is_interrupted() -> None:
 
     ended = run_all(die_at_two, [0, 4], 1, lambda: None, heard)
     assert [one.ended for one in ended] == [Ended.INTERRUPTED, Ended.INTERRUPTED]
+
+
+def test_a_task_on_a_cluster_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever its worker was started with."""
+    monkeypatch.setenv("OMP_NUM_THREADS", "4")
+    assert cluster._one_by_one(os.environ.get, "OMP_NUM_THREADS").value == "1"
+    assert os.environ["OMP_NUM_THREADS"] == "4"

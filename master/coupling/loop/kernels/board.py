@@ -13,25 +13,23 @@ import numpy as np
 
 from touchdown.master.coupling.loop.kernels import kernel, kernel_without_gil
 from touchdown.master.coupling.loop.kernels.component import step
-from touchdown.modelkit.kernel.atomic import add, call_plain, load, pause, replace, store
+from touchdown.modelkit.kernel.atomic import add, call_plain, load, pause, store, swap
 
 LINE = 64  # bytes that processors hand each other at a time: words apart do not get in each other's way
-OPEN, CLAIMS, TAKEN, YIELD = 0, LINE, 2 * LINE, 3 * LINE
-"""Places of a board's words, in bytes: whether helpers are to stay; a round's number, the first turn that
-is left of it and the one after the last, in 32, 16 and 16 bits; how many turns were taken; and the address
-of the function that leaves the processor to others."""
-SIZE = 4 * LINE
-MOST = 0xFFFF  # components of a system
-ROUNDS = 0x7FFFFFFF
+OPEN, LEFT, TAKEN, HELPED, YIELD = 0, LINE, 2 * LINE, 3 * LINE, 4 * LINE
+"""Places of a board's words, in bytes: whether helpers are to stay; the first turn that is left of the
+group and the one after the last, 32 bits each; how many of the group were taken; how many helpers took in
+all; and the address of the function that leaves the processor to others, as no kept code could hold it."""
+SIZE = 5 * LINE
+HALF = 32  # bits
 SPINS = 500  # looks, some us, after which a thread that waits lets others have its processor at each
 
 
 @kernel
 def share(board, turns, first, end):
     """Have the turns from `first` to `end` stepped by all threads; back when all were."""
-    number = ((load(board + CLAIMS) >> 32) + 1) & ROUNDS
     store(board + TAKEN, 0)
-    store(board + CLAIMS, number << 32 | first << 16 | end)
+    store(board + LEFT, first << HALF | end)
     i = _claim(board, True)
     while i >= 0:
         _take(board, turns[i])
@@ -43,15 +41,19 @@ def share(board, turns, first, end):
 
 @kernel
 def _claim(board, from_front):
-    """A turn that is now this thread's alone; -1: none is left."""
+    """A turn that is now this thread's alone; -1: none is left.
+
+    It is of the group that is there now, whichever was when the word was read: same word, same claim.
+    """
     while True:
-        claims = load(board + CLAIMS)
-        first, end = (claims >> 16) & MOST, claims & MOST
+        left = load(board + LEFT)
+        first, end = left >> HALF, left & ((1 << HALF) - 1)
         if first >= end:
             return -1
-        left = claims + (MOST + 1) if from_front else claims - 1
-        if replace(board + CLAIMS, claims, left):
-            return first if from_front else end - 1
+        if from_front and swap(board + LEFT, left, (first + 1) << HALF | end):
+            return first
+        if not from_front and swap(board + LEFT, left, first << HALF | (end - 1)):
+            return end - 1
 
 
 @kernel
@@ -79,6 +81,7 @@ def help_out(board: int, turns: np.ndarray, patience: int) -> None:
         i = _claim(board, False)
         if i >= 0:
             _take(board, turns[i])
+            add(board + HELPED, 1)
             looks = 0
         else:
             looks = _wait(board, looks)

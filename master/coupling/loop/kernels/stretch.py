@@ -32,16 +32,18 @@ def exchange(plan, turns, parts, signals, number, time):
     ends = number + 1 if plan.at_once else number
     first = 0
     while first < len(turns):
-        end = turns[first].end
+        end, due = turns[first].end, 0
         for i in range(first, end):
             turn = turns[i]
             turn.due = number % turn.every == 0
             if turn.due:
+                due += 1
                 turn.time, turn.span = time, turn.every * plan.span
                 status = push(turn, parts, signals, number)
                 if status != 0:
                     return note(plan, i, SET, status)
-        failed = advance(plan.board, turns, first, end)
+        board = plan.board if due > 1 and turns[first].shared > 1 else 0
+        failed = advance(board, turns, first, end)
         if failed >= 0:
             return note(plan, failed, STEP, turns[failed].status)
         for i in range(first, end):
@@ -55,8 +57,11 @@ def exchange(plan, turns, parts, signals, number, time):
 
 @kernel
 def advance(board, turns, first, end):
-    """Step those from `first` to `end` that are due; the first that failed, -1: none."""
-    if board and turns[first].shared:
+    """Step those from `first` to `end` that are due; the first that failed, -1: none.
+
+    board: the address of one on which they are shared; 0: of none.
+    """
+    if board:
         share(board, turns, first, end)
         for i in range(first, end):
             if turns[i].due and turns[i].status != 0:

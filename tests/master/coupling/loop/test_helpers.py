@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import threading
+import time as clock
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 from systems import bits, rotor_on
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.coupling.loop import helpers
+from touchdown.master.coupling.loop.helpers import Helpers
+from touchdown.master.coupling.loop.kernels import kernel_without_gil
+from touchdown.master.coupling.loop.kernels.stretch import advance
+from touchdown.master.coupling.loop.kernels.tables import TURN
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
@@ -31,39 +41,50 @@ def native(scene: Scene) -> Scene:
 
 
 class Threads:
-    """Runs scenes with a number of threads, and counts the helpers who were called."""
+    """Runs scenes with a number of threads, and counts what helpers took."""
 
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.folder, self._patch, self.called = folder, monkeypatch, 0
+        self.folder, self._patch = folder, monkeypatch
+        self.called = self.helped = 0
 
     def run(self, scene: Scene, count: int, in_process: bool = True) -> tuple[Outcome, dict[str, object]]:
-        self._patch.setenv(helpers.THREADS, str(count))
-        call, self.called = helpers.Helpers.call, 0
+        self._patch.setenv(helpers.LIMIT, str(count))
+        call, close, self.called, self.helped = Helpers.call, Helpers.close, 0, 0
 
-        def counting(self_: helpers.Helpers) -> None:
+        def counting(one: Helpers) -> int:
             self.called += 1
-            call(self_)
+            return call(one)
+
+        def closing(one: Helpers) -> None:
+            close(one)
+            self.helped += one.helped
 
         path = self.folder / f"{count}.h5"
         with self._patch.context() as patch, opened(scene, in_process) as system:
-            patch.setattr(helpers.Helpers, "call", counting)
+            patch.setattr(Helpers, "call", counting)
+            patch.setattr(Helpers, "close", closing)
             outcome = simulate(scene, system, path)
-        assert not [t for t in threading.enumerate() if t.name.startswith("touchdown-helper")]
+        assert not helping()
         return replace(outcome, **UNLIKE), bits(path)
 
     def compared(self, scene: Scene, in_process: bool = True) -> Outcome:
         """The outcome, once a run with helpers and one without left the same behind."""
-        alone = self.run(scene, 1, in_process)
+        alone, left_alone = self.run(scene, 1, in_process)
         assert not self.called
-        beside = self.run(scene, 2, in_process)
+        beside, left_beside = self.run(scene, 2, in_process)
         assert self.called
-        assert repr(beside[0]) == repr(alone[0])
-        if beside[0].ended is not Ended.COMPLETED:  # who stepped beside the one that failed did step
-            for _, left in (alone, beside):
+        assert repr(beside) == repr(alone)
+        if alone.ended is not Ended.COMPLETED:  # who stepped beside the one that failed did step
+            for left in (left_alone, left_beside):
                 for name in [name for name in left if name.startswith("at_end")]:
                     del left[name]
-        assert beside[1] == alone[1]
-        return beside[0]
+        assert left_beside == left_alone
+        return beside
+
+
+def helping() -> list[threading.Thread]:
+    """Helpers that are there."""
+    return [thread for thread in threading.enumerate() if thread.name == "touchdown-helper"]
 
 
 @pytest.fixture
@@ -102,6 +123,26 @@ def test_helpers_leave_and_come_back(threads: Threads, monkeypatch: pytest.Monke
     threads.compared(landing(run__duration=3e-3))
 
 
+def test_where_there_can_be_no_more_threads_a_run_goes_on_alone(
+    threads: Threads, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def start(thread: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(threading.Thread, "start", start)
+    assert threads.compared(landing(run__duration=3e-3)).ended is Ended.COMPLETED
+    assert not threads.helped
+
+
+def test_what_goes_wrong_in_a_helper_is_not_lost(threads: Threads, monkeypatch: pytest.MonkeyPatch) -> None:
+    def help_out(*_: object) -> None:
+        raise MemoryError("of the helper")
+
+    monkeypatch.setattr(helpers, "help_out", help_out)
+    with pytest.raises(MemoryError, match="of the helper"):
+        threads.run(landing(run__duration=3e-3), 2)
+
+
 def test_one_bearing_needs_no_helper(threads: Threads) -> None:
     threads.run(rotor_on("bushing", {"mass": 1.0}, duration=2e-3, macro_step=1e-5), 4)
     assert not threads.called
@@ -113,12 +154,126 @@ def test_fmus_in_python_get_no_helper(threads: Threads) -> None:
     assert not threads.called
 
 
+# -- the board -----------------------------------------------------------------------------------------
+
+
+STEP = ctypes.CFUNCTYPE(
+    ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int
+)  # an fmi2DoStep
+
+
+class Group:
+    """Components whose steps are the test's own, which sleep, so that others get their turn."""
+
+    def __init__(self, count: int) -> None:
+        self.steps: list[tuple[int, float]] = []  # which, and the time it was told
+        self.by: list[set[str]] = [set() for _ in range(count)]  # who took its steps
+        self._functions = [STEP(partial(self._step, i)) for i in range(count)]
+        self.turns = np.zeros(count, TURN)
+        self.turns["functions"], self.turns["due"], self.turns["status"] = 1, 1, 9
+        self.turns["step"] = [ctypes.cast(f, ctypes.c_void_p).value for f in self._functions]
+
+    def _step(self, which: int, component: int | None, time: float, span: float, done: int) -> int:
+        clock.sleep(1e-3)
+        self.steps.append((which, time))
+        self.by[which].add(threading.current_thread().name)
+        return 0
+
+    def round(self, board: int, time: float) -> None:
+        """All of them, once, at that time."""
+        self.turns["time"] = time
+        assert advance_all(board, self.turns) == -1
+        assert sorted(self.steps[-len(self.turns) :]) == [(i, time) for i in range(len(self.turns))]
+
+
+@kernel_without_gil
+def advance_all(board, turns):  # type: ignore[no-untyped-def]
+    return advance(board, turns, 0, len(turns))
+
+
+@pytest.mark.parametrize(("count", "threads"), [(2, 1), (5, 1), (5, 3)])
+def test_each_step_is_taken_once_by_somebody(count: int, threads: int) -> None:
+    compiled = Helpers(1, Group(2).turns, helpers._leave_address())
+    compiled.call()
+    compiled.close()
+    group = Group(count)
+    crew = Helpers(threads, group.turns, helpers._leave_address())
+    try:
+        board = crew.call()
+        assert len(helping()) == threads
+        for number in range(100):
+            group.round(board, float(number))
+        assert 0 < crew.helped < 100 * count
+    finally:
+        crew.close()
+    assert not helping()
+    assert "touchdown-helper" in group.by[-1]
+    assert "MainThread" in group.by[0]
+
+
+def test_the_first_that_fails_is_told() -> None:
+    group = Group(3)
+    failing = [STEP(lambda *_: 3) for _ in range(2)]
+    group.turns["step"][1:] = [ctypes.cast(f, ctypes.c_void_p).value for f in failing]
+    crew = Helpers(1, group.turns, helpers._leave_address())
+    try:
+        assert advance_all(crew.call(), group.turns) == 1
+    finally:
+        crew.close()
+    assert group.turns["status"].tolist() == [0, 3, 3]
+
+
+def test_helpers_that_do_not_have_their_processor_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For one stretch, two, four and so on, until a stretch in which they had it."""
+    now = SimpleNamespace(wall=0.0, spent=0.0)
+    fake = SimpleNamespace(perf_counter=lambda: now.wall, clock_gettime=lambda _: now.spent)
+    monkeypatch.setattr(helpers, "clock", fake)
+    crew = Helpers(1, Group(2).turns, helpers._leave_address())
+
+    def stretch(of_processors: float) -> bool:
+        beside = crew.call() != 0
+        now.wall += 1e-2
+        now.spent += 1e-2 * of_processors
+        crew.look()
+        return beside
+
+    try:
+        asked = [stretch(0.5) for _ in range(12)]
+        assert asked == [True, False, True, False, False, True, *[False] * 4, True, False]
+        assert [stretch(0.5) for _ in range(7)] == [False] * 7
+        assert [stretch(1.0) for _ in range(5)] == [True] * 5
+        assert stretch(0.5)
+        assert [stretch(0.5) for _ in range(2)] == [False, True]
+    finally:
+        crew.close()
+
+
+# -- who gets some -------------------------------------------------------------------------------------
+
+
+def test_each_bearing_but_one_is_worth_a_helper(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Magnetic bearings are not, nor is the rotor where all step at once."""
+    monkeypatch.setenv(helpers.LIMIT, "16")
+    made: list[int] = []
+    begin = Helpers.__init__
+
+    def counting(crew: Helpers, count: int, *given: Any) -> None:
+        made.append(count)
+        begin(crew, count, *given)
+
+    monkeypatch.setattr(Helpers, "__init__", counting)
+    for scheme in ("interface", "jacobi-lead"):
+        with opened(landing(run__duration=1e-3, run__scheme=scheme), in_process=True) as system:
+            simulate(landing(run__duration=1e-3, run__scheme=scheme), system)
+    assert set(made) == {1}
+
+
 # -- how many ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("given", "allowed"), [("3", 3), ("2,4", 2), ("1", 1)])
 def test_the_environment_says_how_many(given: str, allowed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(helpers.THREADS, given)
+    monkeypatch.setenv(helpers.LIMIT, given)
     assert helpers.threads() == allowed
 
 
@@ -130,7 +285,7 @@ def test_else_the_machine_does(
     given: str, quota: str | None, allowed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its processors, or what a container is given of them."""
-    monkeypatch.setenv(helpers.THREADS, given)
+    monkeypatch.setenv(helpers.LIMIT, given)
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(8)))
     monkeypatch.setattr(helpers, "QUOTA", tmp_path / "cpu.max")
     if quota is not None:
