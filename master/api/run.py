@@ -8,7 +8,7 @@ from touchdown.master.api.scenes import PathLike, as_scene
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.results.folder.reopened import reopened
 from touchdown.master.results.result import Result
-from touchdown.master.results.run import Pictures, run_scene
+from touchdown.master.results.run import Pictures, natively, run_scene
 from touchdown.master.scene.scene import Scene
 
 
@@ -17,6 +17,7 @@ def run(
     folder: PathLike | None = None,
     *,
     in_process: bool = False,
+    native: bool = False,
     csv: bool = False,
     pictures: Pictures = False,
     progress: bool = False,
@@ -25,8 +26,8 @@ def run(
 
     `folder` gets summary.json, scene.json, result.h5 and, where asked for, result.csv and pictures; without
     one nothing is left on disk once the result is not used any more. pictures="dark": on a dark ground.
-    in_process: step the models without
-    FMUs, the same to the bit and faster; progress: show a bar.
+    in_process: step the models without FMUs, the same to the bit and faster; native: take the project's own
+    FMUs that need no Python; progress: show a bar.
 
     Raises TouchdownError where the run cannot start. One that stops part-way returns what it recorded, and
     `ended` says so.
@@ -38,9 +39,10 @@ def run(
     """
     if pictures not in (True, False, "dark"):
         raise TouchdownError(f'pictures = {pictures!r} must be True, False or "dark"')
-    return run_scene(
-        as_scene(scene), None if folder is None else Path(folder), in_process, csv, pictures, progress
-    )
+    if native and in_process:
+        raise TouchdownError("native takes FMUs and in_process takes none; choose one")
+    chosen = natively(as_scene(scene)) if native else as_scene(scene)
+    return run_scene(chosen, None if folder is None else Path(folder), in_process, csv, pictures, progress)
 
 
 def open_result(folder: PathLike) -> Result:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import signal
 import threading
+import time as clock
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 
 # From people, batch systems and containers, terminals that close, and people again.
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+TOGETHER = 0.3  # s within which signals are one
 
 
 class Interrupts:
@@ -16,6 +18,7 @@ class Interrupts:
 
     def __init__(self) -> None:
         self._by: signal.Signals | None = None
+        self._at = 0.0  # s, when it was
 
     def is_set(self) -> bool:
         """Whether it was."""
@@ -28,11 +31,14 @@ class Interrupts:
         return f"interrupted{by}"
 
     def note(self, number: int, _: object = None) -> None:
-        """A signal came. A second Ctrl-C raises KeyboardInterrupt: now, whatever it breaks."""
-        if self.is_set() and number == signal.SIGINT:
+        """A signal came. A second Ctrl-C raises KeyboardInterrupt: now, whatever it breaks.
+
+        One that comes with the first is the same one: some launchers pass it on to who has it already.
+        """
+        if self.is_set() and number == signal.SIGINT and clock.monotonic() - self._at > TOGETHER:
             raise KeyboardInterrupt
         if not self.is_set():
-            self._by = signal.Signals(number)
+            self._by, self._at = signal.Signals(number), clock.monotonic()
 
 
 _noted: Interrupts | None = None  # while interrupts are noted; they are the process's, not a run's

@@ -15,6 +15,7 @@ from touchdown.master.common.files import writing_to
 from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.common.progress import bars
 from touchdown.master.components.library.ahead import compile_beside, new_models
+from touchdown.master.components.library.sources import foreign
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
@@ -70,6 +71,12 @@ def run_scene(
         finally:
             system.close()
     return Result(scene, recording, folder, summary, told, outcome.ended, outcome.reason, warnings, drawn)
+
+
+def natively(scene: Scene) -> Scene:
+    """A copy of which all components of the project's own are FMUs that need no Python."""
+    own = [name for name, spec in scene.components.items() if not foreign(spec.fmu)]
+    return scene.set({f"{name}.native": True for name in own})
 
 
 def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:
@@ -141,7 +148,7 @@ def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Pa
     """On request result.csv and pictures, which are returned."""
     if csv:
         write_csv(run.recording, folder / TABLE)
-    if not pictures:
+    if not pictures or len(run.recording.time) < 2:  # broken off before its first step
         return []
     from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
 

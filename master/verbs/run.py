@@ -36,7 +36,7 @@ def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.ended import Ended
     from touchdown.master.components.library.sources import foreign
-    from touchdown.master.results.run import run_scene
+    from touchdown.master.results.run import natively, run_scene
     from touchdown.master.results.summary import table
     from touchdown.master.results.whirl.evidence import evidence, hint
     from touchdown.master.results.whirl.unbalance import unbalanced
@@ -49,7 +49,7 @@ def execute(options: argparse.Namespace) -> int:
     if options.native:
         if options.in_process:
             raise TouchdownError("--native takes FMUs and --in-process takes none; choose one")
-        chosen = chosen.set({f"{name}.native": True for name in chosen.components if name not in files})
+        chosen = natively(chosen)
     say_whose_code_runs({name: chosen.components[name].isolate for name in files})
     result = run_scene(
         chosen,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hosting import COMPILER
 
 import touchdown
 from touchdown.master.coupling import steppers
@@ -98,6 +99,7 @@ def test_set_and_swap_make_copies() -> None:
         (lambda: SCENE.set({"run.scheme": TWICE}), "twice is not registered; give it to register_scheme"),
         (lambda: touchdown.sweep(SCENE, {}), "nothing varies"),
         (lambda: touchdown.build(["bushin"]), "did you mean bushing"),
+        (lambda: touchdown.run(SCENE, native=True, in_process=True), "choose one"),
         (lambda: touchdown.check("bushin"), "did you mean bushing"),
         (lambda: touchdown.compare(SCENE, ["interfac"]), "unknown scheme interfac"),
         (lambda: touchdown.Rotor.load("rotor_III"), "did you mean rotor_II or rotor_I"),
@@ -116,6 +118,16 @@ def test_a_mistake_says_what_the_command_says(capfd: pytest.CaptureFixture[str])
         touchdown.run(SCENE.set({"bearing.clearance": "1 kg"}), in_process=True)
     main(["run", "disk-caged-simplified", "--set", "bearing.clearance=1 kg", "--in-process"])
     assert str(caught.value) in capfd.readouterr().err
+
+
+@pytest.mark.skipif(COMPILER is None, reason="there is no C compiler (cc, gcc)")
+def test_native_fmus_are_one_word_away() -> None:
+    """With the same recording; what the scene says of them is kept with the results."""
+    scene = SCENE.set({"run.duration": "1 ms"})
+    native = touchdown.run(scene, native=True)
+    assert all(component.native for component in native.scene.components.values())
+    alone = touchdown.run(scene, in_process=True)
+    assert np.array_equal(native["rotor.A.y"], alone["rotor.A.y"])
 
 
 class Twice(GaussSeidel):

@@ -17,6 +17,7 @@ import pytest
 from commands import SCENE, SHORT, Command, Ended
 from places import COMMAND
 
+from touchdown.master.common import interrupts
 from touchdown.master.common.errors import FAILED, STOPPED
 from touchdown.master.common.interrupts import ended_as_by_ctrl_c, interrupts_noted
 from touchdown.master.coupling.observer import BEAT
@@ -176,6 +177,17 @@ def test_ctrl_c_while_loading(tmp_path: Path):
     ended = finished(process(tmp_path, sys.executable, "-c", script))
     assert ended.status == 130, ended.stderr
     assert "interrupted" in ended.line
+
+
+def test_a_ctrl_c_that_comes_twice_at_once_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another one, later, breaks off whatever it finds."""
+    with interrupts_noted() as noted:
+        for _ in range(2):
+            signal.raise_signal(signal.SIGINT)
+        assert noted.is_set()
+        monkeypatch.setattr(interrupts, "TOGETHER", -1.0)
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
 
 
 # -- other signals, and kills ------------------------------------------------------------------------
