@@ -127,7 +127,7 @@ def test_native_fmus_are_one_word_away() -> None:
     native = touchdown.run(scene, native=True)
     assert all(component.native for component in native.scene.components.values())
     alone = touchdown.run(scene, in_process=True)
-    assert np.array_equal(native["rotor.A.y"], alone["rotor.A.y"])
+    assert np.array_equal(native.recording["rotor.A.y"], alone.recording["rotor.A.y"])
 
 
 class Twice(GaussSeidel):
