@@ -5,11 +5,10 @@ from __future__ import annotations
 import ctypes
 
 import numpy as np
-import pytest
 from numba import carray, cfunc, njit, types
 
 from touchdown.fmus.recipes import recipe
-from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.instance import Instance, explanation
 from touchdown.modelkit.kernel.address import (
     advance_address,
     call_advance,
@@ -56,7 +55,9 @@ def test_what_was_not_compiled_has_no_address() -> None:
     assert advance_address(advance) != 0
 
 
-def test_an_exception_comes_through() -> None:
+def test_an_exception_is_a_status_that_is_said() -> None:
+    """It would end nothing but the thread that it is raised in."""
+
     @njit
     def advance(words, work, time, step):
         if step > 0.0:
@@ -65,8 +66,9 @@ def test_an_exception_comes_through() -> None:
 
     words, work = np.zeros(1), np.zeros((1, 1))
     advance(words, work, 0.0, 0.0)
-    with pytest.raises(ValueError, match="as it raised"):
-        steps(advance_address(advance), words, work, 1)
+    assert steps(advance_address(advance), words, work, 1) == -1
+    housing = Instance(recipe("housing").model)
+    assert explanation(housing, -1, 1e-3, STEP).startswith("the model's code gave up at t = 0.001 s")
 
 
 def test_functions_of_fmi_get_what_they_are_given() -> None:
