@@ -86,8 +86,9 @@ def taken(drops: list[str], folder: Path) -> set[Path]:
 
 def _started(drops: list[str], how: list[str], folder: Path) -> subprocess.Popen[bytes]:
     """The drops, begun in a process that compiles for a plain processor."""
-    environment = {**os.environ, "NUMBA_CPU_NAME": plain_processor(), "NUMBA_CPU_FEATURES": ""}
-    environment["OMP_NUM_THREADS"] = "2"  # so that what helpers take is there, on whatever machine
+    compiling = {"NUMBA_CPU_NAME": plain_processor(), "NUMBA_CPU_FEATURES": ""}
+    # with two threads what helpers take is there, on whatever machine
+    environment = {**os.environ, **compiling, "OMP_NUM_THREADS": "2"}
     command = [sys.executable, str(ROOT / ".ci" / "observed.py"), str(folder), *how, *drops]
     return subprocess.Popen(command, env=environment)
 

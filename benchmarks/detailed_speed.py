@@ -114,18 +114,24 @@ def kept(module: ModuleType) -> Callable:
     return carry
 
 
-def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
-    """(us per right-hand side, loaded balls) at the first impact's height."""
-    instance = Runner("", kept(module), MICRO_STEP).run(module, 4e-4)[0]
+def repeater(module: ModuleType) -> Callable:
+    """A kernel repeat(words, rows, times) that evaluates a model's right-hand side `times` over."""
     rhs, memory, scratch = module.rhs, module.MEMORY, module.SCRATCH
 
     @whole
-    def loop(words, work, count):
+    def repeat(words, rows, times):
         m = words.view(memory)[0]
-        dq = work.ravel().view(scratch)[0].rows[0]
-        for _ in range(count):
+        dq = rows.ravel().view(scratch)[0].rows[0]
+        for _ in range(times):
             rhs(0.0, m.q, dq, m)
 
+    return repeat
+
+
+def rhs_time(module: ModuleType, repeat: int) -> tuple[float, int]:
+    """(us per right-hand side, loaded balls) at the first impact's height."""
+    instance = Runner("", kept(module), MICRO_STEP).run(module, 4e-4)[0]
+    loop = repeater(module)
     work = np.zeros((8, module.MEMORY["q"].shape[0]))
     loop(instance.words, work, 10)
     found = []

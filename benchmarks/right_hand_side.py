@@ -35,8 +35,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from detailed_speed import MODULES, kept, released
-from tried_integrators import whole
+from detailed_speed import MODULES, kept, released, repeater
 
 from touchdown.bearings.contact.friction import MAKKAR
 from touchdown.bearings.rolling.ball_state import BALLS
@@ -221,20 +220,6 @@ class Kernels:
         slope = aligned(STATE)
         lay_out(slope, self._rows[0], self.count)
         return slope
-
-
-def repeater(module: ModuleType) -> Callable:
-    """A kernel repeat(words, rows, times) that evaluates a model's right-hand side `times` over."""
-    rhs, memory, scratch = module.rhs, module.MEMORY, module.SCRATCH
-
-    @whole
-    def repeat(words, rows, times):
-        m = words.view(memory)[0]
-        dq = rows.ravel().view(scratch)[0].rows[0]
-        for _ in range(times):
-            rhs(0.0, m.q, dq, m)
-
-    return repeat
 
 
 class Pair(NamedTuple):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hosting import COMPILER
 from places import ROOT
 
 from touchdown.master.scene.file import load_scene
@@ -49,7 +49,7 @@ def test_the_right_hand_side_in_c_finds_what_the_kernels_find(number: int, tmp_p
     """Of a bearing that has landed, its balls damped; a mass that is 1e-9 off is noticed."""
     import right_hand_side
 
-    if shutil.which("cc") is None and shutil.which("gcc") is None:
+    if COMPILER is None:
         pytest.skip("there is no C compiler")
     case = right_hand_side.CASES[number]
     instance = right_hand_side.landed(case, right_hand_side.DAMPED)

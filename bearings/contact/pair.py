@@ -117,21 +117,13 @@ def heat(press, sliding, rate):
 
 
 @kernel
-def rub(place, side, squeezed, friction, across, driven):
-    """The `Press` of bodies that are `squeezed`, with the law's friction, -mu N (2.39), over a kick.
-
-    friction: a record; across (s/kg) and driven (m/s): as `Kick.across` and `Kick.sliding`.
-    """
-    expected = squeezed.sliding + driven
-    line = friction_line(squeezed.sliding, expected, across, squeezed.normal, curve(friction))
-    return rubbed(place, side, squeezed, force_on(line, across, driven))
-
-
-@kernel
 def press(first, second, place, side, law, friction, kick):
     """Contact of two bodies (Motion) at `place`, for an indentation above zero, over a `Kick`.
 
+    Friction is the law's, -mu N (2.39).
     side: INSIDE or OUTSIDE; law, friction: records. Returns a `Press` (N, N m, m/s).
     """
     squeezed = squeeze(first, second, place, side, law, kick)
-    return rub(place, side, squeezed, friction, kick.across, kick.sliding)
+    expected = squeezed.sliding + kick.sliding
+    line = friction_line(squeezed.sliding, expected, kick.across, squeezed.normal, curve(friction))
+    return rubbed(place, side, squeezed, force_on(line, kick.across, kick.sliding))

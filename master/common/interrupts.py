@@ -35,10 +35,10 @@ class Interrupts:
 
         One that comes with the first is the same one: some launchers pass it on to who has it already.
         """
-        if self.is_set() and number == signal.SIGINT and clock.monotonic() - self._at > TOGETHER:
-            raise KeyboardInterrupt
         if not self.is_set():
             self._by, self._at = signal.Signals(number), clock.monotonic()
+        elif number == signal.SIGINT and clock.monotonic() - self._at > TOGETHER:
+            raise KeyboardInterrupt
 
 
 _noted: Interrupts | None = None  # while interrupts are noted; they are the process's, not a run's

@@ -104,3 +104,15 @@ def call_step(_: Any, address: Any, component: Any, time: Any, step: Any) -> Any
         return builder.sext(builder.call(code, [*given[1:], ir.Constant(status, 1)]), word)
 
     return types.intp(types.intp, types.intp, types.float64, types.float64), generate
+
+
+@intrinsic
+def call_plain(_: Any, address: Any) -> Any:
+    """Call the C function at an address, which takes nothing and answers an int."""
+
+    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        kind = ir.FunctionType(ir.IntType(32), [])
+        builder.call(builder.inttoptr(given[0], kind.as_pointer()), [])
+        return context.get_dummy_value()
+
+    return types.none(types.intp), generate

@@ -6,14 +6,16 @@ import platform
 from typing import Any
 
 from llvmlite import ir
-from numba import extending, types
+from numba import types
 
-intrinsic: Any = extending.intrinsic  # which takes its functions' first parameter away
+from touchdown.modelkit.kernel.address import intrinsic
 
 WORD = 8  # bytes
-HINTS = {"x86_64": ("llvm.x86.sse2.pause", ()), "AMD64": ("llvm.x86.sse2.pause", ())} | dict.fromkeys(
-    ("aarch64", "arm64"), ("llvm.aarch64.hint", (1,))
-)
+HINTS = {
+    "x86_64": ("llvm.x86.sse2.pause", ()),
+    "aarch64": ("llvm.aarch64.hint", (1,)),
+    "arm64": ("llvm.aarch64.hint", (1,)),
+}
 """By processor: the instruction that says that a thread waits, and what it is given."""
 
 
@@ -78,15 +80,3 @@ def pause(_: Any) -> Any:
         return context.get_dummy_value()
 
     return types.none(), generate
-
-
-@intrinsic
-def call_plain(_: Any, address: Any) -> Any:
-    """Call the C function at an address, which takes nothing and answers an int."""
-
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        kind = ir.FunctionType(ir.IntType(32), [])
-        builder.call(builder.inttoptr(given[0], kind.as_pointer()), [])
-        return context.get_dummy_value()
-
-    return types.none(types.intp), generate

@@ -19,6 +19,7 @@ GRAVITY = 9.81  # m/s2
 CLEARANCE = 0.3e-3  # m
 LANDING = (2.0 * GRAVITY * CLEARANCE) ** 0.5  # m/s
 
+UNLIKE = {"wall_time": 0.0, "start_up": 0.0}  # of the outcomes of two equal runs
 AT = 9e-3  # s after the shutdown; rotor I falls for 7.8 ms
 LEVITATED = 2e-3  # s
 CAGED = {

@@ -18,12 +18,13 @@ from typing import Any, Generic, TypeVar
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.interrupts import interrupts_ignored
+from touchdown.master.common.processes.cores import LIMIT
 from touchdown.master.common.processes.orphans import die_with_parent
 from touchdown.master.common.processes.watched import way_of
 
 GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
 TRIES = 2  # of a task whose process is killed: it may be to blame, or the machine
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+THREADS = (LIMIT, "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Of linear algebra and of runs: one each, since processes share the cores, and sums have one order."""
 
 Task = TypeVar("Task")

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
 import time as clock
 from contextlib import suppress
-from pathlib import Path
 from threading import Thread
 
 import numpy as np
 
-from touchdown.master.common.processes.cores import cores
+from touchdown.master.common.processes.cores import threads
 from touchdown.master.coupling.loop.kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
+from touchdown.modelkit.kernel.atomic import WORD
 
-LIMIT = "OMP_NUM_THREADS"  # an environment variable; parallel libraries keep to it, too
-QUOTA = Path("/sys/fs/cgroup/cpu.max")  # of processor time, in a container
 PATIENCE = 20_000  # looks in vain, some ms, after which a helper leaves
 FREE = 0.9  # share of a stretch that a helper has its processor, where nobody else wants that
 JUDGED = 5e-4  # s that a stretch takes, at least, to tell
 MOST_ALONE = 64  # stretches without helpers before they are asked again
-WORD = 8  # bytes
 
 
 class Helpers:
@@ -64,7 +60,8 @@ class Helpers:
             kept = spent < FREE * took * len(self._threads)
             self._rests = min(2 * self._rests or 1, MOST_ALONE) if kept else 0
             self._alone = self._rests
-            self._board[OPEN // WORD] = 0 if kept else 1
+            if kept:
+                self._board[OPEN // WORD] = 0
 
     def close(self) -> None:
         """Send them away; back when they are gone."""
@@ -110,20 +107,10 @@ def _clock_of(thread: int) -> int:
 
 def helpers(turns: np.ndarray) -> Helpers | None:
     """Those that the groups of `turns` can use; None where there are none."""
-    count, leave = min(int(turns["shared"].max(initial=0)), threads()) - 1, _leave_address()
-    return Helpers(count, turns, leave) if count > 0 and leave else None
-
-
-def threads() -> int:
-    """How many threads a run may have."""
-    given = os.environ.get(LIMIT, "").partition(",")[0]
-    if given.strip().isdecimal() and int(given) > 0:
-        return int(given)
-    found = cores()
-    with suppress(OSError, ValueError):
-        quota, period = map(float, QUOTA.read_text().split())
-        found = min(found, int(quota / period))
-    return max(found, 1)
+    worth = int(turns["shared"].max(initial=0))
+    count = min(worth, threads()) - 1 if worth > 1 else 0
+    leave = _leave_address() if count > 0 else 0
+    return Helpers(count, turns, leave) if leave else None
 
 
 def _leave_address() -> int:

@@ -145,16 +145,6 @@ def run(
 
 
 @kernel_without_gil
-def run_beside(
-    plan: np.ndarray,
-    turns: np.ndarray,
-    parts: np.ndarray,
-    seats: np.ndarray,
-    books: np.ndarray,
-    signals: np.ndarray,
-    reads: np.ndarray,
-    columns: np.ndarray,
-    rows: np.ndarray,
-) -> bool:
+def run_beside(*given: np.ndarray) -> bool:
     """`run` beside helpers, which come from other threads of Python."""
-    return run(plan, turns, parts, seats, books, signals, reads, columns, rows)
+    return run(*given)

@@ -14,30 +14,25 @@ from typing import Any
 
 import numpy as np
 import pytest
-from systems import bits, rotor_on
+from systems import UNLIKE, bits, rotor_on
 
 from touchdown.master.common.ended import Ended
+from touchdown.master.common.processes import cores
 from touchdown.master.coupling.loop import helpers
 from touchdown.master.coupling.loop.helpers import Helpers
 from touchdown.master.coupling.loop.kernels import kernel_without_gil
 from touchdown.master.coupling.loop.kernels.stretch import advance
 from touchdown.master.coupling.loop.kernels.tables import TURN
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
+from touchdown.master.results.run import natively
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-
-UNLIKE = {"wall_time": 0.0, "start_up": 0.0}  # of two equal runs
 
 
 def landing(**settings: object) -> Scene:
     """Rotor I from before the shutdown, where magnetic bearings retire, to after its first impacts."""
     scene = load_scene("rotor1-9000").set({f"amb_{end}.shutdown_time": 1e-3 for end in "AB"})
     return scene.set({"run.duration": 8e-3} | {k.replace("__", "."): v for k, v in settings.items()})
-
-
-def native(scene: Scene) -> Scene:
-    parts = scene.components.items()
-    return replace(scene, components={name: replace(spec, native=True) for name, spec in parts})
 
 
 class Threads:
@@ -48,7 +43,7 @@ class Threads:
         self.called = self.helped = 0
 
     def run(self, scene: Scene, count: int, in_process: bool = True) -> tuple[Outcome, dict[str, object]]:
-        self._patch.setenv(helpers.LIMIT, str(count))
+        self._patch.setenv(cores.LIMIT, str(count))
         call, close, self.called, self.helped = Helpers.call, Helpers.close, 0, 0
 
         def counting(one: Helpers) -> int:
@@ -103,7 +98,7 @@ def test_bearings_of_macro_steps_of_their_own(threads: Threads) -> None:
 
 
 def test_native_fmus(threads: Threads) -> None:
-    threads.compared(native(landing(run__duration=4e-3)), in_process=False)
+    threads.compared(natively(landing(run__duration=4e-3)), in_process=False)
 
 
 def test_who_refuses_a_step_says_why(threads: Threads) -> None:
@@ -253,7 +248,7 @@ def test_helpers_that_do_not_have_their_processor_are_left_out(monkeypatch: pyte
 
 def test_each_bearing_but_one_is_worth_a_helper(monkeypatch: pytest.MonkeyPatch) -> None:
     """Magnetic bearings are not, nor is the rotor where all step at once."""
-    monkeypatch.setenv(helpers.LIMIT, "16")
+    monkeypatch.setenv(cores.LIMIT, "16")
     made: list[int] = []
     begin = Helpers.__init__
 
@@ -273,8 +268,8 @@ def test_each_bearing_but_one_is_worth_a_helper(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.parametrize(("given", "allowed"), [("3", 3), ("2,4", 2), ("1", 1)])
 def test_the_environment_says_how_many(given: str, allowed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(helpers.LIMIT, given)
-    assert helpers.threads() == allowed
+    monkeypatch.setenv(cores.LIMIT, given)
+    assert cores.threads() == allowed
 
 
 @pytest.mark.parametrize("given", ["", "0", "many", "-1"])
@@ -285,9 +280,9 @@ def test_else_the_machine_does(
     given: str, quota: str | None, allowed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its processors, or what a container is given of them."""
-    monkeypatch.setenv(helpers.LIMIT, given)
+    monkeypatch.setenv(cores.LIMIT, given)
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(8)))
-    monkeypatch.setattr(helpers, "QUOTA", tmp_path / "cpu.max")
+    monkeypatch.setattr(cores, "QUOTA", tmp_path / "cpu.max")
     if quota is not None:
         (tmp_path / "cpu.max").write_text(quota + "\n", "utf-8")
-    assert helpers.threads() == allowed
+    assert cores.threads() == allowed

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from misbehaving import COMPILER, compiled, misbehaving, scene_with
-from systems import bits, rotor_on
+from systems import UNLIKE, bits, rotor_on
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.components.twin import TwinComponent
@@ -26,7 +26,6 @@ from touchdown.master.scene.file import load_scene, parse
 from touchdown.master.scene.scene import Scene
 
 Observing = Callable[[], Observer]
-UNLIKE = {"wall_time": 0.0, "start_up": 0.0}  # of two equal runs
 SCALED = {
     "components": {
         "rotor": {"fmu": "rigid_rotor", "set": {"y": "10 um"}},
