@@ -28,7 +28,7 @@ from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesParameters,
 )
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
-from touchdown.bearings.rolling.bodies.state import drift, fastest, place, set_weights
+from touchdown.bearings.rolling.bodies.state import drift, fastest, fill_accounts, kicked, place, set_weights
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
 from touchdown.bearings.rolling.sides.contact import stored
@@ -189,23 +189,25 @@ def start(words):
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m)
     cage.place(m.q, m)
-    m.s.kick, m.s.lately = 0.5 * m.d.micro_step, 0.0
     state_constants(m)
+    m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
+    fill_accounts(m)
+    m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
     return seat.integrate(rhs, observe, m, work, span)
 
 
 @kernel
 def instant(t, q, dq, m):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
-    m.s.kick = 0.0
+    m.s.kick = m.s.drift = 0.0
     seat.instant(react, t, q, dq, m)
 
 

@@ -78,6 +78,8 @@ from touchdown.bearings.rolling.row import (
     RaceBalls,
     drift,
     fastest,
+    fill_accounts,
+    kicked,
     neighbour_forces,
     place,
     press_balls,
@@ -330,16 +332,18 @@ def start(words):
     ring.place(m.q, m.d.rest_x, m.d.rest_y)
     place(m.q, m.p.balls.count, m.d.angles)
     m.s.balls.cross[:] = 1.0
-    m.s.kick, m.s.lately = 0.5 * m.d.micro_step, 0.0
     state_constants(m)
+    m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
+    fill_accounts(m)
+    m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 
 @kernel
 def integrate(m, work, span):
     """Advance m.q by `span` (s); work: (8, m.n) or wider. As `seat.integrate`."""
     if m.d.micro_step > 0.0:
-        return leapfrog(rhs, drift, fastest, observe, m, work, span)
+        return leapfrog(rhs, drift, fastest, kicked, observe, m, work, span)
     tolerance = m.p.interface.tolerance
     return rosenbrock.integrate(
         rhs, linearise, solve, observe, m, m.q, m.n, m.weight, work, span, m.h, tolerance
@@ -349,7 +353,7 @@ def integrate(m, work, span):
 @kernel
 def instant(t, q, dq, m):
     """Derivative dq (m.n,) and load in m.o (N, N m) under the motion m.u, friction as it stands."""
-    m.s.kick = 0.0
+    m.s.kick = m.s.drift = 0.0
     seat.instant(react, t, q, dq, m)
 
 

@@ -9,7 +9,7 @@ energy of rotor, bearing and housing closes.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,9 @@ ANGLES = 12  # of the first ball, in the shipped bearings
 SEED = 13
 RPM = math.pi / 30.0  # rad/s
 GRAVITY = 9.81  # m/s2
+FAST = 60  # beside the seed, tells the draws of `fast_case` from the others
+FASTEST = 60_000.0 * RPM
+CERAMIC = 310e9  # Pa, silicon nitride
 SHORT_OF_TOUCH = 1e-8  # m
 
 
@@ -71,6 +74,42 @@ def random_case(model: str, seed: int) -> Case:
         parameters["cage.mass"] = ball * rng.uniform(1.0, 3.0)
         parameters["cage.clearance"] = _between(rng, 3e-6, 1e-4)
     return Case(model, seed, parameters, _rotor(rng, pitch, parameters["clearance"]))
+
+
+def fast_case(model: str, seed: int) -> Case:
+    """The random bearing of a seed under a rotor of 60 000 rpm, its ceramic balls of any size and weight.
+
+    Balls of 1 to 20 mm and 100 to 8000 kg/m3, play up to 0.1 mm, friction up to 0.9; nothing is damped. Odd
+    seeds have the friction of the journal and of the races apart, even ones alike.
+    """
+    rng = np.random.default_rng([SEED, FAST, seed])
+    caged = model.endswith("_caged")
+    parameters = _geometry(rng, caged)
+    grown = _between(rng, 1e-3, 20e-3) / parameters["balls.diameter"]
+    for name in ("balls.diameter", "balls.pitch_diameter"):
+        parameters[name] *= grown
+    diameter, pitch = parameters["balls.diameter"], parameters["balls.pitch_diameter"]
+    parameters |= _ring(rng, diameter, pitch) | _contacts(rng, "cage" if caged else "ball")
+    parameters["clearance"] = min(parameters["clearance"], 0.05 * parameters["journal_radius"])
+    parameters |= {
+        "balls.modulus": CERAMIC,
+        "balls.density": _between(rng, 100.0, 8000.0),
+        "balls.play": rng.uniform(0.0, 1e-4),
+        "balls.damping_ratio": 0.0,
+        "contact.damping": 0.0,
+    }
+    side = "cage" if caged else "ball"
+    parameters[f"{side}_contact.damping_ratio"] = 0.0
+    drawn = rng.uniform(0.0, 0.9, 3)
+    for law, value in zip(("friction", "race_friction", f"{side}_friction"), drawn, strict=True):
+        level = drawn[0] if seed % 2 == 0 else value
+        parameters[f"{law}.static"] = parameters[f"{law}.dynamic"] = float(level)
+    if caged:
+        ball = parameters["balls.density"] * math.pi / 6.0 * diameter**3
+        parameters["cage.mass"] = ball * rng.uniform(1.0, 3.0)
+        parameters["cage.clearance"] = _between(rng, 3e-6, 1e-4)
+    rotor = _rotor(rng, pitch, parameters["clearance"])
+    return Case(model, seed, parameters, replace(rotor, speed=math.copysign(FASTEST, rotor.speed)))
 
 
 def shipped_cases(model: str) -> list[Case]:

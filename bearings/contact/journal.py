@@ -127,6 +127,10 @@ class Touched:
     indentation: float = real(0.0, "m", "indentation; negative: the gap")
     rate: float = real(0.0, "m/s", "of the indentation")
     elastic: float = real(0.0, "N", "what of the normal force is not damping")
+    middle: float = real(0.0, "m/s", "rate of the indentation in the middle of the kick")
+    nx: float = real(0.0, "1", "direction of the journal from the middle of the bore")
+    ny: float = real(0.0, "1", "direction of the journal from the middle of the bore")
+    stored: float = real(0.0, "J", "as `bearings.contact.passivity`")
 
 
 @kernel

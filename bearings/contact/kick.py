@@ -23,19 +23,21 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from touchdown.bearings.contact.friction import height_and_slope, rises
+from touchdown.bearings.contact.passivity import NO_BEAT, Beat
 from touchdown.modelkit.kernel import woven
 
 
 class Kick(NamedTuple):
     """What a contact's own forces meet over a kick; all zero: nothing, the laws as they stand."""
 
+    beat: Beat
     across: float  # s/kg, answer of the sliding speed to friction
     along: float  # s/kg, answer of the approach to the normal force
     sliding: float  # m/s, change of the sliding speed by all other forces
     rate: float  # m/s, change of the indentation's rate by all other forces
 
 
-STILL = Kick(0.0, 0.0, 0.0, 0.0)
+STILL = Kick(NO_BEAT, 0.0, 0.0, 0.0, 0.0)
 
 
 class Line(NamedTuple):

@@ -7,15 +7,19 @@ lies (`Place`) and in which side of the surface the first body is on.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from touchdown.bearings.contact.friction import curve
 from touchdown.bearings.contact.kick import Kick, damped_normal, force_on, friction_line
 from touchdown.bearings.contact.laws import elastic_and_damping
+from touchdown.bearings.contact.passivity import passive
 from touchdown.modelkit.kernel import kernel, woven
 
 INSIDE = 1.0  # the first body lies in a hollow of the second: it presses outwards
 OUTSIDE = -1.0  # the first body lies on the second
+
+PLENTY = math.inf  # J; a contact that keeps no account can afford what its law asks for
 
 
 class Place(NamedTuple):
@@ -60,16 +64,17 @@ def slip(first, second, place, side):
 
 
 @kernel
-def kick_of(h, answers, first, second, place, side, last):
-    """The `Kick` of h (s) at `place`, for bodies whose accelerations are about those of the kick before.
+def kick_of(beat, answers, first, second, place, side, last):
+    """The `Kick` of a `Beat` at `place`, for bodies whose accelerations are about those of the kick before.
 
     answers: of the sliding speed and of the approach (1/kg) to the contact's own forces; first, second:
     Motion with accelerations (m/s2, rad/s2) for velocities; last: (friction, normal force) (N) of the kick
     before.
     """
+    h = beat.kick
     across, along = h * answers[0], h * answers[1]
     sliding, rate = slip(first, second, place, side)
-    return Kick(across, along, h * sliding - across * last[0], h * rate + along * last[1])
+    return Kick(beat, across, along, h * sliding - across * last[0], h * rate + along * last[1])
 
 
 class Squeeze(NamedTuple):
@@ -82,10 +87,15 @@ class Squeeze(NamedTuple):
 
 
 @kernel
-def squeeze(first, second, place, side, law, kick):
-    """`Squeeze` of two bodies (Motion) at `place`; law: a record; kick: a `Kick`."""
+def squeeze(first, second, place, side, law, kick, stored):
+    """`Squeeze` of two bodies (Motion) at `place`; law: a record; kick: a `Kick`.
+
+    stored: energy in the contact's account (J).
+    """
     sliding, rate = slip(first, second, place, side)
     elastic, damping = elastic_and_damping(place.indentation, law)
+    scale = place.indentation / (law.exponent + 1.0)
+    elastic = passive(elastic, scale, stored, rate, kick.rate, kick.along, kick.beat)
     normal = damped_normal(elastic, damping, rate, kick.along, kick.rate)
     return Squeeze(sliding, rate, normal, normal - elastic)
 
@@ -123,7 +133,7 @@ def press(first, second, place, side, law, friction, kick):
     Friction is the law's, -mu N (2.39).
     side: INSIDE or OUTSIDE; law, friction: records. Returns a `Press` (N, N m, m/s).
     """
-    squeezed = squeeze(first, second, place, side, law, kick)
+    squeezed = squeeze(first, second, place, side, law, kick, PLENTY)
     expected = squeezed.sliding + kick.sliding
     line = friction_line(squeezed.sliding, expected, kick.across, squeezed.normal, curve(friction))
     return rubbed(place, side, squeezed, force_on(line, kick.across, kick.sliding))

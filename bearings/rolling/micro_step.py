@@ -8,8 +8,10 @@ m.s.before the accelerations of the kick before.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from touchdown.bearings import seat
+from touchdown.bearings.contact.passivity import Beat
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_state import MOST_STATES
 from touchdown.modelkit.integrators import verlet
@@ -38,9 +40,11 @@ class KickMemory:
     """What a kick starts from."""
 
     kick: float = real(0.0, "s", "length of the kick; 0: none, the laws as they stand")
+    drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")
     lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
     rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
     before: tuple = array(MOST_STATES)  # derivative of the state then
+    withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
     brake: Brake = group(Brake)
     ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
 
@@ -54,7 +58,7 @@ def forecast(trial, dq, h, kick, m):
     seat.forecast(trial, dq, h)
     for k, i in enumerate(COPIES):
         m.s.ahead[k] = 0.5 * h * dq[i]
-    m.s.kick = kick
+    m.s.kick, m.s.drift = kick, kick - 0.5 * h
     for i in range(m.s.seat.inside):  # assigned at once, numba would compare shapes and refuse in Python
         m.s.before[i] = dq[i]
 
@@ -74,19 +78,52 @@ def book(dq, load, m):
     dq[ring.LOSS] -= b.jx * jx + b.jy * jy + b.jm * jw + b.hx * hx + b.hy * hy
 
 
+class Missed(NamedTuple):
+    """By how much a kick, and the copies in its middle, differ from what forces were found for."""
+
+    part: float  # of the length they were found for
+    jx: float  # m/s, journal
+    jy: float
+    hx: float  # housing
+    hy: float
+
+
 @kernel
-def leapfrog(rhs, drift, fastest, observe, m, work, span):
+def missed(dq, kick, m):
+    """`Missed` in a `kick` (s) under dq, found for m.s.kick with copies forecast by m.s.ahead."""
+    h, ahead = 0.5 * kick, m.s.ahead
+    part = kick / m.s.kick if m.s.kick > 0.0 else 1.0
+    jx, jy = h * dq[seat.JVX] - ahead[0], h * dq[seat.JVY] - ahead[1]
+    return Missed(part, jx, jy, h * dq[seat.HVX] - ahead[3], h * dq[seat.HVY] - ahead[4])
+
+
+@kernel
+def beat_of(m):
+    """The `Beat` (s) at hand."""
+    return Beat(m.s.kick, m.s.drift)
+
+
+@kernel
+def withhold(q, energy, m):
+    """Book `energy` (J) that contacts withheld as heat in the state q, and as what the steps cost."""
+    q[ring.LOSS] += energy
+    m.s.withheld += energy
+
+
+@kernel
+def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     """Advance m.q by `span` (s) in steps of at most m.d.micro_step and m.d.resolution.
 
-    The kernels are those of `verlet.integrate`; work: rows of scratch as long as the state. Returns
+    The kernels are those of `verlet.integrate`; `kicked` settles the contacts' accounts; work: rows of scratch as long as the state. Returns
     (micro-step to try next (s), status, evaluations).
     """
     m.s.ahead[:] = 0.0
     book(work[0], seat.last_load(m), m)
     steps = verlet.Steps(m.d.micro_step, m.d.resolution)
     status, evaluations, m.s.lately = verlet.integrate(
-        rhs, drift, forecast, fastest, observe, m, m.q, m.n, work, span, steps, m.s.lately
+        rhs, drift, forecast, fastest, kicked, observe, m, m.q, m.n, work, span, steps, m.s.lately
     )
+    m.s.kick = m.s.drift = 0.5 * verlet.step_length(m.s.lately, span, steps)  # if all stays as it is
     return m.h, status, evaluations
 
 

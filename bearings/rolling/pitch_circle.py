@@ -128,18 +128,31 @@ def rolling_drag(speed):
 
 
 @woven
-def squeeze_ball(at, gap, c, s, orbit, way, along, others):
-    """`Squeezed` (N) of a ball that lies `at` (Meeting), at cosine c and sine s, and orbits (rad/s).
+def across_of(gap, c, s):
+    """How far the ring lies off the middle along t (m), at a ball at the angle of cosine c and sine s."""
+    return gap.ey * c - gap.ex * s
 
-    along (s/kg), others (m/s): as for `bearings.contact.kick.damped_normal`.
+
+@woven
+def elastic_at(at, way):
+    """Elastic force (N) between the rings at a ball that lies `at` (Meeting)."""
+    depth = max(at.indentation, 0.0)
+    return way.stiffness * (depth * math.sqrt(depth))
+
+
+@woven
+def squeeze_ball(at, elastic, across, orbit, way, along, others):
+    """`Squeezed` (N) of a ball that lies `at` (Meeting), orbits (rad/s) and is pressed by `elastic` (N).
+
+    across: of the ring's place (`across_of`, m); along (s/kg), others (m/s): as for
+    `bearings.contact.kick.damped_normal`.
     """
     depth = max(at.indentation, 0.0)
-    elastic = way.stiffness * (depth * math.sqrt(depth))
     force = damped_normal(elastic, way.damping * depth, at.rate, along, others)
     outer = force + at.radius * way.mass * orbit * orbit
     v = at.radius * orbit
     drag = way.resistance * (force + outer) * rolling_drag(v)
-    held = elastic * (gap.ey * c - gap.ex * s) / at.radius + drag
+    held = elastic * across / at.radius + drag
     return Squeezed(force, elastic, outer, held, drag)
 
 
@@ -150,7 +163,7 @@ def between_races(gap, c, s, orbit, spin, rm, m):
     size = d.inner_radius, d.ball_radius, d.mass
     way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
     at = meet(gap, c, s, orbit, spin, way)
-    ball = squeeze_ball(at, gap, c, s, orbit, way, 0.0, 0.0)
+    ball = squeeze_ball(at, elastic_at(at, way), across_of(gap, c, s), orbit, way, 0.0, 0.0)
     inner = coefficient(at.inner, d.race_friction) * ball.force
     outer = coefficient(at.outer, d.race_friction) * ball.outer
     heat = (

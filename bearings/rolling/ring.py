@@ -19,8 +19,9 @@ from touchdown.bearings.contact.journal import (
     watch_contact,
 )
 from touchdown.bearings.contact.kick import friction_line
-from touchdown.bearings.contact.laws import elastic_energy
+from touchdown.bearings.contact.laws import elastic_energy, elastic_force
 from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
+from touchdown.bearings.contact.passivity import Beat, middle_of, settled
 from touchdown.bearings.rolling.pitch_circle import Gap
 from touchdown.bearings.rolling.rubbing import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from touchdown.modelkit.kernel import kernel, woven
@@ -98,8 +99,8 @@ def meet_journal(q, m):
     along = 1.0 / p.ring.mass
     answers = along + at.second * at.second / p.ring.inertia, along
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
-    kick = kick_of(s.kick, answers, kept, ring_motion(s.before), at, INSIDE, last)
-    return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick)
+    kick = kick_of(Beat(s.kick, s.drift), answers, kept, ring_motion(s.before), at, INSIDE, last)
+    return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick, s.ring.stored)
 
 
 @woven
@@ -128,8 +129,10 @@ def rub_journal(at, squeezed, friction, moved, m):
     """
     s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
     ahead = over_ring(at.nx, at.ny, at.second, moved)
-    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -(moved.x * at.nx + moved.y * at.ny)))
+    opening = moved.x * at.nx + moved.y * at.ny
+    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -opening))
     note(s.ring, t)
+    s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, at.nx, at.ny
     s.rubbed = friction
     s.brake.jx, s.brake.jy, s.brake.jm = (
         t.fx + t.elastic * at.nx,
@@ -154,6 +157,26 @@ def rub_races(q, pressed, answers, inner, m):
     law = curve(m.d.race_friction)
     friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1], s.lines)
     return rub_journal(at, squeezed, friction, moved, m), moved
+
+
+@kernel
+def bore_stiffness(m):
+    """Stiffness (N/m) of the journal's contact at its indentation of the last evaluation."""
+    depth = m.s.ring.indentation
+    return m.d.contact.exponent * elastic_force(depth, m.d.contact) / depth if depth > 0.0 else 0.0
+
+
+@kernel
+def settle_bore(kick, part, vx, vy, m):
+    """Settle the account of the journal's contact after a `kick` (s); returns what it withheld (J).
+
+    part: of the kick in which its force was found; vx, vy: by how much the journal was faster in its middle
+    than it was taken to be (m/s).
+    """
+    c = m.s.ring
+    closing = middle_of(c.rate, c.middle, part) + vx * c.nx + vy * c.ny
+    c.stored, withheld = settled(c.stored, c.indentation, kick * c.elastic * closing)
+    return withheld
 
 
 @kernel

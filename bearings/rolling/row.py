@@ -11,14 +11,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from touchdown.bearings import seat
+from touchdown.bearings.contact.laws import elastic_energy
 from touchdown.bearings.contact.pair import OUTSIDE, Place
+from touchdown.bearings.contact.passivity import Beat, middle_of, passive, settled
 from touchdown.bearings.rolling import ball_state, ring
 from touchdown.bearings.rolling.ball_state import BALLS, LANES, part, rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
-from touchdown.bearings.rolling.pitch_circle import Raceway, meet, squeeze_ball
+from touchdown.bearings.rolling.micro_step import beat_of, missed, withhold
+from touchdown.bearings.rolling.pitch_circle import Raceway, across_of, elastic_at, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
 from touchdown.bearings.rolling.sides.chain import after, link, part_ways, share
-from touchdown.bearings.rolling.sides.contact import heat_of, press_of
+from touchdown.bearings.rolling.sides.contact import heat_of, press_of, settle_sides
 from touchdown.bearings.rolling.sides.friction import rub_sides
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.numerics.angles import cosine_and_sine
@@ -42,6 +45,10 @@ class RaceBalls:
     radius: tuple = array(MOST_BALLS)  # m, on which the ball's centre runs
     along: tuple = array(MOST_BALLS)  # m/s2, along the race, but for friction and neighbours
     rate: tuple = array(MOST_BALLS)  # m/s, at which the rings approach, before the kick
+    across: tuple = array(MOST_BALLS)  # m, how far the ring lies off the middle along the ball's race
+    closing: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick: the ball's orbit, too
+    middle: tuple = array(MOST_BALLS)  # m/s, likewise in the middle of the kick
+    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
     damped: tuple = array(MOST_BALLS)  # N, what of the force between the rings is damping
     drag: tuple = array(MOST_BALLS)  # N, rolling resistance
     faster: tuple = array(MOST_BALLS)  # rad/s2, of the orbit, on its way through an evaluation
@@ -62,7 +69,9 @@ class Before(NamedTuple):
 
     x: float  # m/s
     y: float
-    answer: float  # s/kg
+    answer: float  # s/kg, where its mates move it, too
+    alone: float  # s/kg
+    beat: Beat
 
 
 class Loads(NamedTuple):
@@ -76,6 +85,9 @@ class Loads(NamedTuple):
     rate: object  # m/s
     damped: object  # N
     drag: object  # N
+    across: object  # m
+    closing: object  # m/s
+    stored: object  # J
 
 
 @kernel
@@ -109,7 +121,8 @@ def raceway(m):
 def _loads_of(s, n):
     """`Loads` (n,) as views of `s` (RaceBalls)."""
     ways = s.lever[:n], s.radius[:n], s.along[:n]
-    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.rate[:n], s.damped[:n], s.drag[:n])
+    account = s.across[:n], s.closing[:n], s.stored[:n]
+    return Loads(s.elastic[:n], s.indentation[:n], *ways, s.rate[:n], s.damped[:n], s.drag[:n], *account)
 
 
 @woven
@@ -129,8 +142,14 @@ def _press_all(gap, way, before, gravity, course, loads, inner, outer):
     for b in range(len(course.cosine)):
         c, s = course.cosine[b], course.sine[b]
         at = meet(gap, c, s, course.orbit[b], course.spin[b], way)
-        others = before.x * c + before.y * s + before.answer * inner.normal[b]
-        ball = squeeze_ball(at, gap, c, s, course.orbit[b], way, before.answer, others)
+        moved, across = before.x * c + before.y * s, across_of(gap, c, s)
+        closing = at.rate + across * course.orbit[b]
+        by_mates = moved + before.alone * inner.normal[b]
+        elastic, scale = elastic_at(at, way), 0.4 * at.indentation
+        elastic = passive(elastic, scale, loads.stored[b], closing, by_mates, before.alone, before.beat)
+        others = moved + before.answer * inner.normal[b]
+        ball = squeeze_ball(at, elastic, across, course.orbit[b], way, before.answer, others)
+        loads.across[b], loads.closing[b] = across, closing
         loads.elastic[b] = ball.elastic
         loads.indentation[b] = at.indentation
         loads.lever[b] = at.lever
@@ -161,7 +180,8 @@ def press_balls(q, m):
     angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
     _directions(angle, at.cosine[:n], at.sine[:n])
     moved = ring.moved_before(m)
-    before = Before(moved.x, moved.y, _crowd(m) * s.kick / m.p.ring.mass)
+    alone = s.kick / m.p.ring.mass
+    before = Before(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
     _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, _loads_of(at, n), inner, outer)
@@ -280,6 +300,7 @@ def _rub(q, share, moved, m):
         at.turning[b] += spun * (f_o - f_i)
         middle = at.rate[b] + 0.5 * (moved.x * at.cosine[b] + moved.y * at.sine[b])
         along = at.radius[b] * (orbit[b] + half * at.faster[b])
+        at.middle[b] = middle + at.across[b] * (orbit[b] + half * at.faster[b])
         s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
 
 
@@ -315,16 +336,34 @@ def _with_friction(pressed, m):
     return Total(fx, fy, moment, heat)
 
 
+@kernel
+def kicked(q, dq, kick, m):
+    """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
+    at, off, withheld = m.s.balls, missed(dq, kick, m), 0.0
+    for b in range(m.p.balls.count):
+        closing = middle_of(at.closing[b], at.middle[b], off.part)
+        closing -= off.hx * at.cosine[b] + off.hy * at.sine[b]
+        at.stored[b], lost = settled(at.stored[b], at.indentation[b], kick * at.elastic[b] * closing)
+        withheld += lost
+    withheld += settle_sides(m.s.side, m.p.balls.count, kick, off.part)
+    withhold(q, withheld + ring.settle_bore(kick, off.part, off.jx, off.jy, m), m)
+
+
+@kernel
+def fill_accounts(m):
+    """Have the contacts that press at the last evaluation hold what their laws have stored."""
+    for b in range(m.p.balls.count):
+        m.s.balls.stored[b] = elastic_energy(m.s.balls.indentation[b], m.d.race)
+    m.s.ring.stored = elastic_energy(m.s.ring.indentation, m.d.contact)
+
+
 @woven
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s
     below, side = 0.0, 0.0
     for b in range(m.p.balls.count):
-        if s.balls.indentation[b] > 0.0:
-            below += s.balls.elastic[b] / s.balls.indentation[b]
+        below += math.sqrt(max(s.balls.indentation[b], 0.0))
         side = max(side, s.side.stiffness[b])
-    below *= d.race.exponent
-    if s.ring.indentation > 0.0:
-        below += m.p.contact.exponent * s.ring.elastic / s.ring.indentation
+    below = d.race.exponent * d.race.stiffness * below + ring.bore_stiffness(m)
     return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * side / d.mass)), s.seat.fastest)

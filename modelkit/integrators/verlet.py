@@ -50,13 +50,14 @@ def of_late(now, before):
 
 
 @kernel
-def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps, lately):
+def integrate(rhs, drift, forecast, fastest, kicked, observe, m, q, n, work, span, steps, lately):
     """Advance the state q[:n] over `span` (s) in place, in `Steps`.
 
     rhs(t, q, dq, m) and observe(t, q, m) as for `dopri.integrate`. drift(trial, q, v, h, m) sets each
     position in `trial` to that in q plus h (s) times its velocity in v. forecast(trial, dq, h, kick, m) may
     add h/2 dq to velocities in `trial` that are evaluated at the end of the step, not in its middle, and
-    notes how long (s) the kick will be that follows: half of this step and half of the next.
+    notes how long (s) the kick will be that follows: half of this step and half of the next, or less where
+    a hit shortens the next. kicked(q, dq, kick, m) is told of each `kick` (s) as it was taken, under dq.
     fastest(m) is the largest angular frequency at the last evaluation (rad/s); lately: what it was when the
     span before this one ended. work: `dopri.scratch`, of which four rows (n,) are used; the first holds rhs
     at the start, and at the end. Returns (status, number of evaluations of rhs, `lately` for what follows).
@@ -68,6 +69,7 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps
     half, trial = work[2], work[3]  # q with the velocities of the middle; trial state
     frequency = of_late(fastest(m), lately)
     h = step_length(frequency, span, steps)
+    kicked(q, f, 0.5 * h, m)
     while t < span:
         taken += 1
         if taken > MOST_STEPS:
@@ -93,10 +95,12 @@ def integrate(rhs, drift, forecast, fastest, observe, m, q, n, work, span, steps
             q[i] = half[i] + 0.5 * h * f_new[i]
         drift(q, trial, half, 0.0, m)
         f, f_new = f_new, f
-        observe(t, q, m)
-        h, frequency = following, of_late(fastest(m), frequency)
+        frequency = of_late(fastest(m), frequency)
         if frequency * following > OVERRUN * steps.resolution:  # a hit found only now needs a shorter one
-            h = min(following, step_length(frequency, span - t, steps))
+            following = min(following, step_length(frequency, span - t, steps))
+        kicked(q, f, 0.5 * (h + following), m)
+        observe(t, q, m)
+        h = following
     for i in range(n):
         work[0, i] = f[i]
     return status, taken, frequency

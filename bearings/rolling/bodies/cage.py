@@ -13,6 +13,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.pair import INSIDE, Place, kick_of, squeeze
 from touchdown.bearings.rolling.ball_state import BALLS
 from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y, ball_motion, push
+from touchdown.bearings.rolling.micro_step import beat_of
 from touchdown.bearings.rolling.sides.contact import heat_of, lay, note_apart, press_of
 from touchdown.bearings.rolling.sides.friction import rub_sides
 from touchdown.modelkit.kernel import kernel
@@ -74,7 +75,7 @@ def _kick(b, place, rx, ry, m):
     answers = across, both + off * off / d.cage_inertia
     first, second = ball_motion(before, b, m), _pocket(before, first_component(m), rx, ry)
     last = side.tangential[b], side.normal[b]
-    return kick_of(m.s.kick, answers, first, second, place, INSIDE, last)
+    return kick_of(beat_of(m), answers, first, second, place, INSIDE, last)
 
 
 @kernel
@@ -126,8 +127,8 @@ def _find_pockets(q, turned, m):
         reach = distance + d.ball_radius
         at = Place(ex / distance, ey / distance, distance - clearance, d.ball_radius, reach, 0.0)
         kick = _kick(b, at, rx, ry, m)
-        squeezed = squeeze(ball, pocket, at, INSIDE, d.cage_contact, kick)
-        lay(side, b, at, squeezed.sliding, squeezed.rate, kick)
+        squeezed = squeeze(ball, pocket, at, INSIDE, d.cage_contact, kick, side.stored[b])
+        lay(side, b, at, squeezed.sliding, squeezed.rate, kick, d.cage_contact)
         side.normal[b], side.damped[b] = squeezed.normal, squeezed.damped
 
 

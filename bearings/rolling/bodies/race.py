@@ -14,6 +14,7 @@ from typing import NamedTuple
 from touchdown.bearings.contact.kick import damped_normal
 from touchdown.bearings.contact.laws import hertz
 from touchdown.bearings.contact.pair import Place, slip
+from touchdown.bearings.contact.passivity import Beat, middle_of, passive, settled
 from touchdown.bearings.contact.search import Disc, Outline, race_place
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.rubbing import RubbedRace
@@ -33,7 +34,9 @@ class Contacts(RubbedRace):
     across: tuple = array(MOST_BALLS)
     stiffness: tuple = array(MOST_BALLS)
     rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
+    middle: tuple = array(MOST_BALLS)  # m/s, in the middle of the kick
     damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
+    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
 
 
 class Balls(NamedTuple):
@@ -69,7 +72,7 @@ class Places(NamedTuple):
 class Before(NamedTuple):
     """Changes of velocity over the kick before: of all balls, an array each, and of their race's centre."""
 
-    length: float  # s, of the kick
+    beat: Beat
     ax: object  # m/s2, of the balls
     ay: object
     race_x: float  # m/s
@@ -85,6 +88,7 @@ class Forces(NamedTuple):
     damped: object  # N, what of it is damping
     sliding: object  # m/s, before the kick
     rate: object  # m/s, of the indentation, before the kick
+    stored: object  # J, in their accounts
 
 
 @kernel
@@ -98,7 +102,7 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], c.sliding[:n], c.rate[:n])
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], c.sliding[:n], c.rate[:n], c.stored[:n])
 
 
 @kernel
@@ -126,14 +130,18 @@ class Squeezed(NamedTuple):
 
 
 @woven
-def _squeeze(b, balls, ring, place, race, before, last):
-    """Ball `b` at its `Place` on a race, `Squeezed`; last: its normal force (N) in the kick before."""
+def _squeeze(b, balls, ring, place, race, before, last, stored):
+    """Ball `b` at its `Place` on a race, `Squeezed`.
+
+    last: its normal force (N) in the kick before; stored: energy in its account (J).
+    """
     ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
     sliding, rate = slip(ball, ring, place, race.side)
     elastic, damping, stiffness = hertz(place.indentation, race.stiffness, race.damping)
-    faster_x = before.length * before.ax[b] - before.race_x
-    faster_y = before.length * before.ay[b] - before.race_y
+    faster_x = before.beat.kick * before.ax[b] - before.race_x
+    faster_y = before.beat.kick * before.ay[b] - before.race_y
     others = race.side * (faster_x * place.nx + faster_y * place.ny) + before.answer * last
+    elastic = passive(elastic, 0.4 * place.indentation, stored, rate, others, before.answer, before.beat)
     normal = damped_normal(elastic, damping, rate, before.answer, others)
     return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
 
@@ -151,7 +159,7 @@ def press_circle(balls, ring, race, before, places, forces):
         inverse = 1.0 / distance
         second = distance + reach
         place = Place(dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0)
-        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b], forces.stored[b])
         places.nx[b], places.ny[b] = place.nx, place.ny
         places.indentation[b], places.second[b], places.across[b] = place.indentation, second, 0.0
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
@@ -167,7 +175,7 @@ def press_curve(balls, ring, race, before, places, forces):
     reach, p = race.side * balls.radius, places
     for b in range(len(p.nx)):
         place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
-        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b])
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b], forces.stored[b])
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
@@ -194,3 +202,19 @@ def with_friction(pressed, contacts, count):
         moment -= contacts.tangential[b] * contacts.second[b]
         loss += contacts.loss[b]
     return Total(fx, fy, moment, loss)
+
+
+@woven
+def settle_race(contacts, side, count, kick, part, vx, vy):
+    """Settle the accounts of `count` balls on that `side` of a race after a `kick` (s).
+
+    part: of the kick in which the forces were found; vx, vy: by how much the race was faster in its middle
+    than it was taken to be (m/s). Returns what the contacts withheld (J).
+    """
+    withheld, c = 0.0, contacts
+    for b in range(count):
+        closing = middle_of(c.rate[b], c.middle[b], part) - side * (vx * c.nx[b] + vy * c.ny[b])
+        taken = kick * (c.normal[b] - c.damped[b]) * closing
+        c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)
+        withheld += lost
+    return withheld

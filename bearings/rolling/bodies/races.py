@@ -25,6 +25,7 @@ from touchdown.bearings.rolling.bodies.race import (
     with_friction,
 )
 from touchdown.bearings.rolling.bodies.state import ANGLE, SPIN, VX, VY, X, Y, balls_of
+from touchdown.bearings.rolling.micro_step import beat_of
 from touchdown.bearings.rolling.rubbing import Answers, Inner
 from touchdown.modelkit.kernel import woven
 from touchdown.modelkit.ports import Motion
@@ -38,8 +39,9 @@ def press_races(q, m):
     inner_ring, at = ring.ring_motion(q), seat.housing_motion(q)
     housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
     ax, ay = part(s.before, VX, m), part(s.before, VY, m)
-    over_outer = Before(s.kick, ax, ay, 0.0, 0.0, s.kick / d.mass)
-    over_inner = Before(s.kick, ax, ay, moved.x, moved.y, s.kick / d.mass)
+    beat = beat_of(m)
+    over_outer = Before(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
+    over_inner = Before(beat, ax, ay, moved.x, moved.y, s.kick / d.mass)
     at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping)
     at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping)
     angle = q[ring.RANGLE]
@@ -123,8 +125,10 @@ def _rub(moved, m):
         into_outer = dx * outer.nx[b] + dy * outer.ny[b]
         into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
         into_inner -= moved.spin * inner.across[b]
-        outer.loss[b] += outer.damped[b] * (outer.rate[b] + 0.5 * into_outer)
-        inner.loss[b] += inner.damped[b] * (inner.rate[b] + 0.5 * into_inner)
+        outer.middle[b] = outer.rate[b] + 0.5 * into_outer
+        inner.middle[b] = inner.rate[b] + 0.5 * into_inner
+        outer.loss[b] += outer.damped[b] * outer.middle[b]
+        inner.loss[b] += inner.damped[b] * inner.middle[b]
 
 
 @woven

@@ -10,11 +10,15 @@ from __future__ import annotations
 import math
 
 from touchdown.bearings import seat
+from touchdown.bearings.contact.laws import elastic_energy
+from touchdown.bearings.contact.pair import INSIDE, OUTSIDE
 from touchdown.bearings.contact.profile import active
 from touchdown.bearings.rolling import ball_state, ring
 from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.balls.geometry import inner_radius
-from touchdown.bearings.rolling.bodies.race import Balls
+from touchdown.bearings.rolling.bodies.race import Balls, settle_race
+from touchdown.bearings.rolling.micro_step import missed, withhold
+from touchdown.bearings.rolling.sides.contact import settle_sides
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 
@@ -81,10 +85,29 @@ def fastest(m):
         stiffest = max(stiffest, s.inner.stiffness[b] + s.outer.stiffness[b])
         side = max(side, s.side.stiffness[b])
         sides += s.side.stiffness[b]
-    if s.ring.indentation > 0.0:
-        below += m.p.contact.exponent * s.ring.elastic / s.ring.indentation
+    below += ring.bore_stiffness(m)
     of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
     return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
+
+
+@kernel
+def kicked(q, dq, kick, m):
+    """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
+    s, n, off = m.s, m.p.balls.count, missed(dq, kick, m)
+    withheld = settle_race(s.inner, OUTSIDE, n, kick, off.part, 0.0, 0.0)
+    withheld += settle_race(s.outer, INSIDE, n, kick, off.part, off.hx, off.hy)
+    withheld += settle_sides(s.side, n, kick, off.part)
+    withhold(q, withheld + ring.settle_bore(kick, off.part, off.jx, off.jy, m), m)
+
+
+@kernel
+def fill_accounts(m):
+    """Have the contacts that press at the last evaluation hold what their laws have stored."""
+    s = m.s
+    for b in range(m.p.balls.count):
+        s.inner.stored[b] = elastic_energy(s.inner.indentation[b], m.d.inner)
+        s.outer.stored[b] = elastic_energy(s.outer.indentation[b], m.d.outer)
+    s.ring.stored = elastic_energy(s.ring.indentation, m.d.contact)
 
 
 @kernel

@@ -22,7 +22,9 @@ from dataclasses import dataclass
 
 from touchdown.bearings.contact.laws import elastic_and_damping
 from touchdown.bearings.contact.pair import OUTSIDE, kick_of, slip
+from touchdown.bearings.contact.passivity import passive
 from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.rolling.micro_step import beat_of
 from touchdown.bearings.rolling.sides.contact import all_apart, lay, note_apart
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.variables import array
@@ -52,20 +54,22 @@ def link(b, count, first, second, rates, place, law, answers, m):
     before, of the next and of `b`; law: a record; answers: (1/kg) of the sliding speed to friction, and of
     a ball to a force.
     """
-    c, chain, h = m.s.side, m.s.chain, m.s.kick
+    c, chain = m.s.side, m.s.chain
     back, on = b - 1 if b > 0 else count - 1, after(b, count)
     beside = c.normal[back] * (c.nx[back] * place.nx + c.ny[back] * place.ny)
     beside += c.normal[on] * (c.nx[on] * place.nx + c.ny[on] * place.ny)
     last = c.tangential[b], c.normal[b] - 0.5 * beside
-    kick = kick_of(h, (answers[0], 2.0 * answers[1]), rates[0], rates[1], place, OUTSIDE, last)
+    kick = kick_of(beat_of(m), (answers[0], 2.0 * answers[1]), rates[0], rates[1], place, OUTSIDE, last)
     sliding, rate = slip(first, second, place, OUTSIDE)
     elastic, damping = elastic_and_damping(place.indentation, law)
+    scale = place.indentation / (law.exponent + 1.0)
+    elastic = passive(elastic, scale, c.stored[b], rate, kick.rate, kick.along, kick.beat)
     z = kick.along * damping
     chain.elastic[b] = elastic
     chain.pull[b] = 0.5 * (3.0 + z) * z
     chain.base[b] = 6.0 + z * (4.0 + z)
     chain.free[b] = (6.0 + z) * (elastic + damping * rate) + (3.0 + z) * damping * kick.rate
-    lay(c, b, place, sliding, rate, kick)
+    lay(c, b, place, sliding, rate, kick, law)
 
 
 @kernel

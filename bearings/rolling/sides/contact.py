@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from touchdown.bearings.contact.laws import elastic_force
 from touchdown.bearings.contact.pair import Place, Squeeze, rubbed, slip
+from touchdown.bearings.contact.passivity import middle_of, settled
 from touchdown.bearings.contact.peaks import Largest
 from touchdown.bearings.rolling.balls import MOST_BALLS, largest
 from touchdown.modelkit.kernel import kernel
@@ -26,6 +28,8 @@ class SideContacts:
     second: tuple = array(MOST_BALLS)
     sliding: tuple = array(MOST_BALLS)  # m/s, before the kick
     rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
+    middle: tuple = array(MOST_BALLS)  # m/s, in the middle of the kick
+    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
     damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
     driven: tuple = array(MOST_BALLS)  # m/s, change of the sliding speed by all but its own friction
     across: tuple = array(MOST_BALLS)  # s/kg, as `bearings.contact.kick.Kick.across`
@@ -33,9 +37,13 @@ class SideContacts:
 
 
 @kernel
-def lay(contacts, b, place, sliding, rate, kick):
-    """Remember that ball `b` touches at a `Place` (m), its speeds (m/s) before the kick, and the `Kick`."""
+def lay(contacts, b, place, sliding, rate, kick, law):
+    """Remember that ball `b` touches at a `Place` (m), its speeds (m/s) before the kick, and the `Kick`.
+
+    law: a record.
+    """
     c = contacts
+    c.stiffness[b] = law.exponent * elastic_force(place.indentation, law) / place.indentation
     c.nx[b], c.ny[b], c.first[b], c.second[b] = place.nx, place.ny, place.first, place.second
     c.indentation[b], c.sliding[b], c.rate[b] = place.indentation, sliding, rate
     c.driven[b], c.across[b] = kick.sliding, kick.across
@@ -50,7 +58,6 @@ def press_of(contacts, b, side, law):
     """
     c = contacts
     c.highest[b] = max(c.normal[b], law.viscous * c.rate[b])
-    c.stiffness[b] = law.exponent * (c.normal[b] - c.damped[b]) / c.indentation[b]
     squeezed = Squeeze(c.sliding[b], c.rate[b], c.normal[b], c.damped[b])
     return rubbed(_place_of(c, b), side, squeezed, c.tangential[b])
 
@@ -70,8 +77,8 @@ def heat_of(contacts, b, h, first, second, side):
     """
     c = contacts
     sliding, rate = slip(first, second, _place_of(c, b), side)
-    damping = c.damped[b] * (c.rate[b] + 0.5 * h * rate)
-    return damping - c.tangential[b] * (c.sliding[b] + 0.5 * h * sliding)
+    c.middle[b] = c.rate[b] + 0.5 * h * rate
+    return c.damped[b] * c.middle[b] - c.tangential[b] * (c.sliding[b] + 0.5 * h * sliding)
 
 
 @kernel
@@ -86,6 +93,22 @@ def all_apart(contacts, count):
     """`note_apart` of all `count` balls."""
     for b in range(count):
         note_apart(contacts, b)
+
+
+@kernel
+def settle_sides(contacts, count, kick, part):
+    """Settle the accounts of `count` contacts after a `kick` (s); returns what they withheld (J).
+
+    part: of the kick in which the forces were found.
+    """
+    withheld, c = 0.0, contacts
+    for b in range(count):
+        taken = 0.0
+        if c.indentation[b] > 0.0:
+            taken = kick * (c.normal[b] - c.damped[b]) * middle_of(c.rate[b], c.middle[b], part)
+        c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)
+        withheld += lost
+    return withheld
 
 
 @kernel
