@@ -192,7 +192,7 @@ def start(words):
     state_constants(m)
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
-    fill_accounts(m)
+    fill_accounts(m, m.d.cage_contact)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 

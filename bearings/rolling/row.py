@@ -21,7 +21,7 @@ from touchdown.bearings.rolling.micro_step import beat_of, missed, withhold
 from touchdown.bearings.rolling.pitch_circle import Raceway, across_of, elastic_at, meet, squeeze_ball
 from touchdown.bearings.rolling.rubbing import Answers, Inner, rubbed_of
 from touchdown.bearings.rolling.sides.chain import after, link, part_ways, share
-from touchdown.bearings.rolling.sides.contact import heat_of, press_of, settle_sides
+from touchdown.bearings.rolling.sides.contact import fill_sides, heat_of, press_of, settle_sides
 from touchdown.bearings.rolling.sides.friction import rub_sides
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.numerics.angles import cosine_and_sine
@@ -352,6 +352,7 @@ def kicked(q, dq, kick, m):
 @kernel
 def fill_accounts(m):
     """Have the contacts that press at the last evaluation hold what their laws have stored."""
+    fill_sides(m.s.side, m.d.ball_contact, m.p.balls.count)
     for b in range(m.p.balls.count):
         m.s.balls.stored[b] = elastic_energy(m.s.balls.indentation[b], m.d.race)
     m.s.ring.stored = elastic_energy(m.s.ring.indentation, m.d.contact)

@@ -18,7 +18,7 @@ from touchdown.bearings.rolling.ball_state import BALLS, part
 from touchdown.bearings.rolling.balls.geometry import inner_radius
 from touchdown.bearings.rolling.bodies.race import Balls, settle_race
 from touchdown.bearings.rolling.micro_step import missed, withhold
-from touchdown.bearings.rolling.sides.contact import settle_sides
+from touchdown.bearings.rolling.sides.contact import fill_sides, settle_sides
 from touchdown.modelkit.kernel import kernel, woven
 from touchdown.modelkit.ports import Motion
 
@@ -101,9 +101,13 @@ def kicked(q, dq, kick, m):
 
 
 @kernel
-def fill_accounts(m):
-    """Have the contacts that press at the last evaluation hold what their laws have stored."""
+def fill_accounts(m, side):
+    """Have the contacts that press at the last evaluation hold what their laws have stored.
+
+    side: law of the balls' contacts with each other or the cage, a record.
+    """
     s = m.s
+    fill_sides(s.side, side, m.p.balls.count)
     for b in range(m.p.balls.count):
         s.inner.stored[b] = elastic_energy(s.inner.indentation[b], m.d.inner)
         s.outer.stored[b] = elastic_energy(s.outer.indentation[b], m.d.outer)

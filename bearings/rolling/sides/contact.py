@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings.contact.laws import elastic_force
+from touchdown.bearings.contact.laws import elastic_energy, elastic_force
 from touchdown.bearings.contact.pair import Place, Squeeze, rubbed, slip
 from touchdown.bearings.contact.passivity import middle_of, settled
 from touchdown.bearings.contact.peaks import Largest
@@ -96,6 +96,13 @@ def all_apart(contacts, count):
 
 
 @kernel
+def fill_sides(contacts, law, count):
+    """Have the accounts of `count` contacts hold what their law, a record, has stored."""
+    for b in range(count):
+        contacts.stored[b] = elastic_energy(contacts.indentation[b], law)
+
+
+@kernel
 def settle_sides(contacts, count, kick, part):
     """Settle the accounts of `count` contacts after a `kick` (s); returns what they withheld (J).
 
@@ -124,7 +131,5 @@ def stored(contacts, law, count):
     """Energy (J) of one kind of contact of `count` balls; law: a record."""
     energy = 0.0
     for b in range(count):
-        depth = contacts.indentation[b]
-        if depth > 0.0:
-            energy += law.stiffness * depth ** (law.exponent + 1.0) / (law.exponent + 1.0)
+        energy += elastic_energy(contacts.indentation[b], law)
     return energy
