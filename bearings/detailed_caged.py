@@ -173,7 +173,7 @@ def settle(words):
     if problem != 0:
         return problem
     lighter = _settle_cage(m)
-    declarations.settle(m, EVEN, m.d.cage_contact, lighter)
+    declarations.settle(m, EVEN, m.d.cage_contact, lighter, m.p.cage.clearance)
     size.coordinates, size.constraints = 9 + 3 * count, 1
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
@@ -193,6 +193,7 @@ def start(words):
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
     fill_accounts(m, m.d.cage_contact)
+    outputs.watch(m.time, m, m.o.pockets)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 

@@ -200,7 +200,7 @@ def settle(words):
     mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
     damp(d.ball_contact, mass)
     friction.settle(d.ball_friction)
-    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass)
+    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
@@ -218,6 +218,7 @@ def start(words):
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
     fill_accounts(m, m.d.ball_contact)
+    outputs.watch(m.time, m, m.o.neighbours)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 

@@ -127,20 +127,23 @@ def resting_place(springs, weight, out):
 
 
 @kernel
-def place_balls(d, b, spread):
+def place_balls(d, b, spread, reach):
     """Set d.x and d.y, the centres of the balls at the start (m), with the ring at (d.rest_x, d.rest_y).
 
     A ball that both rings press sits where their forces balance; any other lies on the outer race in the
-    lower half, on the inner one in the upper half.
+    lower half, on the inner one in the upper half, or on the edge of its pocket if that keeps it from there.
+    reach: how far (m) a pocket lets it off the pitch circle.
     """
-    share = outer_share(d.stiffness)
+    share, pitch = outer_share(d.stiffness), 0.5 * b.pitch_diameter
     for i in range(b.count):
         angle = start_angle(b.first_angle, b.count, spread, i)
         nx, ny = math.cos(angle), math.sin(angle)
         approach = d.rest_x * nx + d.rest_y * ny - b.play
-        radius = 0.5 * b.pitch_diameter + 0.5 * b.play
+        radius = pitch + 0.5 * b.play
         if approach > 0.0:
             radius += approach * share
         elif ny > 0.0:
-            radius += approach
+            radius = max(radius + approach, min(pitch - reach, radius))
+        else:
+            radius = min(radius, max(pitch + reach, radius + approach))
         d.x[i], d.y[i] = radius * nx, radius * ny

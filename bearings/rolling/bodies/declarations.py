@@ -175,10 +175,11 @@ def problem(p, crowded, side, usual, told):
 
 
 @kernel
-def settle(m, spread, side, lighter):
+def settle(m, spread, side, lighter, reach):
     """Set in m.d what both detailed models share, but for the size; spread: as in `balls.geometry`.
 
-    side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage.
+    side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage; reach: as
+    for `place_balls` (m).
     """
     p, d, b = m.p, m.d, m.p.balls
     declarations.settle(m, spread)
@@ -198,4 +199,4 @@ def settle(m, spread, side, lighter):
     )
     d.resolution = refined(p.micro_step) * RESOLUTION
     d.searched = 1 if profile.active(p.inner_profile) or profile.active(p.outer_profile) else 0
-    place_balls(d, b, spread)
+    place_balls(d, b, spread, reach)
