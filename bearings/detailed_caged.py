@@ -28,7 +28,14 @@ from touchdown.bearings.rolling.bodies.declarations import (
     BallBodiesParameters,
 )
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
-from touchdown.bearings.rolling.bodies.state import drift, fastest, fill_accounts, kicked, place, set_weights
+from touchdown.bearings.rolling.bodies.state import (
+    drift,
+    fastest,
+    fill_accounts,
+    kicked,
+    place,
+    set_weights,
+)
 from touchdown.bearings.rolling.declarations import starts_from, state_constants
 from touchdown.bearings.rolling.micro_step import book, leapfrog
 from touchdown.bearings.rolling.sides.contact import stored

@@ -27,7 +27,7 @@ from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, pre
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.bodies.races import press_races, rub_races
 from touchdown.bearings.rolling.bodies.state import ball_motion
-from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION
+from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, beat_of
 from touchdown.bearings.seat.load import remember
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
@@ -189,7 +189,7 @@ def one_by_one_at_a_race() -> Callable:
                 at = Place(s.nx[b], s.ny[b], s.indentation[b], side * rb, s.second[b], s.across[b])
                 faster = ball_motion(before, b, m)
                 last = s.tangential[b], s.normal[b]
-                kick = kick_of(m.s.kick, answers, faster, ring.ring_motion(before), at, side, last)
+                kick = kick_of(beat_of(m), answers, faster, ring.ring_motion(before), at, side, last)
                 total += press(ball_motion(m.q, b, m), body, at, side, law, d.race_friction, kick).fx
         return total
 

@@ -4,10 +4,10 @@ Bearings of each model whose balls are free, from the landing on, with the defau
 (`random_bearings.py`): `random`, within what is built, a third of them undamped at the balls; `fast`, at
 60 000 rpm with ceramic balls of any size and weight, undamped everywhere.
 
-By bearing: the largest force on a ball over the largest on the journal so far; how that grows over windows of
-a tenth of the duration, from the second one on (a factor per second, fitted to the logarithms); energy of
-rotor, bearing and housing with the heat, of what was turned over (m g c and all heat), made and at any time;
-what contacts withheld to be passive, of the same; heat that was taken back.
+By bearing: the largest force on a ball over the largest on the journal so far; how that grows over windows
+of a tenth of the duration, from the second one on (a factor per second, fitted to the logarithms); energy
+that rotor, bearing and housing gained at any time, heat counted, over what was turned over (m g c and all
+heat); what contacts withheld to be passive, over the same; and heat that was taken back.
 
     python benchmarks/rattle.py [--set fast] [--count 100] [--duration 5] [--jobs 2]
 """
@@ -66,7 +66,7 @@ def main() -> None:
     print(f"{'':20}" + "".join(f"{name:>13}" for name in COLUMNS))
     for model in options.models:
         run = partial(rattled, model, options.cases, options.duration, options.step)
-        run(0) if options.jobs == 1 else rattled(model, options.cases, MACRO_STEP, options.step, 0)  # compiles
+        rattled(model, options.cases, MACRO_STEP, options.step, 0)  # compiles, for all processes
         with multiprocessing.Pool(options.jobs) as pool:
             found = pool.map(run, range(options.count), chunksize=1)
         print(row(model, found), flush=True)
@@ -75,7 +75,7 @@ def main() -> None:
 
 
 def rattled(model: str, cases: str, duration: float, step: float, seed: int) -> Rattle:
-    """The bearing of a `seed` after a `duration` (s) of macro steps, its steps inside of at most `step` (s)."""
+    """The bearing of a `seed` over a `duration` (s), in steps inside of at most `step` (s)."""
     case = SETS[cases](model, seed)
     instance = landed(case, TOLERANCE, step)
     try:

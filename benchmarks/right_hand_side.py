@@ -81,11 +81,12 @@ def numbers(names: str, size: int = 1) -> np.dtype:
 STATE = np.dtype([("head", "f8", 32), ("cage", "f8", 8), ("balls", "f8", (6, MOST_BALLS))])
 RACE = numbers(
     "normal tangential indentation stiffness loss nx ny second sliding rate damped driven expected "
-    "start slope base held gain",
+    "start slope base held gain middle stored",
     MOST_BALLS,
 )
 SIDE = numbers(
-    "normal highest tangential indentation stiffness nx ny first second sliding rate damped", MOST_BALLS
+    "normal highest tangential indentation stiffness nx ny first second sliding rate damped middle stored",
+    MOST_BALLS,
 )
 CHAIN = numbers("elastic driven across base pull free", MOST_BALLS)
 LINES = numbers("normal sliding expected answer spot last flat start slope base", 2 * MOST_BALLS)
@@ -96,8 +97,11 @@ BEARING = np.dtype(
         *[("faster", numbers("x y spin", MOST_BALLS)), ("cross", "f8", MOST_BALLS)],
         *numbers("pocket_x pocket_y", MOST_BALLS).descr,
         ("before", STATE),
-        *[("kick", "f8"), ("rubbed", "f8"), ("ahead", "f8", len(COPIES)), ("half", "f8")],
-        *[("ring", numbers("normal indentation rate elastic")), ("brake", numbers("jx jy jm hx hy"))],
+        *[("kick", "f8"), ("drift", "f8"), ("rubbed", "f8"), ("ahead", "f8", len(COPIES)), ("half", "f8")],
+        *[
+            ("ring", numbers("normal indentation rate elastic middle nx ny stored")),
+            ("brake", numbers("jx jy jm hx hy")),
+        ],
         *numbers("gravity journal_radius clearance ring_mass ring_inertia").descr,
         *numbers("mass inertia ball_radius inner_radius outer_radius").descr,
         *numbers("cage_mass cage_inertia cage_clearance").descr,
@@ -109,7 +113,7 @@ BEARING = np.dtype(
     ]
 )
 GIVEN = {  # by group of the project's memory, what goes by the same name in both
-    "s": "inner outer side kick rubbed ahead ring",
+    "s": "inner outer side kick drift rubbed ahead ring",
     "d": "mass inertia ball_radius inner_radius outer_radius contact friction race_friction",
     "p": "gravity journal_radius clearance",
     "u": "journal housing",

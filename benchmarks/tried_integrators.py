@@ -42,11 +42,17 @@ def _plain_leapfrog(module: ModuleType) -> Callable:
         forecast(trial, dq, h, 0.0, m)
 
     @whole
+    def unsettled(q, dq, kick, m):
+        pass
+
+    @whole
     def tried(m, rows, span, step, tolerance):
-        m.s.kick = 0.0
+        m.s.kick = m.s.drift = 0.0
         rhs(0.0, m.q, rows[0], m)
         steps, at = verlet.Steps(step, RESOLUTION), m.q
-        found = verlet.integrate(rhs, drift, unaware, fastest, observe, m, at, m.n, rows, span, steps, 0.0)
+        found = verlet.integrate(
+            rhs, drift, unaware, fastest, unsettled, observe, m, at, m.n, rows, span, steps, 0.0
+        )
         return 1 + found[1]
 
     return tried

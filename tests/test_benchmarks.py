@@ -88,15 +88,20 @@ def test_a_seed_stands_for_one_bearing(model: str) -> None:
 
 
 def test_no_ball_gains_what_nothing_gave_it() -> None:
-    """Balls that rattle undamped for 20 ms bear what the landing brings, and keep their energy to 1 %."""
+    """Balls that rattle undamped for 20 ms bear what the landing brings, and make no energy."""
     import rattle
     from random_bearings import random_case
 
-    case = random_case("detailed_caged", 1)
-    assert case.parameters["balls.damping_ratio"] == 0.0
-    found = rattle.rattled(case, 0.02)
+    from touchdown.bearings.rolling.micro_step import MICRO_STEP
+
+    assert random_case("detailed_caged", 1).parameters["balls.damping_ratio"] == 0.0
+    found = rattle.rattled("detailed_caged", "random", 0.02, MICRO_STEP, 1)
+    assert not found.stopped
     assert 0.05 < found.force < 2.0
-    assert 0.0 < abs(found.made) < 0.01
+    assert 0.0 < found.made < 1e-3
+    assert 0.0 < found.withheld < 0.05
+    assert found.taken_back < 1e-9
+    assert "detailed_caged" in rattle.row("detailed_caged", [found])
 
 
 def test_the_errors_of_inner_steps_are_tabled() -> None:

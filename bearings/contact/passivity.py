@@ -1,10 +1,11 @@
 """Contacts that cannot make energy: each gives back no more than it has taken.
 
-A stiff contact that a leapfrog step samples at h w of 0.8 returns some per cent more or less energy than it
-took, at every hit. Without damping that is a random walk of the bodies' energy, and balls that rattle for
-seconds gain it without bound. So each contact keeps an account, as passivity control does in haptics (Hannaford
-and Ryu, IEEE Transactions on Robotics and Automation 18 (2002), 1-10): `stored`, the energy (J) that its elastic
-force has taken from the bodies since they met. A kick of k seconds with the force f gives them
+A stiff contact that a leapfrog step samples at h w of 0.8 returns some per cent more or less energy than
+it took, at every hit. Without damping that is a random walk of the bodies' energy, and balls that rattle
+for seconds gain it without bound. So each contact keeps an account, as passivity control does in haptics
+(Hannaford and Ryu, IEEE Transactions on Robotics and Automation 18 (2002), 1-10): `stored`, the energy (J)
+that its elastic force has taken from the bodies since they met. A kick of k seconds with the force f gives
+them
 
     -f k (u - a k f/2)        u: closing speed before the kick and half of what other forces do to it
                               a: inverse masses along the normal, summed
@@ -18,9 +19,9 @@ do in the kick is known only after it; the account is then settled with the spee
 so that it is exact, and a debt is paid by the next hit. What is left when the bodies part was withheld from
 them: numerical dissipation, which is booked as such. Steps that resolve the hit withhold nothing.
 
-Bodies that stay pressed, as balls are by their orbit, would still swing ever harder on what the contact holds,
-where steps vary. So it keeps a reserve while they stay, and gives back at most half of what the law asks for
-while it holds less than most (`KEPT`) of
+Bodies that stay pressed, as balls are by their orbit, would still swing ever harder on what the contact
+holds, where steps vary. So it keeps a reserve while they stay, and gives back at most half of what the law
+asks for while it holds less than most (`KEPT`) of
 
     f (d/(n + 1) + delta)        delta: way from the indentation d to the middle of the next drift
 

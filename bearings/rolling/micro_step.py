@@ -114,8 +114,8 @@ def withhold(q, energy, m):
 def leapfrog(rhs, drift, fastest, kicked, observe, m, work, span):
     """Advance m.q by `span` (s) in steps of at most m.d.micro_step and m.d.resolution.
 
-    The kernels are those of `verlet.integrate`; `kicked` settles the contacts' accounts; work: rows of scratch as long as the state. Returns
-    (micro-step to try next (s), status, evaluations).
+    The kernels are those of `verlet.integrate`; `kicked` settles the contacts' accounts; work: rows of
+    scratch as long as the state. Returns (micro-step to try next (s), status, evaluations).
     """
     m.s.ahead[:] = 0.0
     book(work[0], seat.last_load(m), m)

@@ -22,11 +22,13 @@ typedef struct { /* all balls at one race; the first two are those of the kick b
     double normal[MOST], tangential[MOST], indentation[MOST], stiffness[MOST], loss[MOST];
     double nx[MOST], ny[MOST], second[MOST], sliding[MOST], rate[MOST], damped[MOST], driven[MOST];
     double expected[MOST], start[MOST], slope[MOST], base[MOST], held[MOST], gain[MOST];
+    double middle[MOST], stored[MOST];
 } Race;
 
 typedef struct { /* each ball and the next one, or its pocket in the cage */
     double normal[MOST], highest[MOST], tangential[MOST], indentation[MOST], stiffness[MOST];
     double nx[MOST], ny[MOST], first[MOST], second[MOST], sliding[MOST], rate[MOST], damped[MOST];
+    double middle[MOST], stored[MOST];
 } Side;
 
 typedef struct { /* those contacts on their way through a kick */
@@ -40,7 +42,7 @@ typedef struct { /* contacts at races that press, one behind the other, and the 
 } Lines;
 
 typedef struct { double x[MOST], y[MOST], spin[MOST]; } Rates;
-typedef struct { double normal, indentation, rate, elastic; } Touched;
+typedef struct { double normal, indentation, rate, elastic, middle, nx, ny, stored; } Touched;
 typedef struct { double jx, jy, jm, hx, hy; } Brake;
 typedef struct { double stiffness, damping, dissipation, viscous; } Law; /* exponent 1.5 */
 typedef struct { double g1, g2, g3, dynamic, slope, g6; } Friction; /* Makkar's, g2 = slope */
@@ -55,7 +57,7 @@ typedef struct {
     Rates faster;
     double cross[MOST], pocket_x[MOST], pocket_y[MOST];
     State before; /* derivative in the kick before */
-    double kick, rubbed, ahead[5], half;
+    double kick, drift, rubbed, ahead[5], half;
     Touched ring;
     Brake brake;
     double gravity, journal_radius, clearance, ring_mass, ring_inertia;

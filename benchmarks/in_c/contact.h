@@ -18,6 +18,22 @@ static const double INSIDE = 1.0, OUTSIDE = -1.0; /* of the second body lies the
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 
+/* What a contact that asks for `elastic` (N) can give over a kick (s) from the energy `stored` (J); drift: half
+   of the one that follows (s); scale: indentation over n + 1 (m). */
+static inline double passive(double elastic, double scale, double stored, double rate, double others,
+                             double answer, double kick, double drift)
+{
+    const double closing = rate + 0.5 * others;
+    const double given = elastic * kick * (0.5 * answer * elastic - closing);
+    const double left = elastic * (scale + drift * (rate + others - answer * elastic));
+    const double reserve = drift > 0.0 ? 0.9 * larger(left, 0.0) : 0.0;
+    const double most = larger(stored - reserve, 0.5 * given), held = larger(stored, 0.0);
+    const double allowed = held < most ? held : most;
+    const double root = sqrt(larger(closing * closing + 2.0 * answer * allowed / larger(kick, 1e-300), 0.0));
+    const double within = larger((closing + root) / larger(answer, 1e-300), 0.0);
+    return given > allowed ? (within < elastic ? within : elastic) : elastic;
+}
+
 /* Mean normal force (N) over a kick, never below zero. */
 static inline double damped_normal(double elastic, double damping, double rate, double along, double others)
 {

@@ -23,6 +23,9 @@ static void link(int64_t b, double ex, double ey, double square, const Balls *q,
     double elastic, damping;
     slip(ball_of(q, on), ball_of(q, b), at, OUTSIDE, &c->sliding[b], &c->rate[b]);
     elastic_and_damping(at.indentation, &m->side_contact, &elastic, &damping);
+    c->stiffness[b] = 1.5 * elastic / at.indentation;
+    elastic = passive(elastic, at.indentation / 2.5, c->stored[b], c->rate[b], kick.rate, kick.along, m->kick,
+                      m->drift);
     const double z = kick.along * damping;
     chain->elastic[b] = elastic, chain->driven[b] = kick.sliding, chain->across[b] = kick.across;
     chain->pull[b] = 0.5 * (3.0 + z) * z;
@@ -106,7 +109,7 @@ static int press_all_neighbours(const State *restrict q, Bearing *restrict m)
 }
 
 /* Heat (W) between neighbours over the kick whose accelerations are in dq. */
-static double heat_between(const State *dq, const Bearing *m)
+static double heat_between(const State *dq, Bearing *m)
 {
     double loss = 0.0;
     for (int64_t b = 0; b < m->count; b++) {

@@ -49,13 +49,16 @@ static void squeeze_pockets(const State *restrict q, Turned by, Bearing *restric
         const Place at = {ex / distance, ey / distance, indentation, rb, distance + rb};
         const Kick kick = kick_in_pocket(b, at, rx, ry, m);
         slip(ball, pocket, at, INSIDE, &sliding, &rate);
-        const double depth = larger(indentation, 0.0), elastic = law.stiffness * (depth * sqrt(depth));
-        const double some = law.dissipation * elastic + law.damping * indentation + law.viscous;
+        const double depth = larger(indentation, 0.0), asked = law.stiffness * (depth * sqrt(depth));
+        const double elastic = passive(asked, indentation / 2.5, c->stored[b], rate, kick.rate, kick.along,
+                                       m->kick, m->drift);
+        const double some = law.dissipation * asked + law.damping * indentation + law.viscous;
         const double damping = indentation > 0.0 ? some : 0.0;
         const double normal = damped_normal(elastic, damping, rate, kick.along, kick.rate);
         c->nx[b] = at.nx, c->ny[b] = at.ny, c->first[b] = rb, c->second[b] = at.second;
         c->sliding[b] = sliding, c->rate[b] = rate, c->normal[b] = apart ? 0.0 : normal;
         c->damped[b] = apart ? 0.0 : normal - elastic, c->indentation[b] = apart ? -1.0 : indentation;
+        c->stiffness[b] = 1.5 * asked / indentation;
         m->chain.across[b] = kick.across, m->chain.driven[b] = kick.sliding;
     }
 }
@@ -106,7 +109,7 @@ static Turned press_pockets(const State *restrict q, State *restrict dq, Bearing
 }
 
 /* Heat (W) of all pockets over the kick whose accelerations are in dq. */
-static double heat_in_pockets(const State *dq, Turned by, const Bearing *m)
+static double heat_in_pockets(const State *dq, Turned by, Bearing *m)
 {
     double heat[MOST], loss = 0.0;
     for (int64_t b = 0, n = in_full(m->count); b < n; b++) {

@@ -29,9 +29,11 @@ static inline void press_race(const Balls *restrict balls, Motion body, double s
         const double ux = balls->vx[b] - body.vx, uy = balls->vy[b] - body.vy;
         const double rate = side * (ux * nx + uy * ny);
         const double depth = larger(indentation, 0.0), root = sqrt(depth);
-        const double elastic = stiffness * depth * root, damping = damping_law * depth;
+        const double asked = stiffness * depth * root, damping = damping_law * depth;
         const double faster_x = h * before->vx[b] - race_x, faster_y = h * before->vy[b] - race_y;
         const double others = side * (faster_x * nx + faster_y * ny) + answer * race->normal[b];
+        const double elastic = passive(asked, 0.4 * indentation, race->stored[b], rate, others, answer,
+                                       h, m->drift);
         const double normal = damped_normal(elastic, damping, rate, answer, others);
         race->nx[b] = nx, race->ny[b] = ny, race->indentation[b] = indentation, race->second[b] = second;
         race->normal[b] = normal, race->stiffness[b] = 1.5 * stiffness * root;
@@ -76,6 +78,8 @@ static Squeeze meet_journal(const State *q, const Bearing *m, Place *at, Kick *k
     double elastic, damping;
     slip(journal, ring_of(q), *at, INSIDE, &s.sliding, &s.rate);
     elastic_and_damping(at->indentation, &m->contact, &elastic, &damping);
+    elastic = passive(elastic, at->indentation / 2.5, m->ring.stored, s.rate, kick->rate, kick->along,
+                      m->kick, m->drift);
     s.normal = damped_normal(elastic, damping, s.rate, kick->along, kick->rate);
     s.damped = s.normal - elastic;
     return s;
@@ -97,7 +101,8 @@ static Press rub_journal(Place at, Squeeze s, double friction, Moved moved, doub
     const double ahead = -over_ring(at.nx, at.ny, at.second, moved), elastic = s.normal - s.damped;
     const double into = -(moved.x * at.nx + moved.y * at.ny);
     *heat = s.damped * (s.rate + 0.5 * into) - friction * (s.sliding + 0.5 * ahead);
-    m->ring = (Touched){s.normal, at.indentation, s.rate, elastic};
+    m->ring = (Touched){s.normal, at.indentation, s.rate, elastic, s.rate + 0.5 * into, at.nx, at.ny,
+                        m->ring.stored};
     m->rubbed = friction;
     m->brake.jx = press.fx + elastic * at.nx, m->brake.jy = press.fy + elastic * at.ny;
     m->brake.jm = press.first_moment;

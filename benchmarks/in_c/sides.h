@@ -34,19 +34,18 @@ static inline Press rub_side(int64_t b, Place at, double side, Squeeze s, double
     c->normal[b] = s.normal, c->tangential[b] = friction, c->damped[b] = s.damped;
     c->sliding[b] = s.sliding, c->rate[b] = s.rate, c->indentation[b] = at.indentation;
     c->nx[b] = at.nx, c->ny[b] = at.ny, c->first[b] = at.first, c->second[b] = at.second;
-    c->stiffness[b] = 1.5 * (s.normal - s.damped) / at.indentation;
     return rubbed(at, side, s, friction);
 }
 
 /* Heat (W) of ball `b`'s contact over the kick that accelerates both bodies so. */
-static inline double heat_at(int64_t b, Motion first, Motion second, double side, const Bearing *m)
+static inline double heat_at(int64_t b, Motion first, Motion second, double side, Bearing *m)
 {
-    const Side *c = &m->side;
+    Side *c = &m->side;
     const Place at = {c->nx[b], c->ny[b], c->indentation[b], c->first[b], c->second[b]};
     double sliding, rate;
     slip(first, second, at, side, &sliding, &rate);
-    const double damping = c->damped[b] * (c->rate[b] + 0.5 * m->kick * rate);
-    return damping - c->tangential[b] * (c->sliding[b] + 0.5 * m->kick * sliding);
+    c->middle[b] = c->rate[b] + 0.5 * m->kick * rate;
+    return c->damped[b] * c->middle[b] - c->tangential[b] * (c->sliding[b] + 0.5 * m->kick * sliding);
 }
 
 #endif

@@ -12,7 +12,7 @@ from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import STEP_UNDERFLOW
 
 RESOLUTION = 0.8  # rad
-STIFFNESS, FRICTION, KICK, FASTEST, LATER, KICKS = range(6)
+STIFFNESS, FRICTION, KICK, FASTEST, LATER, KICKS, TAKEN = range(7)
 
 
 @kernel
@@ -41,6 +41,11 @@ def fastest(m):
 
 
 @kernel
+def kicked(q, dq, kick, m):
+    m[TAKEN] += kick
+
+
+@kernel
 def observe(t, q, m):
     """From 0.5 s on the contact is another one."""
     if t >= 0.5:
@@ -51,12 +56,12 @@ def observe(t, q, m):
 def run(q, m, work, span, longest):
     rhs(0.0, q, work[0], m)
     steps = verlet.Steps(longest, RESOLUTION)
-    return verlet.integrate(rhs, drift, forecast, fastest, observe, m, q, 3, work, span, steps, 0.0)
+    return verlet.integrate(rhs, drift, forecast, fastest, kicked, observe, m, q, 3, work, span, steps, 0.0)
 
 
 def parameters(stiffness: float, friction: float, fastest: float) -> np.ndarray:
     """What the kernels above go by."""
-    return np.array([stiffness, friction, 0.0, fastest, fastest, 0.0])
+    return np.array([stiffness, friction, 0.0, fastest, fastest, 0.0, 0.0])
 
 
 def advanced(span: float, step: float, stiffness: float, friction: float = 0.0, fastest: float = 0.0):
@@ -114,6 +119,18 @@ def test_each_kick_is_half_of_the_steps_beside_it() -> None:
         assert 0.5 * first + m[KICKS] == pytest.approx(1.0, rel=1e-12)
 
 
+def test_kicks_are_told_as_they_are_taken() -> None:
+    """Together they fill the span, also where a hit found within it shortens the step that was planned."""
+    for early, later in ((0.0, 0.0), (300.0, 20.0), (20.0, 3000.0)):
+        q, m = np.array([1.0, 0.0, 0.0]), parameters(1.0, 0.0, early)
+        m[LATER] = later
+        run(q, m, np.zeros((8, 3)), 1.0, 0.013)
+        assert m[TAKEN] == pytest.approx(1.0, rel=1e-12)
+        first = 1.0 / math.ceil(1.0 / min(0.013, RESOLUTION / early if early else 1.0))
+        planned = 0.5 * first + m[KICKS]
+        assert (planned > 1.0 + 1e-9) == (later > 1000.0)  # and else as long
+
+
 @kernel
 def bounced(t, q, dq, m):
     """Mass 1 kg between walls at 1 m either way, stiffness 1 N/m^1.5."""
@@ -131,7 +148,7 @@ def rattled(q, m, work, span, longest):
     for _ in range(100):
         if status == 0:
             status, _, lately = verlet.integrate(
-                bounced, drift, forecast, fastest, unchanged, m, q, 3, work, span, steps, lately
+                bounced, drift, forecast, fastest, kicked, unchanged, m, q, 3, work, span, steps, lately
             )
     return status, lately
 

@@ -131,7 +131,7 @@ def place_balls(d, b, spread, reach):
     """Set d.x and d.y, the centres of the balls at the start (m), with the ring at (d.rest_x, d.rest_y).
 
     A ball that both rings press sits where their forces balance; any other lies on the outer race in the
-    lower half, on the inner one in the upper half, or on the edge of its pocket if that keeps it from there.
+    lower half, on the inner one in the upper half, or on the edge of a pocket that keeps it from there.
     reach: how far (m) a pocket lets it off the pitch circle.
     """
     share, pitch = outer_share(d.stiffness), 0.5 * b.pitch_diameter

@@ -178,8 +178,8 @@ def problem(p, crowded, side, usual, told):
 def settle(m, spread, side, lighter, reach):
     """Set in m.d what both detailed models share, but for the size; spread: as in `balls.geometry`.
 
-    side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage; reach: as
-    for `place_balls` (m).
+    side, lighter: law, a record, and mass (kg) of the balls' contacts with each other or the cage;
+    reach: as for `place_balls` (m).
     """
     p, d, b = m.p, m.d, m.p.balls
     declarations.settle(m, spread)

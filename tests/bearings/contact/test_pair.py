@@ -19,7 +19,18 @@ from touchdown.bearings.contact.friction import (
 )
 from touchdown.bearings.contact.kick import STILL, Kick
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
-from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, Press, heat, kick_of, press, slip
+from touchdown.bearings.contact.pair import (
+    INSIDE,
+    OUTSIDE,
+    PLENTY,
+    Place,
+    Press,
+    heat,
+    kick_of,
+    press,
+    slip,
+)
+from touchdown.bearings.contact.passivity import Beat
 from touchdown.bearings.rolling.ball_state import rounded
 from touchdown.bearings.rolling.balls import MOST_BALLS, Total
 from touchdown.bearings.rolling.bodies.race import (
@@ -84,7 +95,7 @@ def random_pair(rng: np.random.Generator, side: float) -> Pair:
 def random_kick(rng: np.random.Generator, h: float) -> Kick:
     """A kick of h (s) of bodies as light as a ball, which accelerate by hundreds of g."""
     across, along = h * 10.0 ** rng.uniform(2.5, 4.5, 2)
-    return Kick(across, along, *(h * rng.normal(0.0, 5e3, 2)))
+    return Kick(Beat(h, 0.5 * h), across, along, *(h * rng.normal(0.0, 5e3, 2)))
 
 
 def pressed(pair: Pair, side: float, law: Any, friction: Any, kick: Kick = STILL) -> Press:
@@ -231,7 +242,7 @@ def test_a_kick_is_what_all_other_forces_do(side):
         last = float(rng.normal(0.0, 50.0)), float(rng.uniform(0.0, 500.0))
         together = accelerations(free, free.others + on_both(place, side, *last))
         answers = answers_of(free, place)
-        found = Kick(*kick_of(h, answers, *together, place, side, last))
+        found = Kick(*kick_of(Beat(h, 0.0), answers, *together, place, side, last))
         sliding, rate = slip(*accelerations(free, free.others), place, side)
         assert found.across == pytest.approx(h * answers[0], rel=1e-14)
         assert found.along == pytest.approx(h * answers[1], rel=1e-14)
@@ -254,7 +265,7 @@ def test_heat_of_a_kick(side, law, friction, h):
         place = pair.place
         others = slip(*accelerations(free, free.others), place, side)
         answers = answers_of(free, place)
-        kick = Kick(h * answers[0], h * answers[1], h * others[0], h * others[1])
+        kick = Kick(Beat(h, 0.0), h * answers[0], h * answers[1], h * others[0], h * others[1])
         found = pressed(pair, side, law, friction, kick)
         contact = on_both(place, side, found.tangential, found.normal)
         bodies, rates = (pair.first, pair.second), accelerations(free, free.others + contact)
@@ -330,6 +341,7 @@ def empty_contacts() -> Any:
     contacts = np.zeros(1, dtype=layout(Contacts))[0]
     for name in Contacts.__dataclass_fields__:
         contacts[name][:] = math.nan
+    contacts["stored"][:] = PLENTY
     return contacts
 
 
@@ -371,7 +383,7 @@ def squeeze_all(bunch: Bunch, h: float, across: np.ndarray | None) -> None:
     count, n = len(balls.x), rounded(len(balls.x))
     places = Places(*(c[name][:n] for name in Places._fields))
     forces = Forces(*(c[name][:n] for name in Forces._fields))
-    before = Before(h, rates.vx, rates.vy, h * at.vx, h * at.vy, h / MASS)
+    before = Before(Beat(h, 0.5 * h), rates.vx, rates.vy, h * at.vx, h * at.vy, h / MASS)
     c["normal"][:count] = bunch.last
     press_circle(balls, bunch.ring, bunch.race, before, places, forces)
     if across is not None:
@@ -408,7 +420,9 @@ def kick_alone(bunch: Bunch, b: int, h: float) -> Kick:
     rates = Motion(*(part[b] for part in bunch.rates[:5]))
     answers = 1.0 / MASS + BALL * BALL / INERTIA, 1.0 / MASS
     last = 0.0, bunch.last[b]
-    return Kick(*kick_of(h, answers, rates, bunch.ring_rates, place_of(bunch, b), bunch.race.side, last))
+    return Kick(
+        *kick_of(Beat(h, 0.0), answers, rates, bunch.ring_rates, place_of(bunch, b), bunch.race.side, last)
+    )
 
 
 def one_of(bunch: Bunch, b: int, h: float, law: Any, friction: Any) -> Press:
