@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Mapping
 from pathlib import Path
 
 from touchdown.master.api.scenes import PathLike, as_scene
@@ -10,6 +12,7 @@ from touchdown.master.results.folder.reopened import reopened
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import Pictures, natively, run_scene
 from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.drop import spread as spread_study
 
 
 def run(
@@ -43,6 +46,24 @@ def run(
         raise TouchdownError("native takes FMUs and in_process takes none; choose one")
     chosen = natively(as_scene(scene)) if native else as_scene(scene)
     return run_scene(chosen, None if folder is None else Path(folder), in_process, csv, pictures, progress)
+
+
+def spread(result: Result, siblings: int = 8, *, jobs: int | None = None) -> Mapping[str, object]:
+    """How far peaks lie apart over drops that start nanometres apart: `siblings` of a run, beside itself.
+
+    Adds them to the result's summary, on disk as well, and returns them: least, median and most of each
+    figure. `jobs` run at a time, by default one per processor, in processes of their own: a script needs
+    `if __name__ == "__main__":` around it. Siblings that stop are warned of and do not count. Raises
+    TouchdownError where no start can be moved.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> found = touchdown.spread(touchdown.run(scene, in_process=True), 1)
+    >>> found["peak_contact_force_N"]["most"] > 300.0  # N
+    True
+    """
+    for warning in spread_study.spread(result, siblings, jobs):
+        warnings.warn(warning, stacklevel=2)
+    return spread_study.figures_of(result.summary)
 
 
 def open_result(folder: PathLike) -> Result:

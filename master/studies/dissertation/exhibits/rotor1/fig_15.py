@@ -16,6 +16,7 @@ PENDULUM, BENDING = (20.0, 50.0, 4), (1300.0, 2000.0, 1)  # Hz, Hz, how many lin
 HEIGHT = 0.05  # of the tallest line
 NEAR_HZ = 2.0
 FITTED = "the rolling resistance (0.011) is fitted to it; the stated models hardly slow down"
+WHICH = "the source does not say of which part its lines are"
 PARTS = (("first", 0), ("last", -1))
 
 
@@ -38,7 +39,7 @@ def fig_15(drops: Drops) -> Exhibit:
                     source,
                     found,
                     near=NEAR_HZ / source,
-                    why="the source does not say of which part its lines are",
+                    why=WHICH if found is not None else f"no line near it; {WHICH}",
                 )
             )
         ((bending, _),) = lines(frequency, vx[part], *BENDING)
