@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from touchdown.master.api.machines import catalogue, new
     from touchdown.master.api.report import animate, report
     from touchdown.master.api.rotor import Rotor
-    from touchdown.master.api.run import open_result, run, spread
+    from touchdown.master.api.run import open_result, run
     from touchdown.master.api.scenes import load, scenes
     from touchdown.master.api.schemes import register_scheme
     from touchdown.master.api.studies import compare, merge, sweep, verdict
@@ -62,7 +62,6 @@ __all__ = [
     "report",
     "run",
     "scenes",
-    "spread",
     "sweep",
     "verdict",
 ]
@@ -77,7 +76,6 @@ _HOMES = {
     "report": "master.api.report",
     "Rotor": "master.api.rotor",
     "open_result": "master.api.run",
-    "spread": "master.api.run",
     "run": "master.api.run",
     "load": "master.api.scenes",
     "scenes": "master.api.scenes",

@@ -69,12 +69,6 @@ def spread(
     return [f"sibling {m.number} of {siblings} does not count: {m.failed}" for m in members if m.failed]
 
 
-def figures_of(summary: Mapping[str, object]) -> Mapping[str, Mapping[str, float]]:
-    """The figures of a summary's spread; none where there is none."""
-    found = summary.get(SPREAD)
-    return found["figures"] if isinstance(found, dict) else {}
-
-
 def spread_lines(summary: Mapping[str, object]) -> Iterator[str]:
     """What the command says of a summary's spread."""
     found = summary.get(SPREAD)
