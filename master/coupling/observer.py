@@ -28,6 +28,7 @@ class Moment:
     kept: int = 0  # the last macro step that somebody wants recorded
     ended: Ended | None = None  # None: it goes on
     reason: str = ""
+    flush: Callable[[], object] = lambda: None  # brings all that was recorded to the disk
 
     @property
     def since_zero(self) -> float:

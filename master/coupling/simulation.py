@@ -75,6 +75,12 @@ class Outcome:
             return self
         return replace(self, ended=Ended.STOPPED, reason=problem)
 
+    def wanted(self) -> Outcome:
+        """The outcome where an end that an observer wanted is the run's own."""
+        return (
+            self if self.ended is not Ended.AS_WANTED else replace(self, ended=Ended.COMPLETED, reason="")
+        )
+
     def raise_if_interrupted(self) -> None:
         """Raise KeyboardInterrupt where Ctrl-C, or a signal as it is one, ended the run."""
         if self.ended is Ended.INTERRUPTED:
@@ -302,6 +308,7 @@ def _recording(
         return
     recorder = Recorder(path, scene, now.system, now.steps + 1, begin)
     try:
+        now.flush = recorder.flush
         recorder.append(-(now.zero - now.start))  # the other way round 0 s would have another sign
         yield recorder
     finally:

@@ -43,6 +43,7 @@ from touchdown.master.studies.sweep.journal import Member
 from touchdown.master.studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from touchdown.master.studies.sweep.results import Sweep
 
+FIRST_FORCE = "first_impact_contact_force_N"
 FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
 DRAWN = "random"  # drops that stand for all that may be; those of other samples hang on each other
 MOST_ROWS = 300  # of the table of drops
@@ -153,9 +154,12 @@ def _summary(sweep: Sweep) -> list[Block]:
     forces = [force for member in done if (force := largest(member.summary, FORCE)) is not None]
     if forces:
         tiles.append(Tile("Largest contact force", quantity(max(forces), "N", 3), "of all drops"))
-        tiles.append(
-            Tile("Median of the largest", quantity(float(np.median(forces)), "N", 3), "drop by drop")
-        )
+        ends = f"{quantity(min(forces), 'N', 3)} to {quantity(max(forces), 'N', 3)}, drop by drop"
+        tiles.append(Tile("Median of the largest", quantity(float(np.median(forces)), "N", 3), ends))
+    firsts = [force for member in done if (force := largest(member.summary, FIRST_FORCE)) is not None]
+    if firsts:
+        ends = f"{quantity(min(firsts), 'N', 3)} to {quantity(max(firsts), 'N', 3)}, drop by drop"
+        tiles.append(Tile("Median of first impacts", quantity(float(np.median(firsts)), "N", 3), ends))
     blocks: list[Block] = [Tiles(tiles)]
     if len(done) < len(sweep):
         blocks.append(Remark("Shares and figures are of the drops that ran to their end.", grave=True))

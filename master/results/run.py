@@ -20,10 +20,12 @@ from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
 from touchdown.master.results.folder.ending import write_ending
+from touchdown.master.results.motion.until import UntilSettled, unsettled
 from touchdown.master.results.recording import Recording, write_csv
 from touchdown.master.results.result import RECORDING, Result, Scratch
 from touchdown.master.results.summary import summarise
 from touchdown.master.results.whirl.evidence import first_contact
+from touchdown.master.scene.run_spec import SETTLED
 from touchdown.master.scene.scene import Scene
 
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
@@ -53,14 +55,16 @@ def run_scene(
         make_ready(scene, in_process, *([_told] if progress else []))
         system = open_system(scene, in_process)
         try:
+            path = folder.absolute() / RECORDING
+            watching = [UntilSettled(system, path)] if scene.run.until == SETTLED else []
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene)
-                outcome = simulate(scene, system, folder.absolute() / RECORDING, show, begin=begin)
+                outcome = simulate(scene, system, path, show, watching, begin)
             told = ending(system)
-            outcome = outcome.after(system.close())
+            outcome = outcome.wanted().after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
-            warnings = [*system.remarks, *_early(summary), *_warnings(outcome)]
+            warnings = [*system.remarks, *_early(summary), *unsettled(scene, summary), *_warnings(outcome)]
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:

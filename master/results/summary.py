@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -13,12 +14,21 @@ from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.ledger.heard import told_by_master
 from touchdown.master.coupling.simulation import Outcome, energy_scale
 from touchdown.master.results.ending import Readable, housing_port
+from touchdown.master.results.motion.course import Course, course, proposed, settled_at
+from touchdown.master.results.motion.impact import (
+    FIRST_IMPACT,
+    Reported,
+    latest,
+    over_at,
+    stresses_at,
+    values_at,
+)
+from touchdown.master.results.motion.spectra import hann
 from touchdown.master.results.recording import NotRecordedError, Recording
-from touchdown.master.results.spectra import hann
 from touchdown.master.results.stresses import stress_figures
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.drive import force_phase
-from touchdown.master.results.whirl.verdict import Episode, Whirl, classify
+from touchdown.master.results.whirl.verdict import Episode, Verdict, Whirl, classify
 from touchdown.master.scene.scene import Scene
 from touchdown.modelkit.variables import Causality
 
@@ -27,12 +37,9 @@ RPM = 60.0 / (2.0 * math.pi)
 
 
 @dataclass(frozen=True)
-class Figure:
+class Figure(Reported):
     """One figure taken from a bearing's variable; `missing` marks "has not happened"."""
 
-    key: str
-    variable: str
-    factor: float = 1.0
     from_zero: bool = False  # a time, counted from the scene's zero
     missing: float | None = None
 
@@ -54,6 +61,12 @@ FIGURES = (
     Figure("ring_sync_time_s", "ring.sync_time", from_zero=True, missing=-1.0),
     Figure("loaded_balls_end", "balls.loaded"),
 )
+FIRST_IMPACTS = tuple(  # what peaks were when it was over; of a ball's force the bearing tells by itself
+    Figure(FIRST_IMPACT + figure.key.removeprefix("peak_"), figure.variable, figure.factor)
+    for figure in FIGURES
+    if figure.key.startswith("peak_") and figure.key != "peak_ball_force_N"
+)
+SPREAD = "spread"  # of figures over drops that start nanometres apart, where there are such
 LAST_PART = 0.2  # of a run, for means
 _DIVIDED = "macro_steps_divided_in_impacts"
 
@@ -92,13 +105,22 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     if outcome.ended is not Ended.COMPLETED:
         figures["stopped_because"] = outcome.reason
     seats = touchdown_seats(system)
-    for a in seats:
+    overs = [over_at(system, a.bearing, outcome.zero, recording) for a in seats]
+    courses: list[Course] = []
+    for a, over in zip(seats, overs, strict=True):
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
-        figures |= {f"{key}{tail}": value for key, value in _bearing_figures(system, a, outcome).items()}
+        own = _bearing_figures(system, a, outcome)
+        own |= values_at(over, system, a.bearing, FIRST_IMPACTS, recording)
+        figures |= {f"{key}{tail}": value for key, value in own.items()}
         with suppress(NotRecordedError):
-            orbit = _orbit_figures(system, a, outcome, recording)
+            here = course_at(system, a, recording, outcome.zero)
+            courses += [] if here is None else [here]
+            orbit = _orbit_figures(system, a, outcome, recording) | _settling_figures(here)
+            if here is None or here.whirl.verdict is not Verdict.PENDULUM:
+                orbit |= {"pendulum_frequency_Hz": None}
             figures |= {f"{key}{tail}": value for key, value in orbit.items()}
-            figures |= _whirl_figures(system, a, seat_name(a, seats), recording)
+            figures |= _whirl_figures(system, a, seat_name(a, seats), recording, here)
+    figures |= _course_figures(courses, len(seats), recording)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         seat = next(a for a in seats if a.body == name)
@@ -106,7 +128,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
     if by_master := [a.bearing for a in seats if is_heard(system, a)]:
         figures["contact_heard_by_master"] = ", ".join(by_master)
-    figures |= stress_figures(system, outcome)
+    figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
     return {key: _finite(value) for key, value in figures.items()}
@@ -161,6 +183,37 @@ def _orbit_figures(
     return figures if loaded is None else {"loaded_balls_mean": loaded} | figures
 
 
+def course_at(system: Readable, a: Attachment, recording: Recording, zero: float) -> Course | None:
+    """The verdict at a seat with its time, and how it goes on; None where there can be none.
+
+    zero: the scene's, s on the simulation's clock.
+    """
+    whirl = whirl_at(system, a, recording)
+    if whirl is None:
+        return None
+    path = relative_orbit(system, a, recording)
+    orbit = Orbit(recording.time, *path, system.value(f"{a.bearing}.clearance"))
+    touched = system.value(f"{a.bearing}.contact.first_time")
+    first = None if touched == -1.0 else touched - zero
+    return course(orbit, _force_on_journal(a, path, recording), whirl, first)
+
+
+def _settling_figures(here: Course | None) -> dict[str, object]:
+    settled = None if here is None else here.settling
+    if settled is None:
+        return {"settling_time_s": None, "settled": None}
+    return {"settling_time_s": settled.time, "settled": settled.words}
+
+
+def _course_figures(courses: Sequence[Course], seats: int, recording: Recording) -> dict[str, object]:
+    """When the run ends, when all seats have settled, and how long it should be for that."""
+    whole = len(courses) == seats
+    figures: dict[str, object] = {"end_time_s": float(recording.time[-1])}
+    if seats > 1:
+        figures["settling_time_s"] = settled_at(courses) if whole else None
+    return figures | {"proposed_duration_s": proposed(courses)}
+
+
 def relative_orbit(system: Readable, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
     """Journal's position relative to the housing's, the bearing's centre (m)."""
     port = housing_port(system, a)
@@ -204,23 +257,25 @@ def _force_on_journal(
     return -recording[normal] * np.cos(angle), -recording[normal] * np.sin(angle)
 
 
-def _whirl_figures(system: Readable, a: Attachment, seat: str, recording: Recording) -> dict[str, object]:
+def _whirl_figures(
+    system: Readable, a: Attachment, seat: str, recording: Recording, here: Course | None
+) -> dict[str, object]:
     """The verdict in words, the decisive whirl, and all; without a clearance nothing can be told."""
     key = f"whirl_{seat}"
     tails = (
-        *("", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N", "_force_phase_deg"),
-        *("_most_turns_one_way", "_episodes"),
+        *("", "_trend", "_revolutions", "_radius_um", "_frequency_Hz", "_largest_force_N"),
+        *("_force_phase_deg", "_most_turns_one_way", "_episodes"),
     )
-    whirl = whirl_at(system, a, recording)
-    if whirl is None:
+    if here is None:
         return {f"{key}{tail}": None for tail in tails}
+    whirl = here.whirl
     radius = None if whirl.radius is None else 1e6 * whirl.radius
     force = _largest_force(a, whirl.decisive, recording) if whirl.decisive else None
     phase = _force_phase(system, a, whirl.decisive, recording) if whirl.decisive else None
     episodes = [_episode_figures(system, a, episode, recording) for episode in whirl.episodes]
     values = (
-        *(whirl.words, whirl.revolutions, radius, whirl.frequency, force, phase),
-        *(whirl.marched, episodes),
+        *(here.words, here.trend, whirl.revolutions, radius, whirl.frequency, force),
+        *(phase, whirl.marched, episodes),
     )
     return {f"{key}{tail}": value for tail, value in zip(tails, values, strict=True)}
 
@@ -362,6 +417,7 @@ def _run_figures(
 
 def table(summary: dict[str, object]) -> str:
     """The figures as text, one a line."""
+    summary = {key: value for key, value in summary.items() if key != SPREAD}  # told beside them
     width = max(len(key) for key in summary)
 
     def shown(value: object) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,6 +14,7 @@ from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown
 CALL_TIMEOUT = 60.0  # s
 AUTO = "auto"  # as the scheme has it
 BONDS = (AUTO, "smooth", "contact", "hold")
+END, SETTLED = UNTIL = ("end", "settled")
 UNITS = {  # of the keys of [run] that are numbers
     **dict.fromkeys(("duration", "start_time", "macro_step", "call_timeout", "impact_step"), "s"),
     "tolerance": "m",
@@ -39,6 +40,7 @@ class RunSpec:
     call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take
     bonds: str = AUTO  # one of BONDS: how force and motion cross between FMUs that know no contract
     whirl_halvings: int = 3  # of the macro step, at most, while a whirl makes energy; 0: none
+    until: str = END  # of the duration, or earlier once all seats have settled
     impact_step: float = 1e-6  # s, at most, while two bearings hit a rotor; 0: macro steps are not divided
 
 
@@ -57,10 +59,13 @@ def _scheme(value: object, name: str) -> Scheme:
     return value
 
 
-def _bonds(value: object, name: str) -> str:
-    if value not in BONDS:
-        raise TouchdownError(f"{name} = {value}: {one_of(str(value), BONDS)}")
-    return str(value)
+def _among(words: Sequence[str]) -> Callable[[object, str], str]:
+    def read(value: object, name: str) -> str:
+        if value not in words:
+            raise TouchdownError(f"{name} = {value}: {one_of(str(value), words)}")
+        return str(value)
+
+    return read
 
 
 def _above_zero(unit: str) -> Callable[[object, str], float]:
@@ -91,7 +96,8 @@ def _count(value: object, name: str) -> int:
 
 READERS: Mapping[str, Callable[[object, str], object]] = {  # of [run], from what stands in a file
     "scheme": _scheme,
-    "bonds": _bonds,
+    "bonds": _among(BONDS),
+    "until": _among(UNTIL),
     "record": beginnings,
     "record_also": beginnings,
     "record_arrays": switch,

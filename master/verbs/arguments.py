@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
+from touchdown.master.scene.run_spec import UNTIL
 from touchdown.master.scene.schemes import DEFAULT, SCHEMES
 from touchdown.master.verbs import completion
 from touchdown.master.verbs.completion import complete
@@ -36,6 +37,16 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--duration", help='of the run from the scene\'s zero on, such as "0.2 s"')
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
     add_swaps(verb)
+
+
+def add_until(verb: argparse.ArgumentParser) -> None:
+    """Add --until; `timed` reads it."""
+    verb.add_argument(
+        "--until",
+        choices=UNTIL,
+        help="settled: end a run once the motion at all seats has, --duration is the most (default: the "
+        "scene's run.until)",
+    )
 
 
 def add_swaps(verb: argparse.ArgumentParser) -> None:
@@ -134,9 +145,9 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     from touchdown.master.interop.scenes import find_scene
 
     chosen = swapped(find_scene(options.scene), options).set(settings(options))
-    for key in ("scheme", "duration"):
-        if (given := getattr(options, key)) is not None:
-            chosen = chosen.set({f"run.{key}": given})
+    if options.scheme is not None:
+        chosen = chosen.set({"run.scheme": options.scheme})
+    chosen = timed(chosen, options)
     if options.macro_step == "auto":
         from touchdown.master.studies.schemes.advisor import advise
 
@@ -146,6 +157,12 @@ def chosen_scene(options: argparse.Namespace) -> Scene:
     elif options.macro_step is not None:
         chosen = chosen.set({"run.macro_step": options.macro_step})
     return chosen
+
+
+def timed(scene: Scene, options: argparse.Namespace) -> Scene:
+    """`scene` with what --duration gives, and --until where the verb has it. Raises TouchdownError."""
+    asked = {key: getattr(options, key, None) for key in ("duration", "until")}
+    return scene.set({f"run.{key}": given for key, given in asked.items() if given is not None})
 
 
 def swapped(scene: Scene, options: argparse.Namespace) -> Scene:

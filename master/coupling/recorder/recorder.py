@@ -106,6 +106,11 @@ class Recorder:
         next_one = now + (now - self._appended)  # when it is to be expected
         self._appended = now
         if self._filled == len(self._block) or next_one - self._written > self._patience:
+            self.flush()
+
+    def flush(self) -> None:
+        """Bring all rows to the disk now. Raises TouchdownError where the file cannot grow."""
+        if self._filled:
             try:
                 self._write()
             except OSError as error:

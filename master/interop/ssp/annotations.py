@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from touchdown.master.coupling.bonds.bond import Bond
 from touchdown.master.interop.ssp.names import MASTER_ANNOTATION, SCENE_ANNOTATION, STEP_ANNOTATION
-from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.run_spec import END, RunSpec
 from touchdown.master.scene.scene import Scene
 
 OMS_DEFAULT = "oms_ma_default"  # the master that OMSimulator gives components that name none
@@ -81,6 +81,7 @@ def _run(run: RunSpec, there: Callable[[str], str]) -> Mapping[str, str]:
         "stop_residual": repr(run.stop_residual),
         "whirl_halvings": str(run.whirl_halvings),
         "impact_step": repr(run.impact_step),
+        **({} if run.until == END else {"until": run.until}),
     }
 
 

@@ -29,7 +29,7 @@ PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene"
 
 RUN_KEYS = (
     "scheme", "bonds", "tolerance", "record_every", "record", "record_also", "record_arrays",
-    "warn_residual", "stop_residual", "whirl_halvings", "impact_step",
+    "warn_residual", "stop_residual", "whirl_halvings", "impact_step", "until",
 )  # fmt: skip
 DIGITS = 12  # of a duration found as a difference
 

@@ -87,6 +87,7 @@ def _events(subject: Subject) -> Table:
                 subject.name(a),
                 quantity(falls, "s"),
                 quantity(hits, "m/s", 3),
+                quantity(subject.figure("first_impact_contact_force_N", a), "N", 3),
                 quantity(subject.figure("peak_contact_force_N", a), "N", 3),
                 quantity(None if loss is None else 1e-6 * loss, "m", 3),
                 quantity(subject.figure("pendulum_frequency_Hz", a), "Hz", 3),
@@ -96,9 +97,10 @@ def _events(subject: Subject) -> Table:
         "Seat",
         "First contact",
         "at",
+        "Force of the first impact",
         "Largest force",
         "Largest displacement in space",
-        "Main frequency sideways",
+        "Pendulum frequency",
     ]
     return Table("What happened, seat by seat", head, rows, numbers=1)
 

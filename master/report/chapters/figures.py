@@ -12,7 +12,7 @@ from touchdown.master.report.page.blocks import Absent, Block, Picture, Table
 from touchdown.master.report.pictures.svg import inline
 from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
 from touchdown.master.results.figures.stress import has_stress, stress
-from touchdown.master.results.spectra import BEGIN, LENGTH
+from touchdown.master.results.motion.spectra import BEGIN, LENGTH
 from touchdown.master.results.stresses import stressed
 
 

@@ -45,7 +45,8 @@ def _verdict(subject: Subject) -> str:
     told = {seat: words for seat, words in said.items() if isinstance(words, str)}
     if not told:
         return f"The rotor lands; whether it whirls is {UNTOLD}."
-    return f"The rotor lands and does not whirl: {_by_words(told)}."
+    seconds = quantity(subject.length, "s")
+    return f"The rotor lands and does not whirl within {seconds}: {_by_words(told)}."
 
 
 def _by_words(said: dict[str, str]) -> str:
@@ -71,6 +72,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
     if subject.fall is not None:
         yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
     for key, unit, factor, label in (
+        ("first_impact_contact_force_N", "N", 1.0, "First impact, contact force"),
         ("peak_contact_force_N", "N", 1.0, "Largest contact force"),
         ("peak_ball_force_N", "N", 1.0, "Largest ball load"),
         ("largest_displacement_um", "m", 1e-6, "Largest displacement in space"),
@@ -78,11 +80,17 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
         found = [(v, a) for a in subject.seats if (v := subject.figure(key, a)) is not None]
         if found:
             value, a = max(found, key=lambda pair: pair[0])
-            yield Tile(label, quantity(factor * value, unit, 3), _at(subject, a))
+            note = f"{_at(subject, a)}; {subject.firmness(key, a)}"
+            yield Tile(label, quantity(factor * value, unit, 3), note)
     yield from _rated(subject)
+    settled = number(subject.summary.get("settling_time_s"))
+    if subject.first_contact is not None:
+        when = "not in this run" if settled is None else "after the shutdown"
+        yield Tile("Settled", quantity(settled, "s", 3), when)
     stress = number(subject.summary.get("peak_bending_stress_MPa"))
     if stress is not None:
-        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), "in the shaft")
+        said = f"in the shaft; {subject.firmness('peak_bending_stress_MPa')}"
+        yield Tile("Largest bending stress", quantity(1e6 * stress, "Pa", 3), said)
     speed = number(subject.summary.get("rotor_speed_end_rpm"))
     if speed is not None:
         end = quantity(subject.length, "s")
@@ -116,13 +124,25 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
                 f"{subject.name(a)} ({a.bearing})",
                 words if isinstance(words, str) else UNTOLD,
                 quantity(contact, "s"),
+                quantity(subject.figure("first_impact_contact_force_N", a), "N", 3),
                 quantity(subject.figure("peak_contact_force_N", a), "N", 3),
+                subject.firmness("peak_contact_force_N", a),
+                _settled(subject, a),
                 quantity(turns or None, "1", 3),
                 quantity(frequency, "Hz", 3),
             ]
         )
-    head = ["Seat", "Verdict", "First contact", "Largest contact force", "Whirl turns", "Whirl frequency"]
+    head = [
+        *("Seat", "Verdict", "First contact", "First impact, contact force", "Largest contact force"),
+        *("How firm that is", "How it ends up", "Whirl turns", "Whirl frequency"),
+    ]
     return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
+
+
+def _settled(subject: Subject, a: Attachment) -> str:
+    """When and how a seat settles, in words."""
+    tail = f"_{a.bearing}" if len(subject.seats) > 1 else ""
+    return str(subject.summary.get(f"settled{tail}") or UNTOLD)
 
 
 def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
@@ -146,6 +166,12 @@ def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
         yield (
             "This is one phase of the unbalance. Whether a rotor whirls may hang on the phase; "
             "`touchdown verdict` runs them all.",
+            False,
+        )
+    if (longer := number(subject.summary.get("proposed_duration_s"))) is not None:
+        yield (
+            f"The motion has not settled; a run of {quantity(longer, 's')} (`--until settled`) may tell "
+            "how it ends.",
             False,
         )
     yield from _still_turning(subject)

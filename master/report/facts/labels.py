@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-SEAT = re.compile(r"whirl_(?P<seat>.+?)(?P<tail>|_revolutions|_radius_um|_frequency_Hz|_largest_force_N"
-                  r"|_force_phase_deg|_most_turns_one_way|_episodes)")  # fmt: skip
+SEAT = re.compile(r"whirl_(?P<seat>.+?)(?P<tail>|_trend|_revolutions|_radius_um|_frequency_Hz"
+                  r"|_largest_force_N|_force_phase_deg|_most_turns_one_way|_episodes)")  # fmt: skip
 WORDS = {  # key without its component: words, and the unit of the value
     "first_contact_time_s": ("First contact, after the shutdown", "s"),
     "first_contact_speed_m_s": ("Speed of the first contact", "m/s"),
@@ -26,6 +26,11 @@ WORDS = {  # key without its component: words, and the unit of the value
     "loaded_balls_end": ("Loaded balls at the end", ""),
     "loaded_balls_mean": ("Loaded balls, mean of the last fifth", ""),
     "largest_displacement_um": ("Largest displacement in space", "µm"),
+    "first_impact_contact_force_N": ("Largest contact force of the first impact", "N"),
+    "first_impact_bending_stress_MPa": ("Largest bending stress of the first impact", "MPa"),
+    "first_impact_shear_stress_MPa": ("Largest shear stress of the first impact", "MPa"),
+    "settling_time_s": ("Settled, after the shutdown", "s"),
+    "settled": ("How it ends up", ""),
     "pendulum_frequency_Hz": ("Pendulum frequency", "Hz"),
     "rotor_speed_end_rpm": ("Rotor at the end", "rpm"),
     "peak_bending_stress_MPa": ("Largest bending stress", "MPa"),
@@ -37,6 +42,7 @@ WORDS = {  # key without its component: words, and the unit of the value
 }
 OF_SEAT = {
     "": ("Verdict", ""),
+    "_trend": ("How the whirl goes on", ""),
     "_revolutions": ("Turns of the whirl", ""),
     "_radius_um": ("Radius of the whirl", "µm"),
     "_frequency_Hz": ("Frequency of the whirl", "Hz"),

@@ -11,12 +11,13 @@ import numpy as np
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.coupling.loop.span import origin_of, zero_of
-from touchdown.master.report.facts.numbers import quantity
+from touchdown.master.report.facts.numbers import digits, quantity
 from touchdown.master.report.facts.series import Chart, Line, chosen_rows
 from touchdown.master.report.page.blocks import Absent
 from touchdown.master.results.ending import Finished
+from touchdown.master.results.motion.impact import FIRST_IMPACT
 from touchdown.master.results.result import Result
-from touchdown.master.results.summary import seat_name, touchdown_seats
+from touchdown.master.results.summary import SPREAD, seat_name, touchdown_seats
 from touchdown.master.results.whirl.evidence import CONTACT as FIRST_CONTACT
 
 COLOURS = ("blue", "orange", "green", "purple", "grey", "ink")
@@ -88,6 +89,22 @@ class Subject:
         """A number of the summary that each touchdown bearing has; None where there is none."""
         tail = f"_{a.bearing}" if len(self.seats) > 1 else ""
         return number(self.summary.get(f"{key}{tail}"))
+
+    def firmness(self, key: str, a: Attachment | None = None) -> str:
+        """What a peak of the whole drop is worth: its spread over siblings, or that it has none.
+
+        key: of the summary, in its units; a: the seat, where each bearing has the figure.
+        """
+        if a is not None and len(self.seats) > 1:
+            key = f"{key}_{a.bearing}"
+        spread = self.summary.get(SPREAD)
+        if isinstance(spread, dict) and (one := spread["figures"].get(key)) is not None:
+            ends = f"{digits(one['least'], 4)} to {digits(one['most'], 4)}"
+            return f"{ends}, median {digits(one['median'], 4)}, with {spread['siblings']} siblings"
+        first = FIRST_IMPACT + key.removeprefix("peak_")
+        if key.startswith(FIRST_IMPACT) or self.summary.get(first, object()) == self.summary[key]:
+            return "in the first impact"
+        return "one draw of a chaotic drop"
 
     def whirl(self, a: Attachment, key: str = "") -> object:
         """Of the verdict at a seat: in words, or one of its figures."""

@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
 from touchdown.master.coupling.connections import Attachment
+from touchdown.master.coupling.loop.span import zero_of
 from touchdown.master.results.ending import Finished, housing_port
 from touchdown.master.results.figures.style import BLACK, BLUE, GREY, ORANGE, sized
-from touchdown.master.results.summary import relative_orbit, seat_name, whirl_at
+from touchdown.master.results.summary import course_at, relative_orbit, seat_name
 
 UM = 1e6
 COLUMNS = 4  # at most
@@ -67,9 +68,10 @@ def _draw(axes: Axes, run: Finished, a: Attachment, seat: str) -> float:
 
 def _verdict(run: Finished, a: Attachment) -> str:
     """Whirl in words, with its length and frequency."""
-    whirl = whirl_at(run.system, a, run.recording)
-    if whirl is None:
+    here = course_at(run.system, a, run.recording, zero_of(run.scene, run.system))
+    if here is None:
         return "no clearance, no verdict"
+    whirl = here.whirl
     if whirl.frequency is None:
-        return whirl.words
-    return f"{whirl.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"
+        return here.words
+    return f"{here.words}\n{whirl.revolutions:.1f} revolutions at {whirl.frequency:.0f} Hz"

@@ -103,7 +103,7 @@ class Plot:
     def spectrum(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Amplitude of the inner ring's velocity over frequency, after the landing [m/s, Hz]."""
         from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
-        from touchdown.master.results.spectra import BEGIN, LENGTH
+        from touchdown.master.results.motion.spectra import BEGIN, LENGTH
 
         run, seat = self._run(), self._seat(bearing)
         self._require(f"{seat.bearing}.ring.x")

@@ -11,8 +11,7 @@ from matplotlib.figure import FigureBase
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
-from touchdown.master.results.recording import Recording
-from touchdown.master.results.spectra import (
+from touchdown.master.results.motion.spectra import (
     LENGTH,
     POINTS,
     interval,
@@ -21,6 +20,7 @@ from touchdown.master.results.spectra import (
     velocity_spectrum,
     windows,
 )
+from touchdown.master.results.recording import Recording
 from touchdown.master.results.summary import dominant_frequency
 
 LOW, HIGH = 700.0, 4000.0  # Hz, the panels' ends

@@ -11,8 +11,8 @@ from matplotlib.figure import FigureBase
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Finished
 from touchdown.master.results.figures.style import BLUE, ORANGE, sized
+from touchdown.master.results.motion.spectra import interval, on_grid, waterfall
 from touchdown.master.results.recording import Recording
-from touchdown.master.results.spectra import interval, on_grid, waterfall
 
 SHORTEST = 8.0  # s after the shutdown
 COARSEST = 10e3  # Hz

@@ -44,6 +44,13 @@ def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterato
         yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
 
 
+def goes_on(summary: Mapping[str, object]) -> Iterator[str]:
+    """How the seats settle, and how long a run should be where one has not."""
+    yield from (f"{key}: {value}" for key, value in summary.items() if key.startswith("settled") and value)
+    if isinstance(longer := summary.get("proposed_duration_s"), float):
+        yield f'a longer run may tell: --until settled --duration "{longer:g} s"'
+
+
 def _rests_on(summary: Mapping[str, object], seat: str) -> str:
     marched, turns = summary[f"{seat}{MARCHED}"], summary[f"{seat}_revolutions"]
     if not isinstance(marched, float) or not isinstance(turns, float):

@@ -21,6 +21,7 @@ from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 
 STEP_APART = 1e-7  # rad
+MEMBERS = 5  # drops per model
 SCENES = {
     "cageless detailed": "disk-cageless-detailed",
     "cageless simplified": "disk-cageless-simplified",

@@ -11,9 +11,9 @@ from pathlib import Path
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.progress import UNSEEN, Progress
+from touchdown.master.results.motion.spectra import lines as tallest
+from touchdown.master.results.motion.spectra import on_grid, waterfall
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.spectra import lines as tallest
-from touchdown.master.results.spectra import on_grid, waterfall
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.dissertation import table_4
 from touchdown.master.studies.dissertation.fig_14 import DURATION, fig_14

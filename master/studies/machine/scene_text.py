@@ -51,7 +51,8 @@ def _head(d: Design) -> Iterator[str]:
         "]",
         "",
         "[run]",
-        'duration = "0.5 s"',
+        'duration = "2 s"  # at most',
+        'until = "settled"  # ends earlier once all seats have; "end" goes on for the whole duration',
         'macro_step = "20 us"  # `touchdown advise` says how long it may be',
     )
 

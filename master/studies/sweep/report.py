@@ -11,6 +11,7 @@ from pathlib import Path
 
 from touchdown.master.common.errors import one_of
 from touchdown.master.common.files import replacing
+from touchdown.master.results.whirl.told import verdict_class
 from touchdown.master.studies.sweep.journal import Member
 from touchdown.master.studies.sweep.variation import number_and_unit
 
@@ -19,8 +20,10 @@ MOST_REASONS = 5  # why members failed, or are warned of
 
 PICKS = (  # shown beside the verdicts where none are asked for
     "whirl_*_revolutions",
+    "first_impact_contact_force_N*",
     "peak_contact_force_N*",
     "peak_ball_force_N*",
+    "settling_time_s*",
     "pendulum_frequency_Hz*",
     "rotor_speed_end_rpm*",
 )
@@ -45,7 +48,7 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
     lines = []
     for key in verdict_keys(members):
         words = (str(m.summary[key]) for m in members if m.summary.get(key) is not None)
-        counts = Counter(said.partition(":")[0] for said in words)  # near misses, whatever they miss by
+        counts = Counter(map(verdict_class, words))  # whatever near misses miss by
         lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
     return lines
 

@@ -9,7 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from touchdown.master.common.files import write_records, writing_to
+from touchdown.master.results.motion.trend import Trend
 from touchdown.master.results.whirl.share import CONFIDENCE, Share
+from touchdown.master.results.whirl.told import how_it_goes_on
+from touchdown.master.scene.run_spec import SETTLED
+from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep.report import counted
 from touchdown.master.studies.verdict.circle import Circle, peak_force
 from touchdown.master.studies.verdict.phases import (
@@ -35,7 +39,7 @@ def report_lines(study: Study) -> list[str]:
     lines = [
         f"{study.scene.title}: which phases of the unbalance whirl",
         f"phases {plan.spacing:g} deg apart, {plan.resolution:g} deg where neighbours' verdicts differ; "
-        f"drops of {study.scene.run.duration:g} s",
+        f"drops of {_lengths(study.scene)}",
     ]
     for circle in study.circles:
         lines += ["", *_circle_lines(study, circle)]
@@ -47,6 +51,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
     if circle.verdicts:
         yield from _window_lines(circle)
         yield f"  share of phases that whirl: {percent(share(circle.verdicts))}"
+        yield from _goes_on(circle)
         force = circle.largest_force()
         if force is not None:
             yield f"  largest contact force: {newtons(force)}"
@@ -58,6 +63,27 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
         yield f"  in {over} of them {passed}, at which a run of the scene stops"
     for phase, reason in circle.failed.items():
         yield f"  {phase:g} deg failed: {reason}"
+
+
+def _lengths(scene: Scene) -> str:
+    """How long drops are."""
+    if scene.run.until == SETTLED:
+        return f"at most {scene.run.duration:g} s, less where they settle before"
+    return f"{scene.run.duration:g} s"
+
+
+def _goes_on(circle: Circle) -> Iterator[str]:
+    """When drops that whirl at the end ended, and how their whirls go on."""
+    going = [m for m in circle.members.values() if not m.failed and how_it_goes_on(m.summary)]
+    if not going:
+        return
+    counted = Counter(how_it_goes_on(m.summary) for m in going).most_common()
+    ends = dict.fromkeys(f"{float(str(m.summary['end_time_s'])):.3g}" for m in going)
+    until = f"{min(ends, key=float)} to {max(ends, key=float)}" if len(ends) > 1 else next(iter(ends))
+    how = ", ".join(f"{n} {trend}" for trend, n in counted)
+    yield f"  still whirling at the end, at {until} s: {len(going)} runs: {how}"
+    if any(how_it_goes_on(m.summary) != Trend.STEADY for m in going):
+        yield "    only a longer --duration tells whether those last that are not steady"
 
 
 def _window_lines(circle: Circle) -> Iterator[str]:

@@ -20,6 +20,7 @@ from touchdown.master.coupling.system import System
 from touchdown.master.results.run import make_writable
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.results.whirl.unbalance import ANGLE, unbalanced
+from touchdown.master.scene.run_spec import SETTLED
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.sweep.report import Member
 from touchdown.master.studies.sweep.sweep import Execution, Task, run_tasks
@@ -30,6 +31,7 @@ GRID = 12.0  # deg; windows of rotor I are 16 to 20 wide
 RESOLUTION = 4.0  # deg
 LEAST = 0.1  # deg; nothing turns about that exactly, and a circle has thousands of runs by then
 REFERENCE = 5e-6  # s
+LONGER = 4.0  # times the scene's duration, at most, so that a whirl that dies away is seen to
 NEVER = 1e9  # a residual of the ledger at which no run stops: how many would have is counted
 
 
@@ -113,6 +115,7 @@ def study_verdict(
     """
     if running.jobs < 1:
         raise TouchdownError(f"a study needs at least one job, not {running.jobs}")
+    scene = answering(scene)
     angles, remarks = _looked_at(scene)
     own = turned(next(iter(angles.values())), 0.0)
     stepped = [_with_step(scene, step) for step in plan.macro_steps or (scene.run.macro_step,)]
@@ -136,6 +139,13 @@ def study_verdict(
             break
         wanted = [refinement(c.verdicts, c.members, plan.resolution) for c in circles]
     return Study(scene, plan, own, circles, remarks)
+
+
+def answering(scene: Scene) -> Scene:
+    """`scene` until its drops settle, LONGER times its duration at most, where nobody has said how long."""
+    if {"duration", "until"} & set(scene.own) or scene.run.until == SETTLED:
+        return scene
+    return scene.set({"run.duration": LONGER * scene.run.duration, "run.until": SETTLED})
 
 
 def _looked_at(scene: Scene) -> tuple[dict[str, float], Sequence[str]]:

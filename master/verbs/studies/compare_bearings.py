@@ -19,7 +19,7 @@ EXAMPLES = (
 def declare(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     verb.add_argument("--duration", default="5 s", help='of each drop (default: "5 s")')
-    verb.add_argument("--ensemble", default="5", metavar="N", help="drops per model (default: 5)")
+    verb.add_argument("--ensemble", metavar="N", help="drops per model (default: 5, as the page has)")
     verb.add_argument("--options", action="store_true", help="also what the models' options change")
     add_output(verb, Path("runs/bearings"))
     add_quiet(verb)
@@ -28,10 +28,10 @@ def declare(verb: argparse.ArgumentParser) -> None:
 def execute(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from touchdown.master.common.units import to_si
-    from touchdown.master.studies.dissertation.bearings import OPTIONS, READINGS, compare_bearings
+    from touchdown.master.studies.dissertation.bearings import MEMBERS, OPTIONS, READINGS, compare_bearings
 
     duration = to_si(options.duration, "s", "--duration")
-    members = count(options.ensemble, "--ensemble")
+    members = MEMBERS if options.ensemble is None else count(options.ensemble, "--ensemble")
     if duration <= 0.0:
         raise TouchdownError(f"--duration {options.duration} must be above 0 s")
     folder = results_folder(options)

@@ -17,10 +17,12 @@ from touchdown.master.verbs.arguments import (
     add_quiet,
     add_scene_name,
     add_settings,
+    add_until,
     chosen_jobs,
     count,
     settings,
     show_sweep,
+    timed,
 )
 from touchdown.master.verbs.screen import broken_off, complain
 from touchdown.master.verbs.verb import Verb
@@ -42,6 +44,7 @@ def declare(verb: argparse.ArgumentParser) -> None:
     add_scene_name(verb)
     _add_points(verb)
     verb.add_argument("--duration", help='of each run, such as "2 s"')
+    add_until(verb)
     add_settings(verb)
     add_output(verb, "runs/sweep-SCENE", "folder for the results, in which a sweep goes on")
     verb.add_argument("--anew", action="store_true", help="throw away a sweep that the folder holds")
@@ -98,9 +101,7 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.studies.sweep.maps.field import refuse_axes
     from touchdown.master.studies.sweep.sweep import Running, sweep
 
-    chosen = find_scene(options.scene).set(settings(options))
-    if options.duration is not None:
-        chosen = chosen.set({"run.duration": options.duration})
+    chosen = timed(find_scene(options.scene).set(settings(options)), options)
     design = _design(options)
     refuse_axes(options.over, design.names)
     running = Running(

@@ -15,10 +15,12 @@ from touchdown.master.verbs.arguments import (
     add_quiet,
     add_scene_name,
     add_settings,
+    add_until,
     angle,
     chosen_jobs,
     settings,
     several_above_zero,
+    timed,
 )
 from touchdown.master.verbs.screen import broken_off, complain, warn
 from touchdown.master.verbs.verb import Verb
@@ -44,7 +46,11 @@ def declare(verb: argparse.ArgumentParser) -> None:
     add_output(verb, "runs/verdict-SCENE", "folder for the results")
     add_jobs(verb)
     add_settings(verb)
-    verb.add_argument("--duration", help='of each run, such as "0.2 s"')
+    verb.add_argument(
+        "--duration",
+        help='of each run, such as "0.2 s" (default: until it has settled, at most 4 times the scene\'s)',
+    )
+    add_until(verb)
     verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
     add_quiet(verb)
 
@@ -55,9 +61,7 @@ def execute(options: argparse.Namespace) -> int:
     from touchdown.master.studies.verdict.report import report_lines, write_report
     from touchdown.master.studies.verdict.study import Plan, Running, study_verdict
 
-    chosen = find_scene(options.scene).set(settings(options))
-    if options.duration is not None:
-        chosen = chosen.set({"run.duration": options.duration})
+    chosen = timed(find_scene(options.scene).set(settings(options)), options)
     plan = Plan(
         spacing=angle(options.grid, "--grid"),
         resolution=angle(options.resolution, "--resolution"),

@@ -20,9 +20,9 @@ from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.report.facts.subject import Subject
 from touchdown.master.report.sweeps import report_on_sweep
 from touchdown.master.results.figures.style import beginning
+from touchdown.master.results.motion.spectra import BEGIN, LENGTH, windows
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.spectra import BEGIN, LENGTH, windows
 from touchdown.master.scene.file import load_scene, parse
 from touchdown.master.scene.restored import read_resolved
 from touchdown.master.scene.scene import Scene

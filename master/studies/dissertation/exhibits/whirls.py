@@ -17,13 +17,15 @@ EDGE = "which phases whirl is decided by little; `touchdown verdict` finds the e
 
 
 def verdict_row(what: str, source: str, runs: Sequence[Result], why: str = EDGE) -> Row:
-    """The source's SETTLES or WHIRLS beside how many of `runs` whirl; most of them decide, none where
-    half do."""
-    count = whirling(runs)
-    mostly = "either" if 2 * count == len(runs) else WHIRLS if 2 * count > len(runs) else SETTLES
-    clear = count in (0, len(runs))
-    told = "" if clear and mostly == source else why
-    return Row(what, source, f"{count} of {len(runs)} whirl", holds=mostly == source, why=told)
+    """The source's SETTLES or WHIRLS beside how many of `runs` whirl; it agrees where all do as it says.
+
+    A single drop, as the source has, tells of no phase but its own: where some runs do otherwise the
+    phases that the source says nothing of decide, and `why` says so.
+    """
+    count, every = whirling(runs), len(runs)
+    like = count if source == WHIRLS else every - count
+    told = "" if like == every else f"so at {like} of {every} phases; {why}" if like > 0 else why
+    return Row(what, source, f"{count} of {every} whirl", holds=like == every, why=told)
 
 
 def orbit_sheets(runs: Sequence[Result], columns: int) -> Figure:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch, Rectangle
@@ -49,10 +49,20 @@ def whirl_map(axes: Axes, field: Field[list[Member]]) -> Axes:
         if several
         else "whirl of every drop"
     )
+    title += _followed([m for members in field.spots.values() for m in members])
     if found.together:
         title += f"\neach place over {found.together}"
     axes.set_title(title, fontsize="medium")
     return axes
+
+
+def _followed(members: Sequence[Member]) -> str:
+    """Up to when drops were followed: a whirl at the end is one at that time."""
+    ends = [end for m in members if isinstance(end := m.summary.get("end_time_s"), float)]
+    if not ends:
+        return ""
+    reach = dict.fromkeys(f"{end:.3g}" for end in (min(ends), max(ends)))
+    return f"; the end is at {' to '.join(reach)} s"
 
 
 def _kinds(members: list[Member]) -> Kinds:

@@ -16,9 +16,7 @@ from touchdown.master.results.figures.forces import forces
 from touchdown.master.results.figures.motion import speeds
 from touchdown.master.results.figures.style import LAST, sheet, zooms
 from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
-from touchdown.master.results.recording import Recording
-from touchdown.master.results.run import run_scene
-from touchdown.master.results.spectra import (
+from touchdown.master.results.motion.spectra import (
     BEGIN,
     LENGTH,
     POINTS,
@@ -28,6 +26,8 @@ from touchdown.master.results.spectra import (
     waterfall,
     windows,
 )
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.file import load_scene
 

@@ -19,6 +19,7 @@ from touchdown.master.studies.dissertation.exhibits import make, page, registry
 from touchdown.master.studies.dissertation.exhibits.drops import Drops, at_phases
 from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
 from touchdown.master.studies.dissertation.exhibits.registry import ABSENT, ENTRIES, Entry, entry
+from touchdown.master.studies.dissertation.exhibits.rotor1.fig_15 import beside
 from touchdown.master.studies.dissertation.exhibits.whirls import SETTLES, WHIRLS, verdict_row
 
 FIGURES, TABLES = 33, 7  # of the source
@@ -93,20 +94,29 @@ class Whirling:
     ("whirls", "source", "agrees", "told"),
     [
         (0, SETTLES, True, ""),
-        (1, SETTLES, True, "edge"),
-        (2, SETTLES, False, "edge"),
-        (2, WHIRLS, False, "edge"),
-        (3, SETTLES, False, "edge"),
-        (3, WHIRLS, True, "edge"),
+        (1, SETTLES, False, "so at 3 of 4 phases; edge"),
+        (2, SETTLES, False, "so at 2 of 4 phases; edge"),
+        (2, WHIRLS, False, "so at 2 of 4 phases; edge"),
+        (3, SETTLES, False, "so at 1 of 4 phases; edge"),
+        (3, WHIRLS, False, "so at 3 of 4 phases; edge"),
         (4, WHIRLS, True, ""),
         (0, WHIRLS, False, "edge"),
     ],
 )
-def test_most_phases_decide_whether_it_whirls(whirls: int, source: str, agrees: bool, told: str) -> None:
+def test_it_agrees_where_all_phases_do(whirls: int, source: str, agrees: bool, told: str) -> None:
     runs: list[Any] = [Whirling(k < whirls) for k in range(4)]
     row = verdict_row("", source, runs, why="edge")
     assert row.ours == f"{whirls} of 4 whirl"
     assert (row.agrees, row.why) == (agrees, told)
+
+
+def test_a_line_stands_beside_the_one_it_is_nearest_to() -> None:
+    """Two lines near 30 Hz are not the source's 30 and 40: what is not there is said not to be there."""
+    found = [(31.15, 5.0), (25.92, 3.0)]
+    assert list(beside((30.0, 40.0), found)) == [(30.0, 31.15), (40.0, None)]
+    assert list(beside((30.0, 40.0), [*found, (37.8, 1.0)])) == [(30.0, 31.15), (40.0, 37.8)]
+    assert list(beside((30.0, 40.0), [*found, (37.8, 0.01)])) == [(30.0, 31.15), (40.0, None)]
+    assert list(beside((30.0,), [])) == [(30.0, None)]
 
 
 @pytest.mark.parametrize("name", QUICK)

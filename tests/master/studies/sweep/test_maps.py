@@ -34,7 +34,7 @@ def pretended(variations: dict[str, list[str]] | Design) -> tuple[Definition, li
         fast = float(str(settings.get("rotor.speed", "0 rpm")).split()[0]) >= 12e3
         whirls = fast and settings.get("rotor.unbalance_angle", "0 deg") in ("0 deg", "90 deg")
         summary = {
-            "whirl_A": "sustained backward whirl" if whirls else "pendulum",
+            "whirl_A": "backward whirl, at 0.5 s still whirling, steady" if whirls else "pendulum",
             "whirl_A_revolutions": 20.0 if whirls else 0.0,
             "peak_contact_force_N_bearing_A": 100.0 * number,
             "peak_contact_force_N_bearing_B": 1.0,

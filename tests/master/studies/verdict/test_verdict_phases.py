@@ -21,7 +21,7 @@ from touchdown.master.studies.verdict.phases import (
     windows,
 )
 
-WHIRL = "sustained backward whirl"
+WHIRL = "backward whirl, still so at the end"
 BRIEF = "transient backward whirl"
 
 

@@ -27,7 +27,7 @@ from touchdown.master.studies.verdict.study import Plan, Study, study_verdict
 
 DISK = "disk-caged-simplified"
 ECCENTRIC = {"rotor.eccentricity": "5 um", "run.duration": "10 ms"}
-WHIRL = "sustained backward whirl"
+WHIRL = "backward whirl, still so at the end"
 
 
 def summary(words: str, turns: float, force: float = 100.0, residual: float = 1e-6) -> dict[str, object]:
@@ -117,7 +117,7 @@ def test_a_study_refines_edges_at_every_step(
     passed = "the energy ledger passed 0.2 of what a connection turned over"
     assert f"of them {passed}, at which a run of the scene stops" in text
     own = "phase 2 deg, the scene's own, with macro step"
-    assert f"{own} 20 us: sustained backward whirl, near an edge, at 0.5 (359 to 2) deg" in text
+    assert f"{own} 20 us: backward whirl, still so at the end, near an edge, at 0.5 (359 to 2) deg" in text
     assert f"{own} 40 us: no whirl, near an edge, at 9.5 (8 to 11) deg" in text
 
 
@@ -144,8 +144,8 @@ def test_the_scenes_own_phase_far_from_edges_and_as_a_stray(
     assert "40 us: no whirl, 97.5 deg from the nearest edge" in far
     pretended(monkeypatch, lambda phase, step: phase == 2.0)
     alone = "\n".join(report_lines(study_verdict(scene, Plan(), tmp_path)))
-    assert "strays, alone among others: 2 deg (sustained backward whirl)" in alone
-    assert "40 us: sustained backward whirl, a stray, alone among others" in alone
+    assert "strays, alone among others: 2 deg (backward whirl, still so at the end)" in alone
+    assert "40 us: backward whirl, still so at the end, a stray, alone among others" in alone
 
 
 def test_after_an_interrupt_what_is_there_is_told(

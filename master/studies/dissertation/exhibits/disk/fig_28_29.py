@@ -9,8 +9,8 @@ import numpy as np
 
 from touchdown.master.results.figures.spectrum import HARMONICS, LOW, RPM, spectrum
 from touchdown.master.results.figures.style import BLUE, GREY, ORANGE, sheet
+from touchdown.master.results.motion.spectra import LENGTH, POINTS, lines, velocity_spectrum, windows
 from touchdown.master.results.result import Result
-from touchdown.master.results.spectra import LENGTH, POINTS, lines, velocity_spectrum, windows
 from touchdown.master.studies.dissertation.exhibits.disk.pair import (
     CAGELESS,
     NEAR_HZ,

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import statistics
 
-from touchdown.master.studies.dissertation.bearings import READINGS, STEP_APART, TABLE_7, member, values_of
+from touchdown.master.studies.dissertation.bearings import (
+    MEMBERS,
+    READINGS,
+    STEP_APART,
+    TABLE_7,
+    member,
+    values_of,
+)
 from touchdown.master.studies.dissertation.exhibits.drops import Drops
 from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
 
-MEMBERS = 3
 DURATION = 5.0  # s
 NEAR = 0.03
 CHAOTIC = {"ball and ball", "ball and cage"}

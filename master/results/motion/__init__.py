@@ -1,0 +1,1 @@
+"""How a journal moves on: its spectra, whether its motion grows, and when it has settled."""
