@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
@@ -16,7 +17,7 @@ from touchdown.master.components.component import Component
 from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.coupling.assembly import assemble
 from touchdown.master.coupling.bonds.told import exchange, unjoined
-from touchdown.master.coupling.ledger import Judge, Ledger, Shortening
+from touchdown.master.coupling.ledger import Balance, Judge, Ledger, Shortening
 from touchdown.master.coupling.ledger.heard import heard
 from touchdown.master.coupling.loop.retirement import Retirement
 from touchdown.master.coupling.loop.span import Values, named_zero, span, swapped_away
@@ -51,6 +52,8 @@ class Outcome:
     unaudited: tuple[str, ...] = ()  # connections without an account, each with why
     warned_at: float | None = None  # s from zero, where the ledger passed the warning threshold
     warning: str = ""  # what it said there
+    inside: float | None = None  # share of energy made inside the worst bearing; None: none is judged
+    worst_inside: str = ""  # that bearing
     divided_in_impacts: int = 0  # macro steps, of rotors hit by two bearings at once
     shorter_steps: Mapping[float, float] = field(default_factory=dict[float, float])  # s each, for how long
     ended: Ended = Ended.COMPLETED
@@ -147,7 +150,8 @@ def simulate(
             _recording(scene, now, record_to, begin) as recorder,
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
-            told = [judge, shortening, *observers]
+            balance = Balance(ledger, scene.run, system)
+            told = [judge, balance, shortening, *observers]
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
@@ -158,6 +162,7 @@ def simulate(
                 wall_time, compiling = _loop(stretches, told, now, interrupted)
     return replace(
         _seen(now, ledger, judge, shortening),
+        **_said(judge, balance),
         origin=times.origin,
         wall_time=wall_time,
         start_up=start_up + compiling,
@@ -184,9 +189,19 @@ def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> 
         made=ledger.made,
         turnover=ledger.turnover,
         unaudited=ledger.unaudited,
-        warned_at=judge.warned_at,
-        warning=judge.warning,
     )
+
+
+def _said(judge: Judge, balance: Balance) -> dict[str, Any]:
+    """What the alarms said, and of the bearing whose inside is off most."""
+    times = [alarm.warned_at for alarm in (judge, balance) if alarm.warned_at is not None]
+    worst = balance.worst
+    return {
+        "warned_at": min(times, default=None),
+        "warning": "; ".join(alarm.warning for alarm in (judge, balance) if alarm.warning),
+        "inside": worst.share if worst else None,
+        "worst_inside": worst.bearing if worst else "",
+    }
 
 
 def macro_steps(duration: float, step: float) -> int:

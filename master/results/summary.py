@@ -398,6 +398,8 @@ def _run_figures(
         "energy_made_of_turnover": outcome.made / outcome.turnover if outcome.turnover > 0.0 else None,
         "energy_made_J": outcome.made,
         "energy_turnover_J": outcome.turnover,
+        "energy_made_inside_of_turnover": outcome.inside,
+        "energy_made_inside_worst_bearing": outcome.worst_inside or None,
         "not_audited": "; ".join(outcome.unaudited) or None,
         "not_recorded": _not_recorded(scene, system, recording),
         "energy_balance_relative": balance,

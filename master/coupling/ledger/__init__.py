@@ -18,14 +18,15 @@ of the worst connection, with the mean load F_n, the body's displacement dx_n, a
 as its mass: the share by which the load, along the motion, was wrong. A connection that turns over less
 than a tenth of what all do is judged by that tenth. docs/coupling.md argues it.
 
-`accounts` keeps the books, `witness` hears bearings that keep none, `judge` warns and stops, `shortening`
-divides macro steps in a whirl.
+`accounts` keeps the books, `witness` hears bearings that keep none, `judge` warns and stops, `balance` does
+so for what is made inside bearings, `shortening` divides macro steps in a whirl.
 """
 
 from __future__ import annotations
 
 from touchdown.master.coupling.ledger.accounts import Ledger
+from touchdown.master.coupling.ledger.balance import Balance
 from touchdown.master.coupling.ledger.judge import Judge
 from touchdown.master.coupling.ledger.shortening import Shortening
 
-__all__ = ["Judge", "Ledger", "Shortening"]
+__all__ = ["Balance", "Judge", "Ledger", "Shortening"]

@@ -63,7 +63,7 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
         return _shorter_for_bond(run, share)
     bearing = account.attachment.bearing
     swing = _swing(run, system, bearing)
-    inside = _finer(system, bearing) if swing < BEYOND * run.scheme.bears else ""
+    inside = finer(system, bearing) if swing < BEYOND * run.scheme.bears else ""
     if inside and swing <= run.scheme.bears:
         return (
             f"the macro step of {run.macro_step:g} s is short enough, the steps inside the bearing are "
@@ -93,7 +93,7 @@ def _swing(run: RunSpec, system: System, bearing: str) -> float:
     return system.every[bearing] * run.macro_step * system.value(name)
 
 
-def _finer(system: System, bearing: str) -> str:
+def finer(system: System, bearing: str) -> str:
     """The setting that makes a bearing's own steps finer; empty where it has none."""
     for setting, factor in ((MICRO_STEP, 0.5), (TOLERANCE, 0.1)):
         name = f"{bearing}.{setting}"

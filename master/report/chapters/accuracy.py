@@ -12,11 +12,13 @@ from touchdown.master.results.figures.energy import energy
 from touchdown.master.results.summary import energy_total
 
 FINE = 1e-3  # of the turnover: what the coupling makes or loses says nothing against the figures
+MADE_INSIDE = 0.02  # of the turnover, inside a bearing; beyond it the run has warned
 NAMES = {
     "energy_turnover_J": ("Energy that crossed between the parts", "J"),
     "energy_made_J": ("of it made by the coupling", "J"),
     "energy_residual_of_turnover": ("Ledger's residual, worst connection", "share"),
     "energy_made_of_turnover": ("Energy made, share of what crossed", "share"),
+    "energy_made_inside_of_turnover": ("Energy made inside a bearing, worst", "share"),
     "energy_balance_relative": ("Sum of all energies, drift over m g c", "share"),
     "macro_step_s": ("Macro step", "s"),
     "macro_steps": ("Macro steps", "1"),
@@ -54,7 +56,10 @@ def _judged(subject: Subject) -> list[Block]:
     worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
     if worst > abs(made):
         said += f", and at one connection {share(worst)} of what crossed there"
-    if max(abs(made), worst) <= FINE:
+    inside = number(subject.summary.get("energy_made_inside_of_turnover")) or 0.0
+    if inside > MADE_INSIDE:
+        said += f"; inside the worst bearing {share(inside)} of what was turned over was made or lost"
+    if max(abs(made), worst) <= FINE and inside <= MADE_INSIDE:
         return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
     return [
         Text(

@@ -1,0 +1,123 @@
+"""Warns, then ends the run, where a bearing's inside, or the system as a whole, made or lost energy.
+
+What a bearing stores and what it turned into heat, and what its loads did on journal and housing, must stay
+what they were at the start together; so must all energies of the system, less what was supplied. What they
+gained or lost since is judged over what the connections turned over and m g c, or over the largest kinetic
+energy of the system and m g c where that is less. Bearings and systems that do not state all of it are not
+judged.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.components.contract import JUMP, WORK
+from touchdown.master.coupling.ledger.accounts import Ledger
+from touchdown.master.coupling.ledger.judge import finer
+from touchdown.master.coupling.observer import Moment, Observer
+from touchdown.master.coupling.system import System
+from touchdown.master.scene.run_spec import RunSpec
+from touchdown.master.scene.step_sizes import tidy
+
+KINETIC, SUPPLIED = "energy.kinetic", "supplied"
+STORED = (KINETIC, "energy.potential", "energy.dissipated")
+ROUNDING = 1e-6  # of the kinetic energy, spin with it; what is less is not judged
+
+
+@dataclass
+class Sum:
+    """Energies, COMPONENT.VARIABLE, whose sum stays, but for those in `less`; title: for people."""
+
+    title: str
+    bearing: str  # whose inside it is; empty: the system
+    names: Sequence[str]
+    less: Sequence[str] = ()
+    start: float = 0.0  # J
+    share: float = 0.0  # the largest so far
+
+    def value(self, system: System) -> float:
+        """The sum (J)."""
+        return sum(map(system.value, self.names)) - sum(map(system.value, self.less))
+
+
+class Balance(Observer):
+    """Holds what was made inside bearings and in the whole against the run's thresholds."""
+
+    at_beats_only: ClassVar[bool] = True
+
+    def __init__(self, ledger: Ledger, run: RunSpec, system: System) -> None:
+        self.warned_at: float | None = None  # s from zero, where a sum passed the warning threshold
+        self.warning = ""  # which, by how much, and what to do
+        self._ledger, self._run = ledger, run
+        self._limit = run.warn_residual
+        self.sums = [*_insides(system), *_whole(system)]
+        for one in self.sums:
+            one.start = one.value(system)
+        self._moving = [
+            f"{name}.{KINETIC}" for name, c in system.components.items() if KINETIC in c.variables
+        ]
+        self._fastest = 0.0  # J, largest kinetic energy of all
+
+    def stepped(self, now: Moment) -> None:
+        self._fastest = max(self._fastest, sum(map(now.system.value, self._moving)))
+        over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
+        for one in self.sums:
+            made = one.value(now.system) - one.start
+            share = abs(made) / over if over > 0.0 else 0.0
+            one.share = share if not share <= one.share else one.share  # no number is the largest
+            if not share <= self._limit:
+                self._speak(now, one, made, share)
+
+    def _speak(self, now: Moment, one: Sum, made: float, share: float) -> None:
+        now.keep()
+        verb = "lost" if made < 0.0 else "made"
+        said = (
+            f"{one.title} {verb} {abs(made):.3g} J by t = {now.since_zero:.6g} s, {100.0 * share:.2g} % of "
+            f"what was turned over; {self._remedy(now.system, one)}"
+        )
+        if share <= self._run.stop_residual:
+            self.warned_at, self.warning = now.since_zero, said
+            self._limit = self._run.stop_residual
+        else:
+            now.stop(said, Ended.STOPPED)
+
+    def _remedy(self, system: System, one: Sum) -> str:
+        if one.bearing:
+            ratio = f"{one.bearing}.balls.damping_ratio"
+            damping = [f"--set {ratio}=0.02"] if ratio in system and system.value(ratio) < 0.02 else []
+            settings = [setting for setting in (finer(system, one.bearing), *damping) if setting]
+            if settings:
+                return f"try {' or '.join(settings)}"
+        return f"try --macro-step {tidy(0.5 * self._run.macro_step):g}"
+
+    @property
+    def worst(self) -> Sum | None:
+        """The bearing whose inside is off most, over what was turned over; None where none is judged."""
+        insides = [one for one in self.sums if one.bearing]
+        return max(insides, key=lambda one: (math.isnan(one.share), one.share), default=None)
+
+
+def _insides(system: System) -> list[Sum]:
+    """A sum for each bearing that states all of its energies, and its work at every port."""
+    found: list[Sum] = []
+    for bearing in dict.fromkeys(a.bearing for a in system.attachments):
+        ends = [a.bearing_end for a in system.attachments if a.bearing == bearing]
+        crossed = [end.full(account) for end in ends for account in (WORK, JUMP)]
+        names = [*(f"{bearing}.{energy}" for energy in STORED), *crossed]
+        if all(name in system for name in names):
+            found.append(Sum(f"the inside of {bearing}", bearing, names))
+    return found
+
+
+def _whole(system: System) -> list[Sum]:
+    """The system's sum; none where a component states nothing, or steps of their own part them in time."""
+    states = [{KINETIC, SUPPLIED} & set(c.variables) for c in system.components.values()]
+    if not all(states) or system.bonds or max(system.every.values()) > 1:
+        return []
+    names = [f"{name}.{energy}" for name in system.components for energy in STORED]
+    less = [f"{name}.{SUPPLIED}" for name in system.components]
+    return [Sum("the system", "", [n for n in names if n in system], [n for n in less if n in system])]
