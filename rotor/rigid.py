@@ -60,7 +60,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Outputs:
-    """Motion at both seats, and what holds the rotor in its magnetic bearing (shown as amb.static_fx, ...)."""
+    """Motion at both seats; what holds the rotor at the magnetic bearing (shown as amb.static_fx, ...)."""
 
     A: SeatState = group(SeatState)
     amb: SeatState = group(SeatState)
