@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from touchdown.modelkit import body
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.model import Model, memory_layout
-from touchdown.modelkit.ports import Energy, SeatLoad, SeatState
+from touchdown.modelkit.ports import Energy, SeatLoad, SeatState, StaticLoad
 from touchdown.modelkit.variables import group, real
 from touchdown.rotor.drag import drag
 
@@ -60,11 +60,12 @@ class Inputs:
 
 @dataclass(frozen=True)
 class Outputs:
-    """Motion at both seats."""
+    """Motion at both seats; what holds the rotor at the magnetic bearing (shown as amb.static_fx, ...)."""
 
     A: SeatState = group(SeatState)
     amb: SeatState = group(SeatState)
     energy: Energy = group(Energy)
+    held: StaticLoad = group(StaticLoad)  # last: value references of the others stay
 
 
 MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
@@ -166,6 +167,7 @@ def start(words):
     q[SPIN] = p.speed
     m.half = 0.0
     publish(q, m)
+    m.o.held.static_fy = p.gravity / m.o.amb.inv_m  # unbalance turns, and is no static load
 
 
 @kernel
@@ -181,11 +183,17 @@ def advance(words, work, time, step):
     return body.advance(rhs, publish, m, work, time, step, _sum(m.u.A) + _sum(m.u.amb))
 
 
+def _exposed(name: str) -> str:
+    """What holds the rotor belongs to the seat of its magnetic bearing."""
+    return name.replace("held.", "amb.")
+
+
 def _starts_from() -> dict[str, tuple[str, ...]]:
     """What the first outputs depend on: at a seat, also on the load at the other one."""
     causes: dict[str, tuple[str, ...]] = {
         "energy.kinetic": ("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
         "energy.potential": ("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
+        "amb.static_fy": ("mass", "gravity"),
     }
     for seat, other in (("A", "amb"), ("amb", "A")):
         causes |= {f"{seat}.{name}": (name,) for name in ("x", "y", "vx", "vy")}
@@ -212,5 +220,6 @@ MODEL = Model(
     advance=advance,
     rhs=rhs,
     publish=publish,
+    rename=_exposed,
     starts_from=_starts_from(),
 )

@@ -16,6 +16,7 @@ from touchdown.master.common.units import to_si
 from touchdown.modelkit.units import NUMBER
 
 DEEPEST = 32
+NAME = re.compile(r"\w[\w -]*")  # of a component
 LINE = re.compile(r"at line (\d+)")  # of a mistake, as the library says it
 UNQUOTED = re.compile(r"=\s*([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*[A-Za-z%\u00b5\u03bc][^\s,}\]#\"']*)")
 OF_ROTORS = ("element", "superelement", "disc", "point_mass", "unbalance", "stations", "levitated_at")
@@ -178,6 +179,15 @@ def above_zero(value: object, unit: str, name: str) -> float:
     if number <= 0.0:
         raise TouchdownError(f"{name} = {value} must be above 0")
     return number
+
+
+def component_name(name: str, where: str) -> str:
+    """What a component may be called: variables, recordings and packages have it in their names."""
+    if not NAME.fullmatch(name):
+        raise TouchdownError(
+            f"{where}: no component can be called {name!r}; take letters, digits, _, - and spaces"
+        )
+    return name
 
 
 def whole(value: object, name: str) -> int:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from systems import DISK, GRAVITY, history, rotor_on
 
+from touchdown.master.coupling.simulation import opened
 from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import slots
 from touchdown.rotor.rigid import MODEL
 
 
@@ -97,3 +100,21 @@ def test_unbalance_makes_no_energy() -> None:
         instance.step(k * 1e-4, 1e-4)
     assert abs(instance.record["o"]["A"]["work"]) > 1.0
     assert balance() == pytest.approx(before, abs=1e-6)
+
+
+def test_unbalance_is_no_static_load() -> None:
+    """Its magnetic bearing holds the weight alone: the disk circles about the middle from the start on."""
+    rotor = {"eccentricity": 20e-6, "speed": "9000 rpm", "mass": DISK}
+    scene = rotor_on("amb", rotor, {"shutdown_time": 1.0}, duration=1e-3, macro_step=2e-5)
+    scene = replace(scene, attach=(("bearing.journal", "rotor.amb"),))
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        assert system.value("rotor.amb.static_fy") == pytest.approx(DISK * GRAVITY, rel=1e-14)
+        assert system.value("bearing.load_x") == 0.0
+        assert system.value("bearing.load_y") == pytest.approx(DISK * GRAVITY, rel=1e-14)
+
+
+def test_what_holds_it_stands_behind_all_other_variables() -> None:
+    places = {slot.variable.name: slot.index for slot in slots(MODEL)}
+    added = {"amb.static_fx", "amb.static_fy"}
+    assert min(places[name] for name in added) > max(i for name, i in places.items() if name not in added)
