@@ -72,7 +72,6 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk.fig_22"},
 }
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
-MOST = 12  # entries of a folder
 
 
 def modules(package: str) -> dict[str, Path]:
@@ -139,15 +138,6 @@ def test_no_two_modules_import_each_other() -> None:
         for name, path in MODULES.items()
     }
     assert len(list(TopologicalSorter(graph).static_order())) == len(MODULES)
-
-
-def test_no_folder_is_crowded() -> None:
-    tops = [ROOT / top for top in (*LAYERS, "tests", "src")]
-    for folder in (*tops, *(f for top in tops for f in top.rglob("*") if f.is_dir())):
-        if "__pycache__" in folder.parts or folder.is_symlink():
-            continue
-        entries = [f.name for f in folder.iterdir() if f.name != "__pycache__"]
-        assert len(entries) <= MOST, f"{folder.relative_to(ROOT)} has {len(entries)} entries"
 
 
 def test_few_modules_speak_fmi() -> None:
