@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fmpy import extract
@@ -52,6 +53,17 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.keyword
     if whole and not config.option.collectonly and not hasattr(config, "workerinput"):
         warm_up()
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Say how to have the tests that were skipped for want of a browser."""
+    skipped = [str(report.longrepr) for report in terminalreporter.stats.get("skipped", ())]
+    lacking = sum("no Chromium" in reason for reason in skipped)
+    if lacking:
+        terminalreporter.write_line(
+            f"{lacking} tests of reports in a browser were skipped. To have them: "
+            "apt-get install chromium chromium-driver"
+        )
 
 
 class OnDemand(Mapping[str, Path]):

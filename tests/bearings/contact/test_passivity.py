@@ -139,8 +139,8 @@ def swung(amplitude, turns, bare):
 
 
 def test_a_pressed_ball_swings_no_further_than_its_reserve_lets_it() -> None:
-    """A swing of 3 % grows by steps that switch. A tenth of the elastic energy is 23 % of the depth, a third
-    of the force; coarse steps make it 1.57. Without the account the ball hits its race ever harder.
+    """A swing of 3 % grows by steps that switch. A tenth of the elastic energy is 23 % of the depth, or a
+    third of the force; coarse steps make it 1.57. Without the account the ball hits ever harder.
     """
     assert swung(0.03, 1_000_000, True) > 10.0
     assert swung(0.03, 1_000_000, False) < 2.0
