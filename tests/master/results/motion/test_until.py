@@ -17,12 +17,12 @@ from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.spread import spread, spread_lines
 from touchdown.master.studies.verdict.study import answering
 
-STOPPED_AT = 0.17  # s, while A whirls from 0.12 to 0.19 s
+STOPPED_AT = 0.05  # s, while A whirls from 0.007 to 0.063 s
 COLUMNS = ("time", "rotor.A.x", "bearing_A.contact.force", "bearing_B.contact.peak_force")
 
 
 def out_of_line(**run: object) -> Scene:
-    """Rotor I at 9000 rpm, bearings out of line by 450 um: it whirls twice for a while, and swings on."""
+    """Rotor I at 9000 rpm, bearings out of line by 450 um: A whirls for a while, and swings on."""
     return load_scene("rotor1-9000-225um").set({f"run.{key}": value for key, value in run.items()})
 
 
@@ -39,7 +39,7 @@ def test_it_ends_once_it_has_settled(settled: Result) -> None:
     summary = settled.summary
     assert settled.ended is Ended.COMPLETED
     assert settled.warnings == []
-    assert 0.3 < float(str(summary["settling_time_s"])) < float(str(summary["end_time_s"])) < 2.0
+    assert 0.07 < float(str(summary["settling_time_s"])) < float(str(summary["end_time_s"])) < 2.0
     assert summary["proposed_duration_s"] is None
     assert str(summary["whirl_A"]).startswith("transient backward whirl, ")
 
@@ -47,7 +47,7 @@ def test_it_ends_once_it_has_settled(settled: Result) -> None:
 def test_a_run_that_stops_before_names_its_time(settled: Result) -> None:
     """And is the same up to there, to the bit."""
     short = ran(out_of_line(duration=STOPPED_AT))
-    assert str(short.summary["whirl_A"]).startswith("backward whirl, at 0.17 s still whirling, ")
+    assert str(short.summary["whirl_A"]).startswith("backward whirl, at 0.05 s still whirling, ")
     assert short.summary["settling_time_s"] is None
     assert float(str(short.summary["proposed_duration_s"])) > STOPPED_AT
     assert short.summary["pendulum_frequency_Hz_bearing_A"] is None
