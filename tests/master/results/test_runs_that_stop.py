@@ -290,12 +290,14 @@ def test_what_an_earlier_run_left_goes_first(
     seen: list[str] = []
     simulate = results_run.simulate
 
-    def looked_at(*given: Any, begin: Callable[[], object]) -> Outcome:
+    def looked_at(*given: Any) -> Outcome:
+        *others, begin = given
+
         def look() -> None:
             begin()
             seen.extend(path.name for path in out.iterdir())
 
-        return simulate(*given, begin=look)
+        return simulate(*others, look)
 
     monkeypatch.setattr(results_run, "simulate", looked_at)
     run(SCENE, *SHORT)
