@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import pytest
 from commands import Command
-from misbehaving import COMPILER, DEEDS, FMI, compiled, misbehaving, scene_with
+from misbehaving import COMPILER, DEEDS, FMI, compiled, misbehaving, patience, scene_with
 from places import COMMAND
 
 from touchdown.master.cli import main
@@ -74,7 +74,8 @@ def test_a_run_says_what_an_fmu_did(call: str, deed: str, make: Make, command: C
 
 @pytest.mark.parametrize(("call", "deed"), DEEDS)
 def test_a_check_says_what_an_fmu_did(call: str, deed: str, make: Make, capfd: pytest.CaptureFixture[str]):
-    assert main(["check", str(make(call, deed)), "--call-timeout", "1 s"]) == FAILED
+    fmu = make(call, deed)
+    assert main(["check", str(fmu), "--call-timeout", patience(fmu)]) == FAILED
     said = capfd.readouterr()
     lines = [*said.err.splitlines(), *(line for line in said.out.splitlines() if "problem: " in line)]
     assert len(lines) == 1, lines

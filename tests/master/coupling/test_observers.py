@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import cast
 
 import h5py
@@ -14,6 +14,7 @@ import pytest
 from touchdown.master.common.ended import Ended
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components import contract
+from touchdown.master.coupling import simulation
 from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.system import System
@@ -139,10 +140,15 @@ def test_the_contract_names_what_docs_have() -> None:
     assert set(contract.UNITS) == {*contract.MOTION, *contract.LOAD, *contract.SLOPE}
 
 
-def test_what_the_first_step_compiles_is_no_stepping() -> None:
-    """A first macro step that takes half a second longer is start-up; the others tell the run's speed."""
-    outcome = fallen(None, at(1, lambda now: time.sleep(0.5)))
-    assert outcome.start_up > 0.5
-    later = fallen(None, at(2, lambda now: time.sleep(0.5)))
-    assert later.wall_time > 0.5
-    assert outcome.wall_time < later.wall_time - 0.3
+def test_what_the_first_step_compiles_is_no_stepping(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A first macro step that takes half a second is start-up; the others tell the run's speed."""
+    passed = SimpleNamespace(time=0.0)  # s, by a clock that stands but for this
+
+    def half_a_second(now: Moment) -> None:
+        passed.time += 0.5
+
+    monkeypatch.setattr(simulation, "clock", SimpleNamespace(perf_counter=lambda: passed.time))
+    first = fallen(None, at(1, half_a_second))
+    assert (first.start_up, first.wall_time) == (0.5, 0.0)
+    second = fallen(None, at(2, half_a_second))
+    assert second.wall_time == pytest.approx(0.5 * STEPS / (STEPS - 1), rel=1e-12)

@@ -102,9 +102,10 @@ def test_a_macro_step_too_long_for_the_scene(step: str, seconds: float, run: Com
 
 
 def process(folder: Path, *head: str) -> subprocess.Popen[str]:
-    """The whole scene, run through its FMUs by a process of its own, results in `folder`."""
+    """The scene, run through its FMUs by a process of its own for longer than any test waits."""
+    run = ("run", SCENE, "--duration", "500 s", "--no-pictures", "--quiet", "-o", str(folder))
     return subprocess.Popen(
-        [*(head or COMMAND), "run", SCENE, "--no-pictures", "--quiet", "-o", str(folder)],
+        [*(head or COMMAND), *run],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -289,12 +290,14 @@ def test_what_an_earlier_run_left_goes_first(
     seen: list[str] = []
     simulate = results_run.simulate
 
-    def looked_at(*given: Any, begin: Callable[[], object]) -> Outcome:
+    def looked_at(*given: Any) -> Outcome:
+        *others, begin = given
+
         def look() -> None:
             begin()
             seen.extend(path.name for path in out.iterdir())
 
-        return simulate(*given, begin=look)
+        return simulate(*others, look)
 
     monkeypatch.setattr(results_run, "simulate", looked_at)
     run(SCENE, *SHORT)
