@@ -341,6 +341,8 @@ def kicked(q, dq, kick, m):
     """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
     at, off, withheld = m.s.balls, missed(dq, kick, m), 0.0
     for b in range(m.p.balls.count):
+        if at.indentation[b] <= 0.0 and at.stored[b] <= 0.0:  # apart for longer
+            continue
         closing = middle_of(at.closing[b], at.middle[b], off.part)
         closing -= off.hx * at.cosine[b] + off.hy * at.sine[b]
         at.stored[b], lost = settled(at.stored[b], at.indentation[b], kick * at.elastic[b] * closing)

@@ -213,6 +213,8 @@ def settle_race(contacts, side, count, kick, part, vx, vy):
     """
     withheld, c = 0.0, contacts
     for b in range(count):
+        if c.indentation[b] <= 0.0 and c.stored[b] <= 0.0:  # apart for longer
+            continue
         closing = middle_of(c.rate[b], c.middle[b], part) - side * (vx * c.nx[b] + vy * c.ny[b])
         taken = kick * (c.normal[b] - c.damped[b]) * closing
         c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)

@@ -110,6 +110,8 @@ def settle_sides(contacts, count, kick, part):
     """
     withheld, c = 0.0, contacts
     for b in range(count):
+        if c.indentation[b] <= 0.0 and c.stored[b] <= 0.0:  # apart for longer
+            continue
         taken = 0.0
         if c.indentation[b] > 0.0:
             taken = kick * (c.normal[b] - c.damped[b]) * middle_of(c.rate[b], c.middle[b], part)

@@ -25,6 +25,7 @@ from touchdown.master.scene.step_sizes import tidy
 
 KINETIC, SUPPLIED = "energy.kinetic", "supplied"
 STORED = (KINETIC, "energy.potential", "energy.dissipated")
+SAMPLING = 1e-5  # of the energy that bodies and contacts hold; steps let the sum swing by as much
 ROUNDING = 1e-6  # of the kinetic energy, spin with it; what is less is not judged
 
 
@@ -42,6 +43,10 @@ class Sum:
     def value(self, system: System) -> float:
         """The sum (J)."""
         return sum(map(system.value, self.names)) - sum(map(system.value, self.less))
+
+    def held(self, system: System) -> float:
+        """Kinetic and potential energy, whatever their signs (J)."""
+        return sum(abs(system.value(name)) for name in self.names if name.endswith(STORED[:2]))
 
 
 class Balance(Observer):
@@ -67,7 +72,8 @@ class Balance(Observer):
         over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
         for one in self.sums:
             made = one.value(now.system) - one.start
-            share = abs(made) / over if over > 0.0 else 0.0
+            judged = max(abs(made) - SAMPLING * one.held(now.system), 0.0)
+            share = judged / over if over > 0.0 else 0.0
             one.share = share if not share <= one.share else one.share  # no number is the largest
             if not share <= self._limit:
                 self._speak(now, one, made, share)

@@ -18,7 +18,9 @@ from touchdown.modelkit.variables import as_record, layout
 
 KICK, MASS, RADIUS = 2.5e-6, 4e-4, 2e-3  # s, kg, m
 COUNT = 9
-MEMORY = np.dtype([("s", [("side", layout(SideContacts)), ("chain", layout(Chain)), ("kick", "f8")])])
+MEMORY = np.dtype(
+    [("s", [("side", layout(SideContacts)), ("chain", layout(Chain)), ("kick", "f8"), ("drift", "f8")])]
+)
 LAWS = {
     "springs": ContactLaw(stiffness=1e8),
     "dashpots": ContactLaw(stiffness=1e8, viscous=250.0),
@@ -63,6 +65,7 @@ class Row:
         self.others = 1e3 * rng.normal(size=(COUNT, 2))  # m/s2, by all but the neighbours
         side = self.m["s"]["side"]
         side["indentation"] = -1.0
+        side["stored"] = math.inf
         for b in range(COUNT):
             side["nx"][b], side["ny"][b] = unit(b)
             side["normal"][b] = rng.uniform(0.0, 20.0)  # also of those that are now apart

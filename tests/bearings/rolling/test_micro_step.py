@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from touchdown.bearings.contact.kick import STILL
 from touchdown.bearings.contact.laws import ContactLaw
-from touchdown.bearings.contact.pair import OUTSIDE
+from touchdown.bearings.contact.pair import Place
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from touchdown.bearings.rolling.sides.contact import SideContacts, press_of
+from touchdown.bearings.rolling.sides.contact import SideContacts, lay
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.variables import as_record
@@ -45,9 +46,5 @@ def test_damping_is_no_stiffness() -> None:
     """A dashpot pushes at once where bodies meet, over no indentation: no step could resolve that."""
     law = as_record(ContactLaw(exponent=1.5, stiffness=1e8, viscous=250.0))
     contacts = as_record(SideContacts())
-    elastic, damped = 1e8 * 1e-9**1.5, 25.0
-    found = {"nx": 1.0, "indentation": 1e-9, "rate": 0.1, "normal": elastic + damped, "damped": damped}
-    for name, value in found.items():
-        contacts[name][3] = value
-    press_of(contacts, 3, OUTSIDE, law)
-    assert contacts["stiffness"][3] == pytest.approx(1.5 * elastic / 1e-9, rel=1e-6)
+    lay(contacts, 3, Place(1.0, 0.0, 1e-9, 1e-3, 1e-3, 0.0), 0.0, 0.1, STILL, law)
+    assert contacts["stiffness"][3] == pytest.approx(1.5 * 1e8 * 1e-9**1.5 / 1e-9, rel=1e-6)

@@ -15,7 +15,7 @@ from touchdown.master.interop.ssp.names import HEART, NAMESPACES
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.scene import Scene
 
-CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m"}
+CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"}
 
 
 def structure(package: Path) -> Element:
