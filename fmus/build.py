@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 
+import pythonfmu
 from pythonfmu import FmuBuilder
 
 from touchdown.fmus.description.variables import scalars
@@ -104,7 +105,10 @@ def _entries(recipe: Recipe, interpreter: Interpreter | None) -> dict[str, bytes
             raw = FmuBuilder.build_FMU(script, dest=Path(temporary), project_files=parts)
             brought = references.entries(recipe.model, _trial(recipe, script), parameter_sets(recipe.model))
         with zipfile.ZipFile(raw) as archive:
-            return brought | {name: archive.read(name) for name in archive.namelist()}
+            entries = brought | {name: archive.read(name) for name in archive.namelist()}
+    if not any(name.startswith("binaries/") for name in entries):
+        raise OSError(f"the pythonfmu in {Path(pythonfmu.__file__).parent} has no libraries for FMUs")
+    return entries
 
 
 def _trial(recipe: Recipe, script: Path) -> references.Trial:

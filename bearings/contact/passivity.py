@@ -64,8 +64,10 @@ def passive(elastic, scale, stored, rate, others, answer, beat):
     left = elastic * (scale + beat.drift * (rate + others - answer * elastic))
     reserve = KEPT * max(left, 0.0) if beat.drift > 0.0 else 0.0
     allowed = min(max(stored, 0.0), max(stored - reserve, 0.5 * given))
-    root = math.sqrt(max(closing * closing + 2.0 * answer * allowed / max(beat.kick, NONE), 0.0))
-    within = max((closing + root) / max(answer, NONE), 0.0)
+    # the two quotients are the same for all contacts of a race, and leave the loop over them
+    gain, inverse = 2.0 * answer / max(beat.kick, NONE), 1.0 / max(answer, NONE)
+    root = math.sqrt(max(closing * closing + gain * allowed, 0.0))
+    within = max((closing + root) * inverse, 0.0)
     return min(within, elastic) if given > allowed else elastic
 
 

@@ -29,8 +29,9 @@ static inline double passive(double elastic, double scale, double stored, double
     const double reserve = drift > 0.0 ? 0.9 * larger(left, 0.0) : 0.0;
     const double most = larger(stored - reserve, 0.5 * given), held = larger(stored, 0.0);
     const double allowed = held < most ? held : most;
-    const double root = sqrt(larger(closing * closing + 2.0 * answer * allowed / larger(kick, 1e-300), 0.0));
-    const double within = larger((closing + root) / larger(answer, 1e-300), 0.0);
+    const double gain = 2.0 * answer / larger(kick, 1e-300), inverse = 1.0 / larger(answer, 1e-300);
+    const double root = sqrt(larger(closing * closing + gain * allowed, 0.0));
+    const double within = larger((closing + root) * inverse, 0.0);
     return given > allowed ? (within < elastic ? within : elastic) : elastic;
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import suppress
+from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ from touchdown.master.components.unpack import unpack
 from touchdown.modelkit.variables import Causality, Variability
 
 SHOWN = 5  # files named where one is missing
+PYTHONFMU = "PythonFMU"  # as it names itself where an FMU says who made it
 
 
 def describe(path: Path, folder: Path) -> Any:
@@ -79,17 +81,32 @@ def fmi_version(path: Path, cache: Path) -> str:
 
     Raises TouchdownError where it cannot be unpacked.
     """
+    return _stated(path, cache, "fmiVersion")
+
+
+def by_other_pythonfmu(path: Path, cache: Path) -> bool:
+    """Whether an FMU was made by a pythonfmu of another version than the one that is imported here.
+
+    It brings its own, which Python does not import where there is one already: its calls would then meet
+    functions of the other version.
+    """
+    maker = _stated(path, cache, "generationTool")
+    return PYTHONFMU in maker and maker.split()[-1] != version("pythonfmu")
+
+
+def _stated(path: Path, cache: Path, attribute: str) -> str:
+    """An attribute of the description's root; "" where it cannot be read."""
     described = unpack(path, cache) / "modelDescription.xml"
     with suppress(OSError, ParseError, ExpatError, ValueError, LookupError):
         refuse_definitions(described)
         _, root = next(iterparse(described, ("start",)))
-        return root.get("fmiVersion", "")
+        return root.get(attribute, "")
     return ""
 
 
 def by_pythonfmu(description: Any) -> bool:
     """Whether an FMU was made by pythonfmu."""
-    return "PythonFMU" in (description.generationTool or "")
+    return PYTHONFMU in (description.generationTool or "")
 
 
 def _check_script(path: Path, folder: Path) -> None:

@@ -24,6 +24,7 @@ from touchdown.master.coupling.loop.span import Values, named_zero, span, swappe
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.stretches import Stretches
 from touchdown.master.coupling.observer import BEAT, Moment, Observer
+from touchdown.master.coupling.penetration import Penetration
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.coupling.steppers.stepper import Stepper
@@ -150,8 +151,8 @@ def simulate(
             _recording(scene, now, record_to, begin) as recorder,
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
-            balance = Balance(ledger, scene.run, system)
-            told = [judge, balance, shortening, *observers]
+            balance, penetration = Balance(ledger, scene.run, system), Penetration(system)
+            told = [penetration, judge, balance, shortening, *observers]
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
@@ -160,9 +161,11 @@ def simulate(
             one_by_one = MacroSteps(coupling, ledger, shortening)
             with closing(Stretches(one_by_one, judge, recorder, told)) as stretches:
                 wall_time, compiling = _loop(stretches, told, now, interrupted)
+    if penetration.warning and now.ended is Ended.STOPPED and now.reason != penetration.warning:
+        now.reason = f"{penetration.warning}; {now.reason}"
     return replace(
         _seen(now, ledger, judge, shortening),
-        **_said(judge, balance),
+        **_said(judge, balance, penetration),
         origin=times.origin,
         wall_time=wall_time,
         start_up=start_up + compiling,
@@ -192,13 +195,14 @@ def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> 
     )
 
 
-def _said(judge: Judge, balance: Balance) -> dict[str, Any]:
+def _said(judge: Judge, balance: Balance, penetration: Penetration) -> dict[str, Any]:
     """What the alarms said, and of the bearing whose inside is off most."""
-    times = [alarm.warned_at for alarm in (judge, balance) if alarm.warned_at is not None]
+    alarms = (penetration, judge, balance)
+    times = [alarm.warned_at for alarm in alarms if alarm.warned_at is not None]
     worst = balance.worst
     return {
         "warned_at": min(times, default=None),
-        "warning": "; ".join(alarm.warning for alarm in (judge, balance) if alarm.warning),
+        "warning": "; ".join(alarm.warning for alarm in alarms if alarm.warning),
         "inside": worst.share if worst else None,
         "worst_inside": worst.bearing if worst else "",
     }

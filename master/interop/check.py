@@ -13,8 +13,9 @@ from touchdown.master.components.component import NUMBERS, Component
 from touchdown.master.components.fmu import ArchivedFmu
 from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.components.library.sources import foreign
-from touchdown.master.interop.contract import ROLES, Report, check_ports, check_role, ports
+from touchdown.master.interop.contract import BEARING, ROLES, Report, check_ports, check_role, ports
 from touchdown.master.interop.experiments import Experiment, experiments, largest_deviation
+from touchdown.master.interop.press import press
 from touchdown.master.scene.run_spec import CALL_TIMEOUT
 from touchdown.modelkit.variables import Causality
 
@@ -52,6 +53,8 @@ def check_fmu(
         problem = component.close()
     if problem:
         report.problems.append(f"at its end: {problem}")
+    if role == BEARING and not report.problems:
+        _press(name, names or {}, stepping, report)
     try:
         for experiment in experiments(component.folder):
             _try_experiment(experiment, name, stepping, report)
@@ -61,6 +64,16 @@ def check_fmu(
         can = "cannot" if report.problems else "can"
         report.lines.append(f"it {can} stand in for {ROLES[role].title}")
     return report
+
+
+def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: Report) -> None:
+    """Press the journal of a bearing, in an instance of its own."""
+    component = load_component("checked", name, stepping=stepping)
+    try:
+        component.rename(names)
+        press(component, report)
+    finally:
+        component.close()
 
 
 def _check_validity(component: ArchivedFmu, role: str | None, report: Report) -> None:

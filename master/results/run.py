@@ -16,7 +16,7 @@ from touchdown.master.common.interrupts import interrupts_noted
 from touchdown.master.common.progress import bars
 from touchdown.master.components.library.ahead import compile_beside, new_models
 from touchdown.master.components.library.sources import foreign
-from touchdown.master.coupling.simulation import Outcome, open_system, simulate
+from touchdown.master.coupling.simulation import Outcome, macro_steps, open_system, simulate
 from touchdown.master.results.ending import Finished, ending
 from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
 from touchdown.master.results.folder.ending import write_ending
@@ -47,6 +47,7 @@ def run_scene(
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
     """
+    macro_steps(scene.run.duration, scene.run.macro_step)  # what is endless shows no bar
     scratch = None
     if folder is None:
         scratch = Scratch()

@@ -51,7 +51,6 @@ from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.master.scene.scene import ComponentSpec, Scene, checked_preset
 from touchdown.master.scene.tables import (
-    component_name,
     entries,
     flat,
     is_rotor,
@@ -152,7 +151,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     )
     refuse_unknown(data, known, f"scene {name}")
     components = {
-        component_name(key, f"scene {name}"): _component(part, f"scene {name}: [components.{key}]", folder)
+        key: _component(part, f"scene {name}: [components.{key}]", folder)
         for key, part in table(data.get("components"), f"scene {name}: [components]").items()
     }
     if not components:

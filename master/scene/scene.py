@@ -13,7 +13,7 @@ from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
 from touchdown.master.common.units import plain, with_unit
 from touchdown.master.scene.run_spec import UNITS, RunSpec, with_changes
 from touchdown.master.scene.schemes import Scheme
-from touchdown.master.scene.tables import switch, whole
+from touchdown.master.scene.tables import component_name, switch, whole
 from touchdown.master.scene.titles import retitled
 from touchdown.master.scene.wires import BondSpec, Wire
 
@@ -85,6 +85,11 @@ class Scene:
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
+
+    def __post_init__(self) -> None:
+        """Raise TouchdownError for a component's name that no recording or package can have."""
+        for component in self.components:
+            component_name(component, f"scene {self.name}")
 
     def set(self, settings: Mapping[str, object]) -> Scene:
         """A copy with each COMPONENT.VARIABLE or run.KEY set to its value, in their order.

@@ -1,4 +1,4 @@
-"""Processes that do not outlive the one that started them, however that ends: SIGKILL, too."""
+"""Processes that do not outlive the one that started them, and import what it imports."""
 
 from __future__ import annotations
 
@@ -9,8 +9,18 @@ import sys
 import threading
 from multiprocessing import connection, parent_process
 
+SCRIPT_NAME = "slavemodule.txt"  # in an FMU's resources: which script it runs
 SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 ORPHANED = 1  # exit status that nobody is left to read
+
+
+def search_path() -> list[str]:
+    """Where a process that is started imports from: where this one does, but for what FMUs have added.
+
+    An FMU of pythonfmu puts its resources first, in which there is a pythonfmu of its version, and none of
+    the libraries that building another FMU takes.
+    """
+    return [folder for folder in sys.path if not os.path.isfile(os.path.join(folder, SCRIPT_NAME))]
 
 
 def die_with_parent(parent: int) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.processes.cores import cores
+from touchdown.master.common.processes.orphans import search_path
 from touchdown.master.common.processes.watched import way_of
 from touchdown.master.components.isolation.board import Ask, Board, Word, board_size
 from touchdown.master.components.isolation.crossing import CUT_OFF, SPIN, GoneError, Side
@@ -116,7 +117,7 @@ def _start(variables: int, memory: int, calls: socket.socket, talk: Connection) 
     """Start the host with this process's search path, its output to where errors go."""
     handles = memory, calls.fileno(), talk.fileno()
     return subprocess.Popen(
-        [sys.executable, "-c", _START, json.dumps(sys.path), *map(str, (variables, *handles))],
+        [sys.executable, "-c", _START, json.dumps(search_path()), *map(str, (variables, *handles))],
         stdin=subprocess.DEVNULL,
         stdout=2,
         pass_fds=handles,

@@ -23,7 +23,7 @@ from touchdown.fmus.python.sources import package_name
 from touchdown.fmus.recipes import Recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.processes.cores import cores
-from touchdown.master.common.processes.orphans import die_with_parent
+from touchdown.master.common.processes.orphans import die_with_parent, search_path
 from touchdown.master.components.library.loading import Stepping, load_component
 from touchdown.master.components.library.sources import locate
 from touchdown.master.scene.scene import Scene
@@ -98,7 +98,7 @@ def _is_compiled(recipe: Recipe, in_process: bool) -> bool:
 
 def _have_compiled(models: Iterable[NewModel]) -> None:
     """Hand models to a process of its own, one after the other, until none is left or it is gone."""
-    command = [sys.executable, "-c", _HOST, json.dumps(sys.path), str(os.getpid())]
+    command = [sys.executable, "-c", _HOST, json.dumps(search_path()), str(os.getpid())]
     pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
     running = subprocess.Popen(command, text=True, stdin=pipe, stdout=pipe, stderr=nowhere)
     with running as process, suppress(OSError):

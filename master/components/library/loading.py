@@ -10,6 +10,7 @@ from touchdown.master.common.processes.watched import watch
 from touchdown.master.components.component import Component
 from touchdown.master.components.fmu import FmuComponent
 from touchdown.master.components.foreign import foreign_fmu
+from touchdown.master.components.interface import by_other_pythonfmu
 from touchdown.master.components.isolation.component import IsolatedFmu
 from touchdown.master.components.library.sources import built, locate
 from touchdown.master.components.twin import TwinComponent
@@ -35,7 +36,7 @@ def load_component(
     if isinstance(source, Recipe) and stepping.in_process:
         return TwinComponent(name, source.model)
     path, origin = (source, "") if isinstance(source, Path) else (built(source, stepping.native), fmu)
-    if stepping.isolate:
+    if stepping.isolate or (not origin and by_other_pythonfmu(path, user_cache())):
         return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
     if origin:
         return FmuComponent(name, path, user_cache(), origin)

@@ -27,8 +27,10 @@ class Impacts:
     def __init__(self, stepper: Stepper) -> None:
         run, self._system = stepper.run, stepper.system
         able = stepper.any_moment and run.impact_step > 0.0 and self._system.divisible
-        self.parts = _parts(run) if able else 1
-        attachments = self._system.hit_together if self.parts > 1 else ()
+        attachments = self._system.hit_together if able else ()
+        self.parts = _parts(run) if attachments else 1
+        if self.parts == 1:
+            attachments = ()
         self.seats = np.array(list(map(self._seat, attachments)), SEAT)
         self._attachments, self._signals = attachments, self._system.signals
         self.divided = 0  # macro steps

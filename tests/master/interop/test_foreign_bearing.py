@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import shutil
+import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,6 +15,8 @@ from pythonfmu import FmuBuilder
 from systems import history
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.components.isolation.component import IsolatedFmu
+from touchdown.master.components.library.loading import load_component
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
@@ -202,3 +206,75 @@ def test_a_step_in_which_it_bounces_too_high_stops_the_run(folder: Path) -> None
         stopped = simulate(scene.set({"run.macro_step": 1e-3}), system)
     assert "bearing.journal on rotor.A" in stopped.reason
     assert stopped.made > 0.2 * lost_by_falling
+
+
+def variant(folder: Path, name: str, *changes: tuple[str, str]) -> str:
+    """The path of the example's FMU as `name`, its script changed."""
+    script = (EXAMPLES / "dry_bushing.py").read_text(encoding="utf-8")
+    for before, after in (("class DryBushing", f"class {name}"), *changes):
+        assert before in script
+        script = script.replace(before, after)
+    path = folder / f"{name.lower()}.py"
+    path.write_text(script, encoding="utf-8")
+    return str(FmuBuilder.build_FMU(path, dest=folder))
+
+
+@pytest.fixture(scope="module")
+def pushing_out(folder: Path) -> str:
+    """One whose force has the wrong sign."""
+    return variant(folder, "PushingOut", ("self.shaft_mz = mean", "self.shaft_mz = [-m for m in mean]"))
+
+
+@pytest.fixture(scope="module")
+def in_kilonewtons(folder: Path) -> str:
+    """One that is a thousand times too soft."""
+    return variant(
+        folder, "InKilonewtons", ('"stiffness": 2e7, "damping": 2e3', '"stiffness": 2e4, "damping": 2.0')
+    )
+
+
+def test_a_force_of_the_wrong_sign_is_found_by_pressing(pushing_out: str) -> None:
+    problem = check_fmu(pushing_out, "bearing", read_names(NAMES)).problems[0]
+    assert "is pushed further out" in problem
+    assert "turn their signs" in problem
+
+
+def test_a_stiffness_that_cannot_be_meant_is_said(in_kilonewtons: str, folder: Path) -> None:
+    report = check_fmu(in_kilonewtons, "bearing", read_names(NAMES))
+    assert report.problems == []
+    assert "is pushed back, at 2e+04 N/m; touchdown bearings have" in report.text
+    right = check_fmu(str(folder / "DryBushing.fmu"), "bearing", read_names(NAMES)).text
+    assert "is pushed back, at 2e+07 N/m\n" in right
+
+
+@pytest.mark.parametrize(
+    ("fixture", "ended"), [("pushing_out", "stopped"), ("in_kilonewtons", "completed")]
+)
+def test_a_bearing_that_does_not_hold_its_journal_is_said(
+    fixture: str, ended: str, request: pytest.FixtureRequest
+) -> None:
+    scene = find_scene("disk-caged-simplified").swap(bearing=request.getfixturevalue(fixture))
+    scene = scene.with_names("bearing", read_names(NAMES)).set(
+        {"amb.shutdown_time": 0.0, "bearing.clearance": 0.3e-3, "run.duration": 0.04}
+    )
+    with opened(scene) as system:
+        outcome = simulate(scene, system)
+    assert outcome.ended.value == ended
+    said = outcome.reason or outcome.warning
+    assert "times its clearance: that bearing does not hold it" in said
+    assert "--macro-step" not in said.partition(";")[0]
+
+
+def test_an_fmu_of_another_pythonfmu_has_a_process_of_its_own(folder: Path, tmp_path: Path) -> None:
+    """Its own pythonfmu would not be imported where the project's is already."""
+    old = tmp_path / "Old.fmu"
+    with zipfile.ZipFile(folder / "DryBushing.fmu") as given, zipfile.ZipFile(old, "w") as changed:
+        for name in given.namelist():
+            content = given.read(name)
+            if name == "modelDescription.xml":
+                content = re.sub(rb'(generationTool="PythonFMU) [^"]*', rb"\1 0.6.3", content)
+            changed.writestr(name, content)
+    for path, isolated in ((old, True), (folder / "DryBushing.fmu", False)):
+        component = load_component("bearing", str(path))
+        assert isinstance(component, IsolatedFmu) is isolated
+        component.close()
