@@ -23,11 +23,14 @@ import numpy as np
 TURN = 2.0 * math.pi
 TOUCHES = 0.95  # of the clearance: the ring may stand a little off its centre
 PRESSES = 1e-6  # of the largest force; below it a foreign bearing's force is rounding
+FEWEST = 16  # rows to judge from
 FOLLOWED = TURN / 3.0  # between recorded values; more may as well have been the other way round
 NEAR = 0.9  # of the clearance; a flight beyond it clings to the bore, which gives and has play
 CLINGS = 0.6 * TURN  # most that such a flight turns: the journal touches along 0.4 of a turn or more
 HOPS = TURN * 160.0 / 360.0  # most that a chord spans: a star's 150 degrees, and not the 180 of a bounce
 BENDS = 0.25  # of the clearance: gravity bends a hop off its chord by so much, inwards or outwards
+COARSE = TURN / 4.0  # between recorded values in contact; a whirl turns by less where it is recorded well
+ROUND, OWN_CENTRE = 0.05, 0.5  # of the clearance: how well a circle fits, how far off its centre may be
 DEEPER = 0.5  # of a short chord's distance to the centre: a rebound that lands nearby may come so deep
 
 
@@ -80,6 +83,35 @@ def marches(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> list[M
     angle = place[0] + np.concatenate([[0.0], np.cumsum(step)])
     parts = np.split(np.arange(len(rows)), np.flatnonzero(~goes_on) + 1)
     return [March(rows[part], angle[part]) for part in parts]
+
+
+def too_coarse(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> bool:
+    """Whether contacts in successive rows mostly lie so far apart that which way they went is unknown."""
+    rows, place = _contacts(orbit, force)
+    successive = np.diff(rows) == 1
+    step = np.abs(wrapped(np.diff(place)[successive]))
+    return len(step) >= FEWEST and bool(np.median(step) >= COARSE)
+
+
+def about_its_circle(orbit: Orbit) -> Orbit:
+    """The orbit about the centre of the circle that its outer part runs on, as about a displaced ring.
+
+    Unchanged where that part is no circle of about the clearance, or does not go all the way round.
+    """
+    far = np.flatnonzero(orbit.radius >= OWN_CENTRE)
+    if len(far) < FEWEST:
+        return orbit
+    x, y = orbit.x[far] / orbit.clearance, orbit.y[far] / orbit.clearance
+    # |r|^2 = 2 r . c + (R^2 - |c|^2), linear in the centre c and in the bracket
+    matrix = np.column_stack([2.0 * x, 2.0 * y, np.ones(len(x))])
+    cx, cy, rest = np.linalg.lstsq(matrix, x * x + y * y, rcond=None)[0]
+    radius = math.sqrt(max(rest + cx * cx + cy * cy, 0.0))
+    off = np.abs(np.hypot(x - cx, y - cy) - radius)
+    quarters = np.unique(np.floor(np.arctan2(y - cy, x - cx) / (0.25 * TURN)))
+    fits = np.median(off) <= ROUND and len(quarters) == 4 and math.hypot(cx, cy) <= OWN_CENTRE
+    if not fits or not TOUCHES <= radius <= 1.0 + OWN_CENTRE:
+        return orbit
+    return orbit._replace(x=orbit.x - cx * orbit.clearance, y=orbit.y - cy * orbit.clearance)
 
 
 def _contacts(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> tuple[np.ndarray, np.ndarray]:

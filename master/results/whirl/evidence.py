@@ -57,6 +57,8 @@ def _rests_on(summary: Mapping[str, object], seat: str) -> str:
         return f"{seat}: not told, the bearing states no clearance"
     if turns > 0.0:
         said = f"the contact went round {turns:.3g} times{_driven(summary[f'{seat}_force_phase_deg'])}"
+    elif marched == 0.0:
+        said = "no contact that could swing or go round"
     else:
         said = f"{_swings(str(summary[seat]))}; {_went(marched)}, and a whirl takes 1"
     edge = ", so it is near the edge" if NEAR[0] <= (turns or marched) <= NEAR[1] else ""

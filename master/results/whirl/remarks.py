@@ -11,6 +11,7 @@ from touchdown.master.results.whirl.stretches import stretches
 from touchdown.master.results.whirl.told import short_of_one
 from touchdown.master.results.whirl.turning import BACK, Turning
 
+TOO_COARSE = "cannot tell: sampled too coarsely"
 LOOPS = 2.0 * TURN  # a bounce or two may chance to circle the centre once
 WIDE = 0.2  # of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
 

@@ -11,7 +11,7 @@ not count: a whirl may hop along chords (`contacts`).
 whirl      contacts march one way by a turn or more. Turning back by less than BACK does not end it, a
            rest does, and a flight that is no hop
 forward    the whirl turns as the rotor spins; backward against it
-sustained  a whirl goes on at the end: the recording ends within WAIT of a period of it, which is more than
+goes on    a whirl goes on at the end: the recording ends within WAIT of a period of it, which is more than
            the flight to the next contact takes
 pendulum   no whirl, but the contacts swing to and fro by SWING or more, either way in contact (`swings`)
 none       it rests, bounces without swinging, rubs in passing, creeps, or never touches
@@ -36,10 +36,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from touchdown.master.results.whirl.contacts import Orbit, marches
-from touchdown.master.results.whirl.remarks import on_circling, on_turnings
+from touchdown.master.results.whirl.contacts import Orbit, about_its_circle, marches, too_coarse
+from touchdown.master.results.whirl.remarks import TOO_COARSE, on_circling, on_turnings
 from touchdown.master.results.whirl.stretches import period, times
 from touchdown.master.results.whirl.swings import to_and_fro
+from touchdown.master.results.whirl.told import AT_THE_END
 from touchdown.master.results.whirl.turning import Direction, Turning, most_turns, turnings
 
 WAIT = 0.5  # periods from a whirl's end to the recording's end: it still whirls
@@ -90,7 +91,7 @@ class Whirl:
         return _decisive(self.episodes)
 
     @property
-    def sustained(self) -> bool:
+    def goes_on(self) -> bool:
         """Whether a whirl goes on at the end of the recording."""
         return any(e.goes_on for e in self.episodes)
 
@@ -121,9 +122,11 @@ class Whirl:
 
     @property
     def words(self) -> str:
-        """For a report: "no whirl", "pendulum", "sustained forward whirl", "no whirl, partial rub"..."""
+        """For a report, without times: "no whirl", "pendulum", "forward whirl, still so at the end"..."""
+        if self.remark == TOO_COARSE:
+            return self.remark
         if self.episodes:
-            return f"{'sustained' if self.sustained else 'transient'} {self.verdict}"
+            return f"{self.verdict}{AT_THE_END}" if self.goes_on else f"transient {self.verdict}"
         said = "no whirl" if self.verdict is Verdict.NONE else self.verdict
         return f"{said}, {self.remark}" if self.remark else said
 
@@ -143,12 +146,16 @@ def classify(
     not recorded: then contact is told from the orbit. Values that are no numbers are passed over.
     """
     orbit = Orbit(time, x, y, clearance)
+    if force is None:  # then contact is told from the orbit, whose centre a displaced ring takes along
+        orbit = about_its_circle(orbit)
     rows = marches(orbit, force)
     turned = [t for march in rows for t in turnings(orbit, march)]
     episodes = tuple(_episode(orbit, t, spin) for t in turned if t.whirls)
     marched = max((most_turns(march) for march in rows), default=0.0)
     if decisive := _decisive(episodes):
         return Whirl(decisive.verdict, episodes, marched=marched)
+    if too_coarse(orbit, force):
+        return Whirl(Verdict.NONE, remark=TOO_COARSE, marched=marched)
     remark = on_turnings(turned, spin)
     if any(to_and_fro(march) for march in rows):
         return Whirl(Verdict.PENDULUM, remark=remark, marched=marched)

@@ -40,6 +40,37 @@ def turning(time: np.ndarray, frequency: float, begin: float = 0.0, end: float =
     return BOTTOM + 2.0 * math.pi * frequency * (np.clip(time, begin, end) - begin)
 
 
+@pytest.mark.parametrize("offset", [0.1, 0.25, 0.4])
+@pytest.mark.parametrize(("frequency", "verdict"), [(90.0, "forward whirl"), (-90.0, "backward whirl")])
+def test_a_whirl_about_a_displaced_ring_needs_no_force(
+    offset: float, frequency: float, verdict: str
+) -> None:
+    """On a circle as wide as the clearance, whose centre stands off by a part of it."""
+    time = times(0.5)
+    angle = turning(time, frequency)
+    off = offset * math.sqrt(0.5)
+    x, y = CLEARANCE * (1.02 * np.cos(angle) + off), CLEARANCE * (1.02 * np.sin(angle) - off)
+    found = classify(time, x, y, CLEARANCE, SPIN)
+    assert found.verdict == verdict
+    assert found.revolutions == pytest.approx(45.0, rel=0.01)
+
+
+@pytest.mark.parametrize("offset", [0.1, 0.4])
+def test_an_orbit_about_its_own_centre_that_is_narrower_is_no_whirl(offset: float) -> None:
+    time = times(0.5)
+    angle = turning(time, 90.0)
+    x, y = CLEARANCE * (0.5 * np.cos(angle) + offset), CLEARANCE * (0.5 * np.sin(angle) - offset)
+    assert classify(time, x, y, CLEARANCE, SPIN).verdict == Verdict.NONE
+
+
+@pytest.mark.parametrize("rate", [12.5e3, 11e3])
+def test_a_whirl_that_is_recorded_too_coarsely_cannot_be_told(rate: float) -> None:
+    time = times(0.1, rate)
+    found = judged(time, turning(time, 5000.0))
+    assert found.words == "cannot tell: sampled too coarsely"
+    assert judged(times(0.1, 80e3), turning(times(0.1, 80e3), 5000.0)).verdict == Verdict.FORWARD
+
+
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize(
     ("frequency", "spin", "verdict"),
@@ -55,8 +86,8 @@ def test_a_whirl_to_the_end(rate: float, frequency: float, spin: float, verdict:
     time = times(1.0, rate)
     found = judged(time, turning(time, frequency, begin=0.2), spin=spin)
     assert found.verdict == verdict
-    assert found.words == f"sustained {verdict}"
-    assert found.sustained
+    assert found.words == f"{verdict}, still so at the end"
+    assert found.goes_on
     assert found.revolutions == pytest.approx(0.8 * abs(frequency))
     assert found.frequency == pytest.approx(abs(frequency), rel=1e-6)
     assert found.radius == pytest.approx(1.02 * CLEARANCE)
@@ -138,7 +169,7 @@ def test_hops_do_not_end_a_whirl() -> None:
     radius = 1.01 * math.cos(0.5 * chord) / np.cos(phase)
     assert np.min(radius) < NEAR
     found = judged(time, turning(time, 30.0), radius)
-    assert found.words == "sustained forward whirl"
+    assert found.words == "forward whirl, still so at the end"
     assert found.revolutions == pytest.approx(30.0, abs=0.2)
 
 
@@ -148,7 +179,7 @@ def test_a_flight_ends_a_whirl(low: float, width: float) -> None:
     time = times(1.0)
     radius = np.where(np.abs(time - 0.4) < width, low, 1.02)
     found = judged(time, turning(time, -50.0), radius)
-    assert found.words == "sustained backward whirl"
+    assert found.words == "backward whirl, still so at the end"
     assert found.revolutions == pytest.approx(50.0 * (0.6 - width), abs=0.2)
     assert found.start == pytest.approx(0.4 + width, abs=1e-3)
 
@@ -157,7 +188,7 @@ def test_a_reversal_ends_a_whirl() -> None:
     """The one that goes on counts, though the other was longer."""
     time = times(1.0)
     found = judged(time, turning(time, 50.0, end=0.7) + turning(time, -50.0, begin=0.7) - BOTTOM)
-    assert found.words == "sustained backward whirl"
+    assert found.words == "backward whirl, still so at the end"
     assert found.revolutions == pytest.approx(15.0, abs=0.1)
     assert found.start == pytest.approx(0.7, abs=1e-3)
     assert [(e.direction, e.goes_on) for e in found.episodes] == [("forward", False), ("backward", True)]
@@ -170,7 +201,7 @@ def test_it_may_turn_back_a_little() -> None:
     angle = turning(time, 20.0) + np.radians(35.0) * np.sin(2.0 * math.pi * 90.0 * time)
     assert np.min(np.diff(angle)) < 0.0
     found = judged(time, angle)
-    assert found.words == "sustained forward whirl"
+    assert found.words == "forward whirl, still so at the end"
     assert found.revolutions == pytest.approx(20.0, abs=0.5)
 
 
@@ -178,14 +209,14 @@ def test_a_swing_that_grows_into_a_whirl() -> None:
     time = times(1.0)
     swing = np.radians(150.0) * np.minimum(time / 0.5, 1.0) * np.sin(2.0 * math.pi * 20.0 * time)
     found = judged(time, np.where(time < 0.5, BOTTOM + swing, turning(time, -60.0, begin=0.5)))
-    assert found.words == "sustained backward whirl"
+    assert found.words == "backward whirl, still so at the end"
     assert found.start == pytest.approx(0.5, abs=0.02)
 
 
 def test_the_radius_may_grow_beyond_the_clearance() -> None:
     time = times(1.0)
     found = judged(time, turning(time, -100.0), 1.0 + 2.0 * time)
-    assert found.words == "sustained backward whirl"
+    assert found.words == "backward whirl, still so at the end"
     assert found.radius == pytest.approx(2.0 * CLEARANCE, rel=1e-2)
     assert found.revolutions == pytest.approx(100.0)
 
@@ -204,7 +235,7 @@ def test_noise(rate: float, frequency: float, verdict: str) -> None:
     found = classify(time, x, y, CLEARANCE, SPIN)
     assert found.verdict == verdict
     if frequency:
-        assert found.sustained
+        assert found.goes_on
         assert found.frequency == pytest.approx(80.0, rel=0.01)
 
 

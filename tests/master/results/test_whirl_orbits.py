@@ -25,8 +25,8 @@ from orbits import (
     turns,
 )
 
-SUSTAINED_FORWARD = "sustained forward whirl"
-SUSTAINED_BACKWARD = "sustained backward whirl"
+SUSTAINED_FORWARD = "forward whirl, still so at the end"
+SUSTAINED_BACKWARD = "backward whirl, still so at the end"
 TRANSIENT_BACKWARD = "transient backward whirl"
 TRANSIENT_FORWARD = "transient forward whirl"
 NO_WHIRL = "no whirl"
