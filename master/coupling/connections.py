@@ -290,9 +290,14 @@ def check_connections(connections: Iterable[Connection], components: Mapping[str
         )
         first = fed.setdefault(c.target_name, c)
         if first is not c:
-            raise TouchdownError(
-                f"{c.target_name} has two sources, {first.source_name} and {c.source_name}; remove one"
-            )
+            both = f"{c.target_name} has two sources, {first.source_name} and {c.source_name}"
+            remedy = "remove one"
+            if c.input.rpartition(".")[2] in FORCE and first.source != c.source:
+                remedy += (
+                    "; for two bearings side by side take one with balls.rows = 2, or a rotor with a seat "
+                    "(a station of its file) for each"
+                )
+            raise TouchdownError(f"{both}; {remedy}")
 
 
 def _check_connection(c: Connection, output: Variable, given: Variable) -> None:

@@ -61,13 +61,36 @@ class Audit:
     made: float = 0.0  # J, by the exchange, less what it lost
     turned: float = 0.0  # J, sum of |work| over steps
     loaded: int = 0  # steps in which work was done
+    passed: float = 0.0  # J, sum of the taker's work with its sign
+    lowest: float = 0.0  # J, of that sum so far
+    highest: float = 0.0
+    drift: float = 0.0  # J, the largest |made| so far
+
+    @property
+    def share(self) -> float:
+        """How large a part of what crossed was wrong, at least as much as the larger of two measures.
+
+        Errors of both signs add up over the work of all steps. One that always has the same sign drains
+        what swings to and fro, or feeds it, while work adds up with every cycle: so the sum of errors is
+        also measured by the energy that swung across, the range of the work's sum.
+        """
+        swung = self.highest - self.lowest
+        return max(
+            self.total / self.turned if self.turned > 0.0 else 0.0,
+            self.drift / swung if swung > 0.0 else 0.0,
+        )
 
     def booked(self, factor: float, taken: float, given: float) -> Audit:
         """With a step in which the taker got, and the giver gave, so much; `factor`: their unit in J."""
         made = factor * (taken - given)
+        passed = self.passed + factor * taken
         return Audit(
             self.total + abs(made),
             self.made + made,
             self.turned + abs(factor * taken),
             self.loaded + (taken != 0.0),
+            passed,
+            min(self.lowest, passed),
+            max(self.highest, passed),
+            max(self.drift, abs(self.made + made)),
         )

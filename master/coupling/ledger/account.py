@@ -87,4 +87,4 @@ class BondAccount(Account):
         """Take over, for judgement, what was heard so far."""
         heard = self.crossing.past.audit
         if heard.loaded >= SETTLED:
-            self.record["total"], self.record["turned"] = heard.total, heard.turned
+            self.record["total"], self.record["turned"] = heard.share * heard.turned, heard.turned

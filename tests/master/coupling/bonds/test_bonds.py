@@ -79,18 +79,22 @@ def test_where_steps_can_be_repeated_less_than_a_micrometre_is_left(
 
 def test_a_damped_one_is_stable_at_twenty_milliseconds(body: Path) -> None:
     """With held values it is not at 0.5 ms."""
-    rows, _ = moved(bodies.scene(body, bodies.oscillator(0.01), run=run_of(20e-3, 40.0)))
+    run = run_of(20e-3, 40.0, stop_residual=1e9)  # the ledger would stop it: it is damped too much
+    rows, _ = moved(bodies.scene(body, bodies.oscillator(0.01), run=run))
     halves = np.split(bodies.energy(rows), 2)
     assert np.max(halves[1]) < 0.9 * np.max(halves[0])
 
 
-@pytest.mark.parametrize(("bonds", "share"), [("smooth", 1e-3), ("contact", 1e-3), ("hold", 1.0)])
-def test_what_the_ledger_calls_made_the_motion_has(body: Path, bonds: str, share: float) -> None:
+@pytest.mark.parametrize("bonds", ["smooth", "contact", "hold"])
+def test_what_the_ledger_calls_made_the_motion_has(body: Path, bonds: str) -> None:
+    """And its share is of the size of what the energy lost; with held values all of it is made up."""
     run = run_of(10e-3, 10.0, bonds=bonds, stop_residual=1e9)
     rows, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
     assert outcome.made == pytest.approx(1e4 * made(rows), rel=0.05)
-    assert outcome.share < share
-    assert (outcome.warned_at is None) == (bonds != "hold")
+    if bonds == "hold":
+        assert outcome.share > 1.0
+    else:
+        assert 1.0 < outcome.share / abs(made(rows)) < 3.0
 
 
 @pytest.mark.parametrize("bonds", ["smooth", "contact"])
@@ -330,3 +334,12 @@ def test_bonds_that_are_not_audited_are_told_in_their_order(body: Path) -> None:
     _, outcome = moved(bodies.scene(body, {f"s{i}": {} for i in range(7)}, wires, run=run), ("s0.x",))
     titles = [line.partition(",")[0] for line in outcome.unaudited]
     assert titles == [f"{a}.f on {b}.f_in" for a, b in pairs]
+
+
+def test_a_loss_that_always_has_one_sign_is_seen(body: Path) -> None:
+    """At 20 ms a part of the energy goes with every cycle, while the work of the cycles adds up."""
+    run = run_of(20e-3, 40.0, stop_residual=1e9)
+    rows, outcome = moved(bodies.scene(body, bodies.oscillator(), run=run))
+    assert made(rows) < -0.4
+    assert outcome.share == pytest.approx(abs(made(rows)), rel=0.5)
+    assert "--macro-step 0.01" in outcome.warning
