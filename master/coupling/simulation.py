@@ -23,6 +23,7 @@ from touchdown.master.coupling.loop.retirement import Retirement
 from touchdown.master.coupling.loop.span import Values, named_zero, span, swapped_away
 from touchdown.master.coupling.loop.steps import MacroSteps
 from touchdown.master.coupling.loop.stretches import Stretches
+from touchdown.master.coupling.loop_gain import LoopGain
 from touchdown.master.coupling.observer import BEAT, Moment, Observer
 from touchdown.master.coupling.penetration import Penetration
 from touchdown.master.coupling.recorder import Recorder
@@ -152,7 +153,7 @@ def simulate(
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
             balance, penetration = Balance(ledger, scene.run, system), Penetration(system)
-            told = [penetration, judge, balance, shortening, *observers]
+            told = [penetration, LoopGain(system), judge, balance, shortening, *observers]
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))

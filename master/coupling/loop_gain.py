@@ -1,0 +1,96 @@
+"""Ends a run in which values that feed each other grow by the same factor with every macro step.
+
+Two components whose outputs follow from their inputs at once, joined both ways, make an algebraic loop. The
+master goes round it once in a macro step, so it settles where the loop's gain is below one, and runs away
+where it is not: by a factor that no physical motion has from step to step.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from graphlib import CycleError, TopologicalSorter
+
+from touchdown.master.common.ended import Ended
+from touchdown.master.coupling.observer import BEAT, Moment, Observer
+from touchdown.master.coupling.system import System
+
+STEPS = 12  # successive macro steps that are looked at, at the begin and at every beat
+LEAST_GAIN = 1.05  # what grows more slowly may be a motion
+ALIKE = 0.01  # by how much the factors of successive steps may differ
+
+
+class LoopGain(Observer):
+    """Looks at what crosses in a loop of single connections, in the first macro steps after every beat."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._loop = _loop(system)
+        self._names = _outputs(system, self._loop)
+        self._seen: list[list[float]] = []
+
+    def due(self, now: Moment) -> int:
+        """Some steps one by one at every beat; never where there is no loop."""
+        if not self._names:
+            return now.steps
+        return now.done + 1 if now.done % BEAT <= STEPS else now.next_beat
+
+    def stepped(self, now: Moment) -> None:
+        if not self._names or now.done % BEAT > STEPS:
+            self._seen.clear()
+            return
+        self._seen.append([self._system.signal(name) for name in self._names])
+        if len(self._seen) < STEPS:
+            return
+        for name, values in zip(self._names, zip(*self._seen, strict=True), strict=True):
+            gain = _factor(values)
+            if gain is not None:
+                way = " -> ".join([*self._loop, self._loop[0]])
+                now.stop(
+                    f"the loop {way} runs away: {name} changes by {gain:.3g} times as much with every "
+                    f"macro step, up to t = {now.since_zero:.6g} s; its components answer at once, so its gain "
+                    "must be below 1: put a delay or a filter into it, or solve it inside one FMU",
+                    Ended.STOPPED,
+                )
+        self._seen.clear()
+
+
+def _factor(values: Sequence[float]) -> float | None:
+    """By what successive changes grow, with its sign; None where they do not, or not by one factor."""
+    changes = [after - before for before, after in itertools.pairwise(values)]
+    if not all(change != 0.0 and math.isfinite(change) for change in changes):
+        return None
+    factors = [after / before for before, after in itertools.pairwise(changes)]
+    last = factors[-1]
+    alike = all(abs(factor - last) <= ALIKE * abs(last) for factor in factors[len(factors) // 2 :])
+    return last if alike and abs(last) >= LEAST_GAIN else None
+
+
+def _single(system: System) -> list[tuple[str, str, str]]:
+    """(source, output, target) of connections that belong to no bearing's port and no bond."""
+    ports = {frozenset((a.bearing, a.body)) for a in system.attachments}
+    ports |= {frozenset((bond.giver, bond.taker)) for bond in system.bonds}
+    return [
+        (c.source, c.output, c.target)
+        for c in system.connections
+        if frozenset((c.source, c.target)) not in ports and not system.constant(c)
+    ]
+
+
+def _loop(system: System) -> list[str]:
+    """Components of a loop of single connections, each feeding the next; empty: there is none."""
+    graph: dict[str, set[str]] = {}
+    for source, _, target in _single(system):
+        graph.setdefault(target, set()).add(source)
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])[:-1]
+    return []
+
+
+def _outputs(system: System, loop: Sequence[str]) -> list[str]:
+    """COMPONENT.VARIABLE of what is exchanged within the loop."""
+    names = [f"{s}.{output}" for s, output, target in _single(system) if s in loop and target in loop]
+    return [name for name in dict.fromkeys(names) if name in system.position]
