@@ -40,6 +40,8 @@ from touchdown.master.components.interface import by_pythonfmu, describe, units_
 from touchdown.master.components.unpack import unpack
 
 OK, WARNING = 0, 1
+DISCARD = 2  # fmi2Status
+TERMINATED = 3  # fmi2StatusKind: whether the FMU ended the simulation
 STATUS = ("OK", "warning", "discard", "error", "fatal", "pending")
 CALLS = (  # what can be said of where an FMU is, in the order of `fmu3.CALLS`
     "loading its library",
@@ -234,8 +236,16 @@ class LoadedFmu(ArchivedFmu):
     def _check(self, status: int, doing: str) -> None:
         if status > WARNING:
             self._stepping = False
+            if status == DISCARD and self._ended_itself():
+                raise TouchdownError(f"component {self.name}: its FMU ended the simulation (at {doing})")
             reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
+            if status == DISCARD:
+                reason += "; it may not take a step of this length, try another --macro-step"
             raise TouchdownError(f"component {self.name}: {reason} (at {doing})")
+
+    def _ended_itself(self) -> bool:
+        """Whether an FMU that discarded a step takes no more; those of FMI 3.0 say so in the step."""
+        return False
 
     def _reason(self, fallback: str) -> str:
         """The last thing the FMU said that is meant for people."""
@@ -253,6 +263,14 @@ class FmuComponent(LoadedFmu):
     _out: tuple[int, int, int] = (0, 0, 0)  # and gives
     _taken: Sequence[_Exchange] = ()  # what it takes, where some is not Real
     _given: Sequence[_Exchange] = ()
+
+    def _ended_itself(self) -> bool:
+        ended = ctypes.c_int(0)
+        asked = getattr(self._fmu.dll, "fmi2GetBooleanStatus", None)
+        if asked is None:
+            return False
+        asked.argtypes, asked.restype = (ctypes.c_void_p, ctypes.c_int, ctypes.c_void_p), ctypes.c_int
+        return asked(self._component, TERMINATED, ctypes.byref(ended)) == 0 and ended.value != 0
 
     def _load(self) -> Any:
         self._fmu = self._wrapped(FMU2Slave)

@@ -49,8 +49,8 @@ class LoopGain(Observer):
                 way = " -> ".join([*self._loop, self._loop[0]])
                 now.stop(
                     f"the loop {way} runs away: {name} changes by {gain:.3g} times as much with every "
-                    f"macro step, up to t = {now.since_zero:.6g} s; its components answer at once, so its gain "
-                    "must be below 1: put a delay or a filter into it, or solve it inside one FMU",
+                    f"macro step, up to t = {now.since_zero:.6g} s; its components answer at once, so its "
+                    "gain must be below 1: put a delay or a filter into it, or solve it inside one FMU",
                     Ended.STOPPED,
                 )
         self._seen.clear()

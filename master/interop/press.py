@@ -57,7 +57,8 @@ class _Rig:
         return total / RESTING
 
     def _step(self, place: np.ndarray, velocity: np.ndarray) -> None:
-        values = dict(zip((*POSITION, *VELOCITY), (*place, *velocity), strict=True))
+        suffixes: tuple[str, ...] = (*POSITION, *VELOCITY)
+        values = dict(zip(suffixes, (*place, *velocity), strict=True))
         self._component.inputs[:] = [values[name.rpartition(".")[2]] for name in self._fed]
         self._component.push()
         self._component.step(self._steps * STEP, STEP)

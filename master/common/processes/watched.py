@@ -7,10 +7,12 @@ the shell started waits for it and passes its status on, which is 0 only where t
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import sys
 import threading
+import time as clock
 from contextlib import suppress
 from typing import NoReturn
 
@@ -20,6 +22,8 @@ from touchdown.modelkit.kernel.cache_folder import leave
 
 _PASSED_ON = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 _BY_KERNEL = 0x80  # si_code: from the terminal, which reaches the copy, too
+
+GRACE_S = 60.0  # in which what runs may end in order: kernels that are being compiled take half of it
 
 _allowed = False  # whether this process is a command's, which may split
 _report: int | None = None  # file that the copy writes its status to
@@ -76,12 +80,32 @@ def way_of(code: int) -> str:
     return f"{'was ended by' if number in (*_PASSED_ON, signal.SIGKILL) else 'crashed with'} {number.name}"
 
 
+def _next_signal(deadline: float) -> signal.struct_siginfo | None:
+    """The next signal that the watching process waits for; None: there was none until the deadline (s)."""
+    awaited = {*_PASSED_ON, signal.SIGCHLD}
+    if math.isinf(deadline):
+        return signal.sigwaitinfo(awaited)
+    return signal.sigtimedwait(awaited, max(deadline - clock.monotonic(), 0.0))
+
+
 def _stay_behind(copy: int, report: int, what: str) -> NoReturn:
-    """Wait for the copy, pass signals on to it, and end as it did."""
+    """Wait for the copy, pass signals on to it, and end as it did.
+
+    One that was told to end, and hangs in others' code, which no handler in Python interrupts, is ended by
+    SIGKILL after GRACE_S.
+    """
+    deadline = math.inf
     while True:
-        got = signal.sigwaitinfo({*_PASSED_ON, signal.SIGCHLD})
-        if got.si_signo != signal.SIGCHLD and got.si_code != _BY_KERNEL:
-            os.kill(copy, got.si_signo)
+        got = _next_signal(deadline)
+        if got is None:
+            os.kill(copy, signal.SIGKILL)
+            sys.stderr.write(f"touchdown: the process did not end within {GRACE_S:g} s of being told to\n")
+            deadline = math.inf
+        elif got.si_signo != signal.SIGCHLD:
+            if got.si_code != _BY_KERNEL:
+                os.kill(copy, got.si_signo)
+            if got.si_signo != signal.SIGINT:  # Ctrl-C may be repeated by who sent it
+                deadline = min(deadline, clock.monotonic() + GRACE_S)
         ended, how = os.waitpid(copy, os.WNOHANG)
         if ended:
             break

@@ -11,7 +11,7 @@ import pytest
 from places import ROOT
 
 from touchdown.master.common.ended import Ended
-from touchdown.master.common.processes import cluster
+from touchdown.master.common.processes import cluster, watched
 from touchdown.master.common.processes.pool import run_all
 
 PARENT = """
@@ -71,3 +71,26 @@ def test_a_task_on_a_cluster_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setenv("OMP_NUM_THREADS", "4")
     assert cluster._one_by_one(os.environ.get, "OMP_NUM_THREADS").value == "1"
     assert os.environ["OMP_NUM_THREADS"] == "4"
+
+
+HANGS = """
+import os, signal
+from {watched} import allow_watching, watch
+import {watched} as watched
+
+watched.GRACE_S = 0.1
+allow_watching()
+watch("code of others ran in it")
+signal.signal(signal.SIGTERM, signal.SIG_IGN)  # as code that never comes back to Python
+os.kill(os.getppid(), signal.SIGTERM)
+while True:
+    signal.pause()
+"""
+
+
+def test_a_process_that_hangs_is_killed_once_it_was_told_to_end() -> None:
+    script = HANGS.format(watched=watched.__name__)
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 128 + signal.SIGKILL
+    assert "did not end within 0.1 s of being told to" in done.stderr
+    assert done.stderr.splitlines()[-1].endswith("before its work was done; code of others ran in it")

@@ -213,6 +213,22 @@ def test_the_shell_never_sees_success_before_the_summary(
     assert not list(tmp_path.rglob("summary.json"))
 
 
+@pytest.mark.parametrize(
+    ("deed", "said"),
+    [
+        ("end", "its FMU ended the simulation (at "),
+        ("discard", "'discard' and gave no reason; it may not take"),
+    ],
+)
+@pytest.mark.parametrize("isolate", [(), ("--isolate",)])
+def test_a_discarded_step_is_told_from_an_end(
+    deed: str, said: str, isolate: tuple[str, ...], make: Make, command: Command, tmp_path: Path
+):
+    ended = command("run", scene_with(make("step", deed)), *isolate, *QUIET, "-o", tmp_path / "out")
+    assert said in ended.line
+    assert "(at the step from t = 4e-05 s)" in ended.line
+
+
 def test_what_is_watched_ends_as_it_says(make: Make, tmp_path: Path):
     done = shell("run", scene_with(make("never", "mind")), *QUIET, folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")

@@ -57,6 +57,8 @@ static int misbehave(Bearing *b, const char *call)
             close(file);
     if (!strcmp(deed, "error"))
         return ERROR;
+    if (!strcmp(deed, "discard") || !strcmp(deed, "end"))
+        return DISCARD;
     if (!strcmp(deed, "fatal"))
         return FATAL;
     if (!strcmp(deed, "nan"))
@@ -132,6 +134,15 @@ EXPORT int fmi2GetBoolean(Bearing *b, const unsigned *references, size_t count, 
     return b ? OK : ERROR;
 }
 
+/* fmi2Terminated: whether it ended the simulation itself. */
+EXPORT int fmi2GetBooleanStatus(Bearing *b, int kind, int *value)
+{
+    if (kind != 3)
+        return DISCARD;
+    *value = !strcmp(b->deed, "end");
+    return OK;
+}
+
 EXPORT int fmi2DoStep(Bearing *b, double time, double step, int kept)
 {
     (void)time, (void)step, (void)kept;
@@ -148,4 +159,4 @@ ALSO(fmi2GetInteger) ALSO(fmi2GetString) ALSO(fmi2GetFMUstate) ALSO(fmi2SetFMUst
 ALSO(fmi2FreeFMUstate) ALSO(fmi2SerializedFMUstateSize) ALSO(fmi2SerializeFMUstate)
 ALSO(fmi2DeSerializeFMUstate) ALSO(fmi2GetDirectionalDerivative) ALSO(fmi2SetRealInputDerivatives)
 ALSO(fmi2GetRealOutputDerivatives) ALSO(fmi2CancelStep) ALSO(fmi2GetStatus) ALSO(fmi2GetRealStatus)
-ALSO(fmi2GetIntegerStatus) ALSO(fmi2GetBooleanStatus) ALSO(fmi2GetStringStatus)
+ALSO(fmi2GetIntegerStatus) ALSO(fmi2GetStringStatus)
