@@ -2,7 +2,7 @@
 
     python .ci/build_wheel.py [-o dist] [DROP ...]
 
-The code is compiled for a plain processor (`modelkit/kernel/shipped.py`). Which is needed is found by
+The code is compiled for a plain processor (`modelkit/kernel/machine_code.py`). Which is needed is found by
 trying: short drops are run, through FMUs and in process, until nothing is compiled any more, and what they
 take from the cache then goes into the wheel. Without DROPs (`observed.py`) they cover all models. Needs the
 project and hatchling installed; code that the cache holds from other times is taken from there.
@@ -27,7 +27,7 @@ from observed import WAYS
 import touchdown
 from touchdown.fmus import recipes
 from touchdown.modelkit.kernel.cache_folder import user_cache
-from touchdown.modelkit.kernel.shipped import MADE_FOR, made_for, plain_processor, plainer
+from touchdown.modelkit.kernel.machine_code import MADE_FOR, made_for, plain_processor, plainer
 
 ROOT = Path(__file__).resolve().parents[1]
 ANY_BEARING = "disk-caged-simplified"  # the scene for bearings that no scene has

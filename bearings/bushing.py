@@ -8,10 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact import bore
-from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.journal import (
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
+from ..modelkit.variables import group, real
+from . import seat
+from .contact import journal as bore
+from .contact.friction import FrictionLaw
+from .contact.journal import (
     RATE_FROM,
     ContactMemory,
     ContactReport,
@@ -22,12 +27,7 @@ from touchdown.bearings.contact.journal import (
     touch,
     watch_contact,
 )
-from touchdown.bearings.contact.laws import ContactLaw, elastic_energy
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, constants
-from touchdown.modelkit.numerics.words import blank, missing
-from touchdown.modelkit.ports import Energy, Interface, Load, MountReaction, SeatReaction
-from touchdown.modelkit.variables import group, real
+from .contact.laws import ContactLaw, elastic_energy
 
 LOSS = seat.INSIDE
 
@@ -122,7 +122,7 @@ def settle(words):
     """Fill in what the laws leave open, and the error weights; returns a problem's number, or 0."""
     m = words.view(MEMORY)[0]
     blank(words, CONSTANTS)
-    problem = bore.problem(m.p, STATIC, m.told)
+    problem = bore.bore_problem(m.p, STATIC, m.told)
     if m.p.contact.damping_ratio > 0.0 and m.p.contact.mass == 0.0:
         m.told[0] = m.p.contact.damping_ratio
         problem = MASSLESS

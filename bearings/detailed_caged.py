@@ -11,40 +11,34 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact import friction, proportion
-from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
-from touchdown.bearings.contact.proportion import out_of_proportion
-from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import MOST_STATES
-from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts
-from touchdown.bearings.rolling.balls.geometry import EVEN, ball_mass, start_angle
-from touchdown.bearings.rolling.bodies import cage, declarations, outputs
-from touchdown.bearings.rolling.bodies.declarations import (
-    BallBodiesDerived,
-    BallBodiesMemory,
-    BallBodiesOutputs,
-    BallBodiesParameters,
-)
-from touchdown.bearings.rolling.bodies.races import press_races, rub_races
-from touchdown.bearings.rolling.bodies.state import (
+from ..modelkit.integrators import dopri
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.ports import Load
+from ..modelkit.variables import array, group, real
+from . import seat
+from .contact import friction, journal
+from .contact.friction import FrictionLaw
+from .contact.journal import out_of_proportion
+from .contact.laws import ContactLaw, damp, lay_abreast
+from .rolling import bodies, cage, ring
+from .rolling.ball_bodies import (
     drift,
     fastest,
     fill_accounts,
     kicked,
     place,
+    press_races,
+    rub_races,
     set_weights,
 )
-from touchdown.bearings.rolling.declarations import starts_from, state_constants
-from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.sides.contact import stored
-from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, constants
-from touchdown.modelkit.numerics.words import blank, missing
-from touchdown.modelkit.ports import Load
-from touchdown.modelkit.variables import array, group, real
+from .rolling.ball_set import EVEN, MOST_BALLS, BallContacts, ball_mass, start_angle
+from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
+from .rolling.declarations import starts_from, state_constants
+from .rolling.micro_step import book, leapfrog
+from .rolling.ring import MOST_STATES
+from .rolling.sides import stored
 
 
 @dataclass(frozen=True)
@@ -88,7 +82,7 @@ class Derived(BallBodiesDerived):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 STATIC = Parameters().cage_friction.static
-_SHARED = declarations.problems("cage_friction")
+_SHARED = bodies.problems("cage_friction")
 SHARED = len(_SHARED)
 CONSTANTS, PROBLEMS = constants(
     MEMORY,
@@ -96,7 +90,7 @@ CONSTANTS, PROBLEMS = constants(
         *_SHARED,
         "cage.clearance = {0:g} m makes a pocket of {1:g} m, smaller than its ball of {2:g} m; "
         "it must be at least 0 m",
-        proportion.problem("cage.clearance", "half of balls.diameter"),
+        journal.length_problem("cage.clearance", "half of balls.diameter"),
     ),
 )
 
@@ -124,7 +118,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m.time + t, m, m.o.pockets)
+    bodies.watch(m.time + t, m, m.o.pockets)
 
 
 @kernel
@@ -132,8 +126,8 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
-    kinetic, potential = outputs.report(q, m, neighbours=False)
-    outputs.state_contacts(o.pockets, m.s.side, m)
+    kinetic, potential = bodies.report(q, m, neighbours=False)
+    bodies.state_contacts(o.pockets, m.s.side, m)
     of_cage, weight = cage.report(q, m)
     in_sides = stored(m.s.side, m.d.cage_contact, count)
     ring.report_energy(q, m, kinetic + of_cage, potential + weight + in_sides, p.ring.inertia)
@@ -149,7 +143,7 @@ def _problem(p, told):
     elif out_of_proportion(clearance, 0.5 * b.diameter, told):
         found = SHARED + 2
     else:
-        found = declarations.problem(p, 0, p.cage_friction, STATIC, told)
+        found = bodies.problem(p, 0, p.cage_friction, STATIC, told)
     return found
 
 
@@ -180,7 +174,7 @@ def settle(words):
     if problem != 0:
         return problem
     lighter = _settle_cage(m)
-    declarations.settle(m, EVEN, m.d.cage_contact, lighter, m.p.cage.clearance)
+    bodies.settle(m, EVEN, m.d.cage_contact, lighter, m.p.cage.clearance)
     size.coordinates, size.constraints = 9 + 3 * count, 1
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
@@ -200,7 +194,7 @@ def start(words):
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
     fill_accounts(m, m.d.cage_contact)
-    outputs.watch(m.time, m, m.o.pockets)
+    bodies.watch(m.time, m, m.o.pockets)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 

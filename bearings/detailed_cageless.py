@@ -13,24 +13,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact import friction
-from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
-from touchdown.bearings.contact.pair import OUTSIDE, Place
-from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import MOST_STATES, part
-from touchdown.bearings.rolling.balls import BallContacts, FreeBallSet
-from touchdown.bearings.rolling.balls.geometry import ball_mass, spread_of
-from touchdown.bearings.rolling.bodies import declarations, outputs
-from touchdown.bearings.rolling.bodies.declarations import (
-    BallBodiesDerived,
-    BallBodiesMemory,
-    BallBodiesOutputs,
-    BallBodiesParameters,
-)
-from touchdown.bearings.rolling.bodies.races import press_races, rub_races
-from touchdown.bearings.rolling.bodies.state import (
+from ..modelkit.integrators import dopri
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.ports import Load
+from ..modelkit.variables import group, real
+from . import seat
+from .contact import friction
+from .contact.friction import FrictionLaw
+from .contact.laws import ContactLaw, damp, lay_abreast
+from .contact.pair import OUTSIDE, Place
+from .rolling import bodies, ring
+from .rolling.ball_bodies import (
     X,
     Y,
     ball_motion,
@@ -39,20 +34,17 @@ from touchdown.bearings.rolling.bodies.state import (
     fill_accounts,
     kicked,
     place,
+    press_races,
     push,
+    rub_races,
     set_weights,
 )
-from touchdown.bearings.rolling.declarations import starts_from, state_constants
-from touchdown.bearings.rolling.micro_step import book, leapfrog
-from touchdown.bearings.rolling.sides.chain import Chain, after, link, part_ways, share
-from touchdown.bearings.rolling.sides.contact import heat_of, press_of, stored
-from touchdown.bearings.rolling.sides.friction import rub_sides
-from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, constants
-from touchdown.modelkit.numerics.words import blank, missing
-from touchdown.modelkit.ports import Load
-from touchdown.modelkit.variables import group, real
+from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
+from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
+from .rolling.declarations import starts_from, state_constants
+from .rolling.micro_step import book, leapfrog
+from .rolling.ring import MOST_STATES, part
+from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub_sides, share, stored
 
 
 @dataclass(frozen=True)
@@ -99,7 +91,7 @@ class Memory(BallBodiesMemory):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Memory)
 SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
 STATIC = Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("ball_friction"))
+CONSTANTS, PROBLEMS = constants(MEMORY, bodies.problems("ball_friction"))
 
 
 @kernel
@@ -172,7 +164,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and events, after each accepted micro-step, t (s) into the macro step."""
     ring.watch(t, q, m)
-    outputs.watch(m.time + t, m, m.o.neighbours)
+    bodies.watch(m.time + t, m, m.o.neighbours)
 
 
 @kernel
@@ -180,8 +172,8 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, o, count = m.p, m.o, m.p.balls.count
     ring.report(q, m, m.d.inner_radius)
-    kinetic, potential = outputs.report(q, m, neighbours=True)
-    outputs.state_contacts(o.neighbours, m.s.side, m)
+    kinetic, potential = bodies.report(q, m, neighbours=True)
+    bodies.state_contacts(o.neighbours, m.s.side, m)
     in_sides = stored(m.s.side, m.d.ball_contact, count)
     ring.report_energy(q, m, kinetic, potential + in_sides, p.ring.inertia)
 
@@ -192,7 +184,7 @@ def settle(words):
     m = words.view(MEMORY)[0]
     p, d, size, count = m.p, m.d, m.d.size, m.p.balls.count
     blank(words, CONSTANTS)
-    problem = declarations.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
+    problem = bodies.problem(p, p.balls.crowded, p.ball_friction, STATIC, m.told)
     if problem != 0:
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
@@ -200,7 +192,7 @@ def settle(words):
     mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
     damp(d.ball_contact, mass)
     friction.settle(d.ball_friction)
-    declarations.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
+    bodies.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
@@ -218,7 +210,7 @@ def start(words):
     m.s.kick = m.s.drift = m.s.lately = 0.0
     seat.begin(react, report, m)
     fill_accounts(m, m.d.ball_contact)
-    outputs.watch(m.time, m, m.o.neighbours)
+    bodies.watch(m.time, m, m.o.neighbours)
     m.s.kick = m.s.drift = 0.5 * m.d.micro_step
 
 

@@ -20,21 +20,20 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact import friction
-from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.laws import ContactLaw, elastic_force
-from touchdown.bearings.contact.peaks import Largest
-from touchdown.bearings.rolling import declarations, ring
-from touchdown.bearings.rolling.balls import MOST_BALLS, Total, watch_balls
-from touchdown.bearings.rolling.balls.geometry import (
-    EVEN,
-    ball_inertia,
-    ball_mass,
-    set_race_law,
-    start_angle,
-)
-from touchdown.bearings.rolling.declarations import (
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.ports import Load
+from ..modelkit.variables import SWITCH, array, choice, group, real
+from . import seat
+from .contact import friction
+from .contact.friction import FrictionLaw
+from .contact.laws import ContactLaw, elastic_force
+from .contact.peaks import Largest
+from .rolling import declarations, ring
+from .rolling.ball_set import EVEN, MOST_BALLS, ball_inertia, ball_mass, set_race_law, start_angle
+from .rolling.balls import Total, watch_balls
+from .rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
@@ -42,7 +41,7 @@ from touchdown.bearings.rolling.declarations import (
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.pitch_circle import (
+from .rolling.pitch_circle import (
     LoadedBalls,
     Pressed,
     RollingResistance,
@@ -51,11 +50,6 @@ from touchdown.bearings.rolling.pitch_circle import (
     note,
     rolling_drag,
 )
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, constants
-from touchdown.modelkit.numerics.words import blank, missing
-from touchdown.modelkit.ports import Load
-from touchdown.modelkit.variables import SWITCH, array, choice, group, real
 
 CAGE_ANGLE, CAGE_SPEED, BALL_SPIN = range(ring.NEXT, ring.NEXT + 3)  # in use where they may slip
 ORBIT_SCALE = 100.0  # rad/s; of the cage

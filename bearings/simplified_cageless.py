@@ -35,15 +35,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact import friction
-from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.laws import ContactLaw, damp, lay_abreast
-from touchdown.bearings.contact.peaks import PeakMemory, watch_peaks
-from touchdown.bearings.rolling import declarations, ring
-from touchdown.bearings.rolling.ball_state import BALLS, part
-from touchdown.bearings.rolling.balls import MOST_BALLS, BallContacts, FreeBallSet, largest, watch_balls
-from touchdown.bearings.rolling.balls.geometry import (
+from ..modelkit.integrators import dopri, rosenbrock
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants
+from ..modelkit.numerics import blank, missing
+from ..modelkit.ports import Interface, Load
+from ..modelkit.variables import SWITCH, Choices, array, choice, group, real
+from . import seat
+from .contact import friction
+from .contact.friction import FrictionLaw
+from .contact.laws import ContactLaw, damp, lay_abreast
+from .contact.peaks import PeakMemory, watch_peaks
+from .rolling import declarations, ring
+from .rolling.ball_set import (
+    MOST_BALLS,
+    BallContacts,
+    FreeBallSet,
     ball_inertia,
     ball_mass,
     outer_share,
@@ -52,7 +59,8 @@ from touchdown.bearings.rolling.balls.geometry import (
     start_angle,
     touch_angle,
 )
-from touchdown.bearings.rolling.declarations import (
+from .rolling.balls import largest, watch_balls
+from .rolling.declarations import (
     RollingDerived,
     RollingMemory,
     RollingOutputs,
@@ -60,17 +68,11 @@ from touchdown.bearings.rolling.declarations import (
     starts_from,
     state_constants,
 )
-from touchdown.bearings.rolling.micro_step import (
-    MICRO_STEP,
-    RESOLUTION,
-    KickMemory,
-    book,
-    leapfrog,
-    refined,
-    step_in_hit,
-)
-from touchdown.bearings.rolling.pitch_circle import RollingResistance
-from touchdown.bearings.rolling.row import (
+from .rolling.friction import FrictionLines, RubbedRace
+from .rolling.micro_step import MICRO_STEP, RESOLUTION, KickMemory, book, leapfrog, refined, step_in_hit
+from .rolling.pitch_circle import RollingResistance
+from .rolling.ring import BALLS, part
+from .rolling.row import (
     ANGLE,
     MOST_STATES,
     ORBIT,
@@ -80,22 +82,15 @@ from touchdown.bearings.rolling.row import (
     fastest,
     fill_accounts,
     kicked,
+    linearise,
     neighbour_forces,
     place,
     press_balls,
     rub_balls,
     rubbing,
+    solve,
 )
-from touchdown.bearings.rolling.row_implicit import linearise, solve
-from touchdown.bearings.rolling.rubbing import FrictionLines, RubbedRace
-from touchdown.bearings.rolling.sides.chain import Chain
-from touchdown.bearings.rolling.sides.contact import SideContacts, highest, stored
-from touchdown.modelkit.integrators import dopri, rosenbrock
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, constants
-from touchdown.modelkit.numerics.words import blank, missing
-from touchdown.modelkit.ports import Interface, Load
-from touchdown.modelkit.variables import SWITCH, Choices, array, choice, group, real
+from .rolling.sides import Chain, SideContacts, highest, stored
 
 BALL_SPIN_SCALE = 1e3  # rad/s
 ORBIT_SCALE = 100.0  # rad/s; a ball's speed along the race over its radius

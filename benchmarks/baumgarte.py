@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
-from touchdown.bearings.rolling.bodies.augmented import AugmentedBearing
+from touchdown.bearings.rolling.augmented import AugmentedBearing
 from touchdown.modelkit.instance import Instance
 
 PAIRS = ((0.0, 0.0), (1e2, 1e2), (1e3, 1e3), (1e4, 1e4), (1e5, 1e5), (1e4, 0.0), (0.0, 1e4), (1e6, 1e6))

@@ -25,10 +25,9 @@ from tried_integrators import make, whole
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, kick_of, press
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.bodies.races import press_races, rub_races
-from touchdown.bearings.rolling.bodies.state import ball_motion
+from touchdown.bearings.rolling.ball_bodies import ball_motion, press_races, rub_races
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, beat_of
-from touchdown.bearings.seat.load import remember
+from touchdown.bearings.seat.step import remember
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.modelkit.instance import Instance

@@ -15,7 +15,7 @@ import argparse
 import statistics
 import time as clock
 
-from touchdown.master.components.twin import TwinComponent
+from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene

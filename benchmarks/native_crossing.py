@@ -19,11 +19,11 @@ from unittest.mock import patch
 import numba
 
 from touchdown.master.components.component import ByFunctions
-from touchdown.master.coupling.loop import stretches
+from touchdown.master.coupling.loop import compiled as stretches
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.kernel.address import call_step
+from touchdown.modelkit.kernel.memory import call_step
 
 FEW, MANY = 2, 18
 CROSSING = (("x", "fx"), ("y", "fy"), ("vx", "dfx"), ("vy", "dfy"))

@@ -31,10 +31,10 @@ sys.path.extend(
 from drops import FALLS, Fall
 from environments import REQUIREMENTS, Found, UnavailableError, run, title
 
-from touchdown.master.components.twin import TwinComponent
+from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.coupling.observer import EveryStep, Moment
 from touchdown.master.coupling.simulation import open_system, simulate
-from touchdown.master.interop.packing import Making
+from touchdown.master.interop.container import Making
 from touchdown.master.scene.scene import Scene
 
 WARM_UP = 200  # macro steps before the clock starts

@@ -38,9 +38,9 @@ import numpy as np
 from detailed_speed import MODULES, kept, released, repeater
 
 from touchdown.bearings.contact.friction import MAKKAR
-from touchdown.bearings.rolling.ball_state import BALLS
-from touchdown.bearings.rolling.balls import MOST_BALLS
+from touchdown.bearings.rolling.ball_set import MOST_BALLS
 from touchdown.bearings.rolling.micro_step import COPIES, MICRO_STEP
+from touchdown.bearings.rolling.ring import BALLS
 from touchdown.modelkit.instance import Instance
 
 SOURCE = Path(__file__).with_name("in_c") / "right_hand_side.c"

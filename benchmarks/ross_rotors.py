@@ -29,7 +29,7 @@ import touchdown
 from touchdown.master.cli import main as command
 from touchdown.rotor.beams.shaft import Support
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
+from touchdown.rotor.modal.supported import HeldRotor, LinearBearing
 
 EXAMPLES = ("rotor_example", "rotor_example_with_damping", "compressor_example")
 SPEEDS = (0.0, 6000.0, 12000.0)  # rpm

@@ -11,9 +11,9 @@ from types import ModuleType
 from typing import Any
 
 from touchdown.bearings.contact.friction import slope
-from touchdown.bearings.rolling.ball_state import BALLS, part
-from touchdown.bearings.rolling.bodies.state import SPIN, drift, fastest
+from touchdown.bearings.rolling.ball_bodies import SPIN, drift, fastest
 from touchdown.bearings.rolling.micro_step import RESOLUTION, forecast
+from touchdown.bearings.rolling.ring import BALLS, part
 from touchdown.modelkit.integrators import dopri, rosenbrock, verlet
 from touchdown.modelkit.kernel.linked import KernelDispatcher
 

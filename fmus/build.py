@@ -17,17 +17,16 @@ from pathlib import Path
 import pythonfmu
 from pythonfmu import FmuBuilder
 
-from touchdown.fmus.description.variables import scalars
-from touchdown.fmus.presentation import references, terminals
-from touchdown.fmus.presentation.documentation import page
-from touchdown.fmus.presentation.icon import icon
-from touchdown.fmus.python.categories import with_categories
-from touchdown.fmus.python.link import Interpreter, linked
-from touchdown.fmus.python.sources import package_name, write_host, write_package, write_script
-from touchdown.fmus.python.statuses import with_errors
-from touchdown.fmus.recipes import Recipe, parameter_sets
-from touchdown.modelkit.kernel import shipped
-from touchdown.modelkit.kernel.cache_folder import is_own, kept, put
+from ..modelkit.kernel import machine_code
+from ..modelkit.kernel.cache_folder import is_own, kept, put
+from .description.variables import scalars
+from .presentation import references, terminals
+from .presentation.documentation import page
+from .presentation.icon import icon
+from .python.library import with_categories, with_errors
+from .python.link import Interpreter, linked
+from .python.sources import package_name, write_host, write_package, write_script
+from .recipes import Recipe, parameter_sets
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # zip's own; the time of the build is no content
 LIBRARY = ".dll" if sys.platform == "win32" else ".so"  # of this system; for others it was never tried
@@ -63,7 +62,7 @@ def kept_sound(name: str, content: str, make: Callable[[Path], object]) -> Path:
 
     It is made there by `make` where it is not as it was.
     """
-    brought = shipped.folder("fmus")
+    brought = machine_code.folder("fmus")
     if brought is not None and _is_whole(brought / content, name):
         return brought / content / f"{name}.fmu"
     return kept(lambda folder: _sound(name, folder, make), "fmus", content)

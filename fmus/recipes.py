@@ -14,18 +14,17 @@ from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
-from touchdown.bearings import catalogue
-from touchdown.bearings.catalogue import CatalogueError as CatalogueError
-from touchdown.bearings.catalogue.source import FROM_SOURCE
-from touchdown.fmus.python.sources import content_hash
-from touchdown.fmus.scripts import scripts
-from touchdown.fmus.slave import ModelSlave
-from touchdown.fmus.variants.modes import with_modes
-from touchdown.fmus.variants.starts import defaults, starting_from
-from touchdown.modelkit.model import Model, slots
-from touchdown.modelkit.variables import Causality
-from touchdown.rotor.file import parse, shipped, text_of
-from touchdown.rotor.flexible import flexible_rotor
+from ..bearings import catalogue
+from ..bearings.catalogue import CatalogueError as CatalogueError
+from ..bearings.catalogue.sizes import FROM_SOURCE
+from ..modelkit.model import Model, slots
+from ..modelkit.variables import Causality
+from ..rotor.file import parse, shipped, text_of
+from ..rotor.flexible import flexible_rotor
+from .python.sources import content_hash
+from .scripts import scripts
+from .slave import ModelSlave
+from .variants import defaults, starting_from, with_modes
 
 _ROTOR_SCRIPT = '''"""FMU: flexible rotor {name}."""
 
@@ -45,14 +44,14 @@ class {identifier}(ModelSlave):
 
 _STARTING = """
 
-from touchdown.fmus.variants.starts import starting_from
+from touchdown.fmus.variants import starting_from
 
 {identifier}.model = starting_from({identifier}.model, {values!r})
 """
 
 _WITH_MODES = """
 
-from touchdown.fmus.variants.modes import with_modes
+from touchdown.fmus.variants import with_modes
 
 {identifier}.model = with_modes({identifier}.model, {count}, {told})
 """

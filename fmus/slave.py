@@ -24,12 +24,12 @@ import numpy as np
 from pythonfmu import Fmi2Slave
 from pythonfmu.enums import Fmi2Status
 
-from touchdown.fmus import refusals
-from touchdown.fmus.description.fmi2 import describe
-from touchdown.fmus.description.making import guid
-from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import Model, ModelError, StepSizeError
-from touchdown.modelkit.variables import Causality, Scalar
+from ..modelkit.instance import Instance
+from ..modelkit.model import Model, ModelError, StepSizeError
+from ..modelkit.variables import Causality, Scalar
+from . import messages
+from .description.fmi2 import describe
+from .description.variables import guid
 
 AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the first step
 READABLE = (*AT_START, Causality.OUTPUT)
@@ -74,19 +74,19 @@ class ModelSlave(Fmi2Slave):
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         if self._phase != NEW:
-            self._raise(refusals.SETUP_LATE)
+            self._raise(messages.SETUP_LATE)
         if not math.isfinite(start_time):
-            self._raise(refusals.NO_START.format(time=start_time))
+            self._raise(messages.NO_START.format(time=start_time))
         self._start_time = start_time
 
     def enter_initialization_mode(self) -> None:
         if self._phase != NEW:
-            self._raise(refusals.ENTERED_TWICE)
+            self._raise(messages.ENTERED_TWICE)
         self._phase = INITIALISING
 
     def exit_initialization_mode(self) -> None:
         if self._phase != INITIALISING:
-            self._raise(refusals.NOT_ENTERED)
+            self._raise(messages.NOT_ENTERED)
         if self._failed:
             self._stop_again()
         problem = self._refresh()
@@ -99,9 +99,9 @@ class ModelSlave(Fmi2Slave):
         if self._failed:
             self._stop_again()
         if self._phase != STEPPING:
-            self._raise(refusals.ENDED if self._phase == ENDED else refusals.NOT_STARTED)
+            self._raise(messages.ENDED if self._phase == ENDED else messages.NOT_STARTED)
         if abs(current_time - self._end) > LATE * step_size:
-            self._raise(refusals.APART.format(time=current_time, step=step_size, end=self._end))
+            self._raise(messages.APART.format(time=current_time, step=step_size, end=self._end))
         problem = ""
         try:
             self._instance.step(current_time, step_size)
@@ -135,16 +135,16 @@ class ModelSlave(Fmi2Slave):
         return self._get(Scalar.INTEGER, vrs)
 
     def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
-        self._absent(refusals.SET_LATE, vrs, "boolean")
+        self._absent(messages.SET_LATE, vrs, "boolean")
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
-        self._absent(refusals.SET_LATE, vrs, "string")
+        self._absent(messages.SET_LATE, vrs, "string")
 
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        return self._absent(refusals.UNREADABLE, vrs, "boolean")
+        return self._absent(messages.UNREADABLE, vrs, "boolean")
 
     def get_string(self, vrs: list[int]) -> list[str]:
-        return self._absent(refusals.UNREADABLE, vrs, "string")
+        return self._absent(messages.UNREADABLE, vrs, "string")
 
     def _absent(self, refusal: str, vrs: list[int], kind: str) -> list[Any]:
         """There are no booleans and no strings."""
@@ -158,7 +158,7 @@ class ModelSlave(Fmi2Slave):
             late = self._phase >= STEPPING
             wrong = self._others(kind, vrs, AT_START, late)
             if wrong:
-                self._raise(refusals.SET_LATE.format(names=wrong, kind=kind))
+                self._raise(messages.SET_LATE.format(names=wrong, kind=kind))
             tuning = late and not self._tunable.isdisjoint(vrs)
             places = np.array(vrs, dtype=np.intp)
             if not tuning:  # which is rare, and looked at each time
@@ -173,7 +173,7 @@ class ModelSlave(Fmi2Slave):
         if places is None:
             wrong = self._others(kind, vrs, READABLE)
             if wrong:
-                self._raise(refusals.UNREADABLE.format(names=wrong, kind=kind))
+                self._raise(messages.UNREADABLE.format(names=wrong, kind=kind))
             places = self._known[("get", kind, *vrs)] = np.array(vrs, dtype=np.intp)
         if self._phase < STEPPING:
             self._compute_early(self._others(kind, vrs, AT_START))
@@ -182,7 +182,7 @@ class ModelSlave(Fmi2Slave):
     def _compute_early(self, outputs: str) -> None:
         """See that `outputs` (names) have values before initialisation is complete."""
         if outputs and self._phase == NEW:
-            self._raise(refusals.READ_EARLY.format(names=outputs))
+            self._raise(messages.READ_EARLY.format(names=outputs))
         if outputs and self._stale:
             problem = self._refresh()
             if problem:
@@ -218,7 +218,7 @@ class ModelSlave(Fmi2Slave):
         for i in sorted({vr % 2**32 for vr in vrs}):  # unsigned, as FMI has them
             slot = slots.get(i)
             if slot is None:
-                wrong.append(refusals.UNKNOWN.format(number=i))
+                wrong.append(messages.UNKNOWN.format(number=i))
                 continue
             fixed = late and slot.causality is Causality.PARAMETER and i not in self._tunable
             if slot.variable.spec.kind is not kind or slot.causality not in causes or fixed:
@@ -235,11 +235,11 @@ class ModelSlave(Fmi2Slave):
         own = self._identity
         head = len(own) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(own):
-            self._raise(refusals.FOREIGN_STATE)
+            self._raise(messages.FOREIGN_STATE)
         self._phase, failed, self._start_time, self._end = _LIFE.unpack_from(state, len(own))
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
-        self._failed = self._failed or refusals.FAILED_STATE if failed else ""
+        self._failed = self._failed or messages.FAILED_STATE if failed else ""
         self._forget()
 
     @classmethod
@@ -253,7 +253,7 @@ class ModelSlave(Fmi2Slave):
             for slave in cls._living:  # pythonfmu asks the class and releases one of its instances
                 if type(slave) is cls:
                     slave._outlive_release()
-            raise RuntimeError(refusals.FOREIGN_STATE)
+            raise RuntimeError(messages.FOREIGN_STATE)
         return own
 
     # -- failure -------------------------------------------------------------------------------------
@@ -282,7 +282,7 @@ class ModelSlave(Fmi2Slave):
 
     def _stop_again(self) -> NoReturn:
         """Answer with an error that it failed before."""
-        message = refusals.STOPPED.format(why=self._failed)
+        message = messages.STOPPED.format(why=self._failed)
         self.log(message, Fmi2Status.error)
         self._outlive_release()
         raise RuntimeError(message)

@@ -5,19 +5,20 @@ from __future__ import annotations
 
 import argparse
 import sys
+import textwrap
 import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
 import argcomplete
 
-from touchdown.master import verbs
-from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.common.files import NO_ROOM
-from touchdown.master.common.interrupts import ended_as_by_ctrl_c
-from touchdown.master.common.processes import watched
-from touchdown.master.verbs.fault import report_fault, versions
-from touchdown.master.verbs.screen import broken_off, complain, show_any_text, undelivered
+from . import verbs
+from .common import watched
+from .common.errors import FAILED, TouchdownError
+from .common.files import NO_ROOM
+from .common.interrupts import ended_as_by_ctrl_c
+from .verbs.fault import report_fault, versions
+from .verbs.verb import broken_off, complain, show_any_text, undelivered
 
 UNSAID = (  # warnings of libraries that would say in lines of code what the command says, or shows, itself
     (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
@@ -93,15 +94,29 @@ class _Parser(argparse.ArgumentParser):
         raise SystemExit(FAILED)
 
 
+def verb_list() -> str:
+    """The verbs by group, a line for each, for a terminal of 80 columns."""
+    width = max(len(verb.name) for verb in verbs.ALL) + 4
+    lines: list[str] = []
+    for group, members in verbs.GROUPS.items():
+        lines += [f"{group}:"]
+        for verb in members:
+            first, others = f"  {verb.name:{width - 2}}", " " * width
+            lines += textwrap.wrap(verb.title, 79, initial_indent=first, subsequent_indent=others)
+    return "\n".join(lines)
+
+
 def parser() -> argparse.ArgumentParser:
     """What reads the command line; `run` of its result does what was asked for."""
     command = _Parser(
         prog="touchdown",
-        description="Rotor drops onto touchdown bearings, co-simulated with FMUs.",
+        usage="touchdown [-h] [--version] VERB ...",
+        description=f"Rotor drops onto touchdown bearings, co-simulated with FMUs.\n\n{verb_list()}",
         epilog="`touchdown VERB --help` has the options of a verb, and examples.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     command.add_argument("--version", action="version", version=versions())
-    added = command.add_subparsers(required=True, metavar="VERB")
+    added = command.add_subparsers(required=True, metavar="VERB", help=argparse.SUPPRESS)
     for verb in verbs.ALL:
         verb.add_to(added)
     return command

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from .integrators import dopri
+from .kernel import kernel
+from .status import BAD_INPUT, BAD_LOAD, OK
 
 TOLERANCE = 1e-9  # of the body's scales; its motion within a macro step is nearly polynomial
 

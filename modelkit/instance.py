@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.modelkit import refusals
-from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.integrators.control import MOST_STEPS
-from touchdown.modelkit.model import Model, ModelError, Slot, StepSizeError, slots
-from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
-from touchdown.modelkit.variables import Causality, Scalar, as_tuple, from_record, layout
+from . import messages
+from .integrators import dopri
+from .integrators.control import MOST_STEPS
+from .model import Model, ModelError, Slot, StepSizeError, slots
+from .status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
+from .variables import Causality, Scalar, as_tuple, from_record, layout
 
 FIRST_STEP = 1e-6  # s; the micro-step to try first
 
@@ -73,7 +73,7 @@ class Instance:
         Raises ModelError, naming what stopped it; StepSizeError where a smaller step may be taken.
         """
         if not step > 0.0 or not math.isfinite(step) or not math.isfinite(time):
-            raise ModelError(refusals.NO_STEP.format(time=time, step=step))
+            raise ModelError(messages.NO_STEP.format(time=time, step=step))
         if self._outdated:
             self._settle_again()
         status = self.model.advance(self.words, self.work, time, step)
@@ -151,11 +151,11 @@ def explanation(instance: Instance, status: int, time: float, step: float) -> st
         for slot in instance.slots:
             value = instance.reals[slot.index]
             if slot.causality is Causality.INPUT and not math.isfinite(value):
-                return refusals.BAD_INPUT.format(name=slot.variable.name, value=value, time=time)
+                return messages.BAD_INPUT.format(name=slot.variable.name, value=value, time=time)
     if status in (BAD_LOAD, BAD_INPUT):  # finite inputs can be too large to add up
-        return refusals.BAD_LOAD.format(time=time)
+        return messages.BAD_LOAD.format(time=time)
     if status == TOO_MANY_STEPS:
-        return refusals.TOO_MANY_STEPS.format(most=MOST_STEPS, step=step, time=time)
+        return messages.TOO_MANY_STEPS.format(most=MOST_STEPS, step=step, time=time)
     if status < 0:
-        return refusals.GAVE_UP.format(time=time)
-    return refusals.UNRESOLVED.format(time=time, step=step)
+        return messages.GAVE_UP.format(time=time)
+    return messages.UNRESOLVED.format(time=time, step=step)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.modelkit.variables import Causality, Nothing, Variable, flatten, layout
+from .variables import Causality, Nothing, Variable, flatten, layout
 
 TOLD = 4  # numbers that a text of a problem may hold
 

@@ -1,4 +1,4 @@
-"""The interface contract between bodies and what bears them.
+"""The interface contract between bodies and the bearings that carry them.
 
 A *seat* is the place where a bearing (touchdown or magnetic) holds a journal; a *mount* is where it
 sits in its housing. The body gives motion and what the bearing needs to carry a reduced model of the
@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.variables import SWITCH, Choices, choice, groups, real
+from .variables import SWITCH, Choices, choice, groups, real
 
 MODES = 20  # of a flexible body that a seat can carry, per plane
 # s; an impact is over once the journal has been free for longer. A light inner ring rattles between journal

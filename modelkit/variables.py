@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.modelkit import refusals
+from . import messages
 
 
 class Scalar(StrEnum):
@@ -89,13 +89,13 @@ class Variable:
         s, value = self.spec, float(value)
         unit = "" if s.unit == "1" else f" {s.unit}"
         if not math.isfinite(value):
-            return refusals.NOT_FINITE.format(name=self.name, value=value)
+            return messages.NOT_FINITE.format(name=self.name, value=value)
         if s.above is not None and not value > s.above:
-            return refusals.NOT_ABOVE.format(name=self.name, value=value, bound=s.above, unit=unit)
+            return messages.NOT_ABOVE.format(name=self.name, value=value, bound=s.above, unit=unit)
         if s.minimum is not None and value < s.minimum:
-            return refusals.TOO_SMALL.format(name=self.name, value=value, bound=s.minimum, unit=unit)
+            return messages.TOO_SMALL.format(name=self.name, value=value, bound=s.minimum, unit=unit)
         if s.maximum is not None and value > s.maximum:
-            return refusals.TOO_LARGE.format(name=self.name, value=value, bound=s.maximum, unit=unit)
+            return messages.TOO_LARGE.format(name=self.name, value=value, bound=s.maximum, unit=unit)
         return None
 
 

@@ -13,11 +13,11 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from touchdown.modelkit.body import finite
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, constants, memory_layout
-from touchdown.modelkit.numerics.words import missing
-from touchdown.modelkit.ports import (
+from ..modelkit.body import finite
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, constants, memory_layout
+from ..modelkit.numerics import missing
+from ..modelkit.ports import (
     MODES,
     Energy,
     FlexibleSeatLoad,
@@ -25,18 +25,16 @@ from touchdown.modelkit.ports import (
     PointMotion,
     StaticLoad,
 )
-from touchdown.modelkit.status import BAD_INPUT, BAD_LOAD, OK
-from touchdown.modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
-from touchdown.rotor.beams.shaft import MOST_STATIONS, Shaft
-from touchdown.rotor.modal.data import MOST_MODES, Derived, most_modes, tabulate
-from touchdown.rotor.modal.modes import RIGID
-from touchdown.rotor.modal.watched import MOST_WATCHED, watched
-from touchdown.rotor.motion import macro_step, stress_report
-from touchdown.rotor.motion.equations import rhs
-from touchdown.rotor.motion.exchange import take_mode_loads
-from touchdown.rotor.motion.outputs import publish, publish_constants
-from touchdown.rotor.motion.state import ANGLE, SPIN, WORK, modal, rest
-from touchdown.rotor.motion.swing import Stride
+from ..modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from ..modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
+from .beams.shaft import MOST_STATIONS, Shaft
+from .modal.data import MOST_MODES, Derived, most_modes, tabulate
+from .modal.modes import RIGID
+from .modal.stresses import MOST_WATCHED, watched
+from .motion import macro_step, outputs
+from .motion.equations import ANGLE, SPIN, WORK, modal, rest, rhs
+from .motion.macro_step import Stride, take_mode_loads
+from .motion.outputs import publish, publish_constants
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ class Parameters:
     micro_step: float = real(
         5e-6, "s", "longest stride in which modes and gyroscopics alternate", above=0.0
     )
-    stress: stress_report.StressOptions = group(stress_report.StressOptions)
+    stress: outputs.StressOptions = group(outputs.StressOptions)
 
 
 @dataclass(frozen=True)
@@ -87,8 +85,8 @@ class Outputs:
     station: tuple = groups(StationState, MOST_STATIONS)
     sensor: tuple = groups(PointMotion, MOST_STATIONS)
     energy: Energy = group(Energy)
-    stress: stress_report.StressReport = group(stress_report.StressReport)
-    node: tuple = groups(stress_report.NodeStress, MOST_WATCHED)
+    stress: outputs.StressReport = group(outputs.StressReport)
+    node: tuple = groups(outputs.NodeStress, MOST_WATCHED)
     mass: float = real(0.0, "kg", "mass", constant=True)
     polar_inertia: float = real(0.0, "kg.m2", "polar moment of inertia", constant=True)
 
@@ -206,7 +204,7 @@ def advance(words, work, time, step):
     take_mode_loads(m.q, m)
     publish(m.q, m)
     if m.p.stress.active:
-        stress_report.report(m.q, m, work)
+        outputs.report(m.q, m, work)
     told = m.o.energy.kinetic + m.o.energy.potential + m.o.stress.bending + m.o.stress.shear
     return OK if finite(m) and math.isfinite(told) else BAD_LOAD
 

@@ -16,12 +16,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from touchdown.modelkit import body
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, memory_layout
-from touchdown.modelkit.ports import Energy, SeatLoad, SeatState, StaticLoad
-from touchdown.modelkit.variables import group, real
-from touchdown.rotor.drag import drag
+from ..modelkit import body
+from ..modelkit.kernel import kernel
+from ..modelkit.model import Model, memory_layout
+from ..modelkit.ports import Energy, SeatLoad, SeatState, StaticLoad
+from ..modelkit.variables import group, real
+from .motion.equations import drag
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)

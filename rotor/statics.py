@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import check_nodes
-from touchdown.rotor.beams.body import rigid_motion
-from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.modal.modes import flexibility
-from touchdown.rotor.modal.stresses import bending_per_moment, end_nodes, shear_per_force
+from ..modelkit.model import ModelError
+from .beams.body import rigid_motion
+from .beams.element import element_matrices
+from .beams.shaft import Shaft, check_nodes
+from .modal.modes import flexibility
+from .modal.stresses import bending_per_moment, end_nodes, shear_per_force
 
 
 @dataclass(frozen=True)
@@ -79,7 +78,7 @@ def _stresses(shaft: Shaft, q: np.ndarray, gravity: float) -> tuple[np.ndarray, 
     """Bending and shear stress (R,) from the forces at the element's ends."""
     bending, shear = [], []
     for i, element in enumerate(shaft.elements):
-        own = beam.matrices(element)
+        own = element_matrices(element)
         weight = -gravity * own.mass @ np.array([1.0, 0.0, 1.0, 0.0])
         force1, moment1, force2, moment2 = own.stiffness @ q[2 * i : 2 * i + 4] - weight
         first, second = element.section(0.0), element.section(1.0)

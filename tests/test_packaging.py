@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import shutil
@@ -12,7 +11,6 @@ import tarfile
 import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import pytest
 from places import ROOT
@@ -207,44 +205,8 @@ def test_a_checkout_without_links_runs(installed: Mapping[str, Path], mine: Path
 # -- the links of a checkout ---------------------------------------------------------------------------
 
 
-@pytest.fixture
-def hook(tmp_path: Path) -> Any:
-    """What makes the links, at work on an empty checkout."""
-    path = ROOT / ".ci" / "wheel_hook.py"
-    spec = importlib.util.spec_from_file_location("wheel_hook", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    assert module.PACKAGES == PACKAGES
-    for name in ("src/touchdown", *PACKAGES):
-        (tmp_path / name).mkdir(parents=True)
-    return module.WheelHook(str(tmp_path), {}, None, None, "", "wheel")
-
-
-def links(folder: Path) -> dict[str, Path]:
-    """Where each link in src/touchdown leads."""
-    return {path.name: path.resolve() for path in (folder / "src" / "touchdown").iterdir()}
-
-
-def test_an_editable_install_links_the_packages(hook: Any, tmp_path: Path) -> None:
-    for _ in range(2):  # the second time they are there
-        hook.initialize("editable", {})
-        assert links(tmp_path) == {name: (tmp_path / name).resolve() for name in PACKAGES}
-
-
-def test_where_no_links_can_be_made_none_are(
-    hook: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
-    def refused(*_: object, **__: object) -> None:
-        raise OSError("privilege not held")
-
-    monkeypatch.setattr(Path, "symlink_to", refused)
-    hook.initialize("editable", {})
-    assert links(tmp_path) == {}
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_plain_wheel_needs_no_links(hook: Any, tmp_path: Path) -> None:
-    hook.initialize("standard", {})
-    assert links(tmp_path) == {}
+def test_the_links_for_editors_lead_to_the_packages() -> None:
+    """They are in the repository; wheels leave them out."""
+    folder = ROOT / "src" / "touchdown"
+    links = {path.name: path.resolve() for path in folder.iterdir() if path.is_symlink()}
+    assert links == {name: ROOT / name for name in PACKAGES}

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from touchdown.bearings.catalogue.bearing import NUMBERS, Bearing
-from touchdown.bearings.catalogue.file import OWN_FILE, CatalogueError, as_file, read
-from touchdown.bearings.catalogue.sizes import designations, size
-from touchdown.bearings.catalogue.source import FROM_SOURCE
+from .entry import NUMBERS, Bearing
+from .file import OWN_FILE, CatalogueError, as_file, read
+from .sizes import FROM_SOURCE, designations, size
 
 __all__ = [
     "NUMBERS",

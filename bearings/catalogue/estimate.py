@@ -20,11 +20,10 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from touchdown.bearings.catalogue.bearing import Bearing
-from touchdown.bearings.rating import RatedBearing, dynamic_rating, static_rating
-from touchdown.bearings.rolling.balls import MOST_BALLS, BallSet
-from touchdown.bearings.rolling.balls.geometry import ball_mass
-from touchdown.bearings.rolling.ring import Ring
+from ..rating import RatedBearing, dynamic_rating, static_rating
+from ..rolling.ball_set import MOST_BALLS, BallSet, ball_mass
+from ..rolling.ring import Ring
+from .entry import Bearing
 
 DEEP_GROOVE, ANGULAR = "deep groove", "angular contact"
 BALL = 0.30  # of the difference of outside diameter and bore

@@ -24,10 +24,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from touchdown.bearings.catalogue.bearing import NUMBERS, Bearing
-from touchdown.bearings.catalogue.estimate import ANGULAR, DEEP_GROOVE, filled_in
-from touchdown.modelkit.model import ModelError
-from touchdown.modelkit.units import UnitError, to_si
+from ...modelkit.model import ModelError
+from ...modelkit.units import UnitError, to_si
+from .entry import NUMBERS, Bearing
+from .estimate import ANGULAR, DEEP_GROOVE, filled_in
 
 OWN_FILE = "bearings.toml"
 NEEDED = ("bore", "outside", "width")

@@ -17,8 +17,8 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.variables import Choices, choice, real
+from ...modelkit.kernel import kernel, woven
+from ...modelkit.variables import Choices, choice, real
 
 COULOMB = 0
 STRIBECK = 1

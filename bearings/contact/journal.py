@@ -1,4 +1,12 @@
-"""The journal inside a bore: where they touch, and what they do to each other there.
+"""The journal in its bore: parameters, geometry of the contact, force and torque.
+
+Lengths that cannot be meant: mostly millimetres that were read as metres.
+
+The clearance of a touchdown bearing is 0.1 to 5 % of its journal's radius, play and indentation are less;
+read in the wrong unit they are a thousand times that. Half of it lies between, and lets a bearing be opened
+so wide that it is not touched.
+
+The journal inside a bore: where they touch, and what they do to each other there.
 
 The bore is a circle around the ring's centre, wider than the journal by `clearance` on radius. The
 point of contact is taken on the journal's surface for both bodies, so that forces and moments close
@@ -11,12 +19,66 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.kick import STILL
-from touchdown.bearings.contact.pair import INSIDE, Place, heat, press, slip
-from touchdown.bearings.contact.peaks import Largest, PeakMemory, watch_peaks
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.ports import PARTED
-from touchdown.modelkit.variables import group, real
+from ...modelkit.kernel import kernel
+from ...modelkit.ports import PARTED
+from ...modelkit.variables import group, real
+from . import friction
+from .laws import damp
+from .pair import INSIDE, STILL, Place, heat, press, slip
+from .peaks import Largest, PeakMemory, watch_peaks
+
+MAX_PROPORTION = 0.5
+
+
+def length_problem(name: str, beside: str) -> str:
+    """What is wrong where the length `name` is `out_of_proportion` to `beside`."""
+    return (
+        f"{name} = {{0:g}} m is out of all proportion to {beside} = {{1:g}} m; it may be half of that "
+        "at most. A plain number is in m; write '{0:g} mm' where mm are meant"
+    )
+
+
+@kernel
+def out_of_proportion(length, size, told):
+    """Whether a `length` cannot be meant beside one of `size` (m); told: `Model`'s m.told."""
+    if abs(length) <= MAX_PROPORTION * size:
+        return False
+    told[0], told[1] = length, size
+    return True
+
+
+_LENGTHS = (
+    length_problem("clearance", "journal_radius"),
+    length_problem("contact.expected_indentation", "journal_radius"),
+)
+PROBLEMS = (*_LENGTHS, *friction.problems("friction"))
+
+
+@kernel
+def bore_problem(p, usual, told):
+    """What is wrong with the journal and its bore: its number in `PROBLEMS`, or 0.
+
+    p: a bearing's parameters; usual: static coefficient of friction by default; told: `Model`'s m.told.
+    """
+    found = 0
+    if out_of_proportion(p.clearance, p.journal_radius, told):
+        found = 1
+    elif out_of_proportion(p.contact.expected_indentation, p.journal_radius, told):
+        found = 2
+    else:
+        found = friction.problem(p.friction, usual, told)
+        found = found + 2 if found != 0 else 0
+    return found
+
+
+@kernel
+def settle(d, p, lighter):
+    """Set the laws d.contact and d.friction by those in p; lighter: mass of the lighter body (kg)."""
+    d.contact = p.contact
+    damp(d.contact, lighter)
+    d.friction = p.friction
+    friction.settle(d.friction)
+
 
 FAR = 1.0  # s; a contact that is farther off is of no account to a macro step
 

@@ -36,7 +36,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import woven
+from ...modelkit.kernel import woven
 
 KEPT = 0.9  # of the energy by the law; what is stored swings about it by some per cent at h w of 0.8
 NONE = 1e-300  # s, and s/kg; stands for no kick at all, over which nothing is given

@@ -12,8 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.variables import group, integer, real
+from ...modelkit.kernel import kernel
+from ...modelkit.variables import group, integer, real
 
 SLIVER = 0.1  # of the step before; over less than that, as at the end of a macro step, no slope is taken
 

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact import bore, friction
-from touchdown.bearings.contact.friction import FrictionLaw
-from touchdown.bearings.contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
-from touchdown.bearings.contact.laws import ContactLaw
-from touchdown.bearings.contact.peaks import PeakMemory
-from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.balls import BallReport, BallSet, Coordinates, RaceStiffness, geometry
-from touchdown.bearings.rolling.balls.rest import Springs, resting_place
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.ports import Energy, Interface, MountReaction, SeatReaction
-from touchdown.modelkit.variables import group, real
+from ...modelkit.kernel import kernel
+from ...modelkit.ports import Energy, Interface, MountReaction, SeatReaction
+from ...modelkit.variables import group, real
+from .. import seat
+from ..contact import friction
+from ..contact import journal as bore
+from ..contact.friction import FrictionLaw
+from ..contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
+from ..contact.laws import ContactLaw
+from ..contact.peaks import PeakMemory
+from . import ball_set, ring
+from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
+from .balls import Springs, resting_place
 
 
 @dataclass(frozen=True)
@@ -33,14 +34,14 @@ class RollingParameters:
 
 
 STATIC = RollingParameters().friction.static
-BALLS = len(geometry.PROBLEMS)
+BALLS = len(ball_set.PROBLEMS)
 OWN = BALLS + len(bore.PROBLEMS)  # problems of balls and journal; those of a model's other laws follow
 
 
 def problems(*frictions: str) -> tuple[str, ...]:
     """What is found wrong by `problem`, and in the friction laws in these groups of the parameters."""
     others = (text for name in frictions for text in friction.problems(name))
-    return (*geometry.PROBLEMS, *bore.PROBLEMS, *others)
+    return (*ball_set.PROBLEMS, *bore.PROBLEMS, *others)
 
 
 @kernel
@@ -49,9 +50,9 @@ def problem(p, crowded, told):
 
     crowded: 1 where more balls are admitted than fit; told: `Model`'s m.told.
     """
-    found = geometry.problem(p.balls, crowded, told)
+    found = ball_set.problem(p.balls, crowded, told)
     if found == 0:
-        found = bore.problem(p, STATIC, told)
+        found = bore.bore_problem(p, STATIC, told)
         found = BALLS + found if found != 0 else 0
     return found
 
@@ -109,8 +110,8 @@ def settle(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
     p, d, b = m.p, m.d, m.p.balls
     bore.settle(d, p, p.ring.mass)
-    geometry.set_stiffness(d.stiffness, b)
-    d.inner_radius = geometry.inner_radius(b)
+    ball_set.set_stiffness(d.stiffness, b)
+    d.inner_radius = ball_set.inner_radius(b)
     springs = Springs(b.count, b.first_angle, spread, b.play, b.rows * d.stiffness.series)
     d.rest_x, d.rest_y = resting_place(springs, p.ring.mass * p.gravity, b.pitch_diameter)
 

@@ -10,13 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact.passivity import Beat
-from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import MOST_STATES
-from touchdown.modelkit.integrators import verlet
-from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.variables import array, group, real
+from ...modelkit.integrators import verlet
+from ...modelkit.kernel import kernel, woven
+from ...modelkit.variables import array, group, real
+from .. import seat
+from ..contact.passivity import Beat
+from . import ring
+from .ring import MOST_STATES
 
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
 MICRO_STEP = 2.5e-6  # s, the default

@@ -22,10 +22,10 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from touchdown.bearings.contact.friction import coefficient
-from touchdown.bearings.contact.kick import damped_normal
-from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.variables import integer, real
+from ...modelkit.kernel import kernel, woven
+from ...modelkit.variables import integer, real
+from ..contact.friction import coefficient
+from ..contact.pair import damped_normal
 
 REVERSAL = 0.05  # m/s; a ball's speed along the race around which rolling resistance changes its sign
 

@@ -1,32 +1,33 @@
-"""The inner ring of a bearing, in which the journal lands: what every rolling model shares.
+"""The inner ring, in which the journal lands, and where balls lie behind it in the state.
+
+The inner ring of a bearing, in which the journal lands: what every rolling model shares.
 
 Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state starts with the
 ring's seven components; balls and cage follow.
+
+How all balls of a bearing lie in its state: component by component, behind the ring.
+
+Loops over the balls hold no branches and no calls of the mathematical library, so that the compiler turns
+them into vector code. That takes `LANES` balls at a time and is slow on what is left over, so the loops
+may run past the last ball (`rounded`); what lies there does not matter, but there must be room for it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.bearings.contact.friction import curve
-from touchdown.bearings.contact.journal import (
-    note,
-    place_in_bore,
-    time_to_touch,
-    touch,
-    touch_of,
-    watch_contact,
-)
-from touchdown.bearings.contact.kick import friction_line
-from touchdown.bearings.contact.laws import elastic_energy, elastic_force
-from touchdown.bearings.contact.pair import INSIDE, heat, kick_of, rubbed, squeeze
-from touchdown.bearings.contact.passivity import Beat, middle_of, settled
-from touchdown.bearings.rolling.pitch_circle import Gap
-from touchdown.bearings.rolling.rubbing import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
-from touchdown.modelkit.kernel import kernel, woven
-from touchdown.modelkit.ports import Motion
-from touchdown.modelkit.variables import real
+from ...modelkit.kernel import kernel, woven
+from ...modelkit.ports import Motion
+from ...modelkit.variables import real
+from .. import seat
+from ..contact.friction import curve
+from ..contact.journal import note, place_in_bore, time_to_touch, touch, touch_of, watch_contact
+from ..contact.laws import elastic_energy, elastic_force
+from ..contact.pair import INSIDE, friction_line, heat, kick_of, rubbed, squeeze
+from ..contact.passivity import Beat, middle_of, settled
+from .ball_set import MOST_BALLS
+from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
+from .pitch_circle import Gap
 
 RX, RY, RVX, RVY, RANGLE, RW, LOSS = range(seat.INSIDE, seat.INSIDE + 7)
 NEXT = seat.INSIDE + 7
@@ -271,3 +272,41 @@ def set_weights(weight):
     weight[RX] = weight[RY] = 1.0 / seat.POSITION_SCALE
     weight[RVX] = weight[RVY] = 1.0 / seat.VELOCITY_SCALE
     weight[RANGLE] = weight[RW] = 1.0 / seat.SPIN_SCALE
+
+
+BALLS = NEXT  # from here each component of all balls in turn
+LANES = 16  # as compiled for 512 bit; half of it is in use at 256
+SPARE = 2  # balls left over that are quicker alone than with company
+MOST_STATES = BALLS + 6 * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
+
+
+@kernel
+def part(q, component, m):
+    """(count,) view of one component of all balls in the state q, or in its derivative."""
+    count = m.p.balls.count
+    return q[BALLS + component * count : BALLS + (component + 1) * count]
+
+
+@kernel
+def rounded(count):
+    """How many balls the loops run over for `count`; all arrays have room for `MOST_BALLS`."""
+    left = count % LANES
+    return count if left <= SPARE else count - left + LANES
+
+
+@woven
+def drift_balls(trial, q, mid, h, place, rate, n):
+    """Set n places in the state `trial`: those in q and h (s) times their rates in `mid`.
+
+    place, rate: numbers of the first ones in the state.
+    """
+    to, start, by = trial[place : place + n], q[place : place + n], mid[rate : rate + n]
+    for b in range(len(to)):
+        to[b] = start[b] + h * by[b]
+
+
+@woven
+def copy(given, to):
+    """Set `to` (n,) to what is `given` (n,)."""
+    for b in range(len(to)):
+        to[b] = given[b]

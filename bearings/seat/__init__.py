@@ -25,15 +25,7 @@ both (m.n,) or longer, and its memory, the record m; all in SI units.
 
 from __future__ import annotations
 
-from touchdown.bearings.seat.copies import (
-    copy_rates,
-    drift,
-    forecast,
-    housing_motion,
-    journal_motion,
-    take_inputs,
-)
-from touchdown.bearings.seat.layout import (
+from .copies import (
     HE,
     HVX,
     HVY,
@@ -53,10 +45,15 @@ from touchdown.bearings.seat.layout import (
     BearingInputs,
     SeatMemory,
     bearing_memory,
+    copy_rates,
+    drift,
+    forecast,
+    housing_motion,
+    journal_motion,
     set_weights,
+    take_inputs,
 )
-from touchdown.bearings.seat.load import last_load
-from touchdown.bearings.seat.step import advance, advance_timed, begin, instant, integrate
+from .step import advance, advance_timed, begin, instant, integrate, last_load
 
 __all__ = [
     "HE",

@@ -14,10 +14,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from touchdown.bearings import seat
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model
-from touchdown.modelkit.ports import (
+from ...modelkit.kernel import kernel
+from ...modelkit.model import Model
+from ...modelkit.ports import (
     FlexibleSeatMotion,
     Interface,
     Load,
@@ -27,8 +26,9 @@ from touchdown.modelkit.ports import (
     SeatReaction,
     StaticLoad,
 )
-from touchdown.modelkit.status import BAD_INPUT, OK
-from touchdown.modelkit.variables import Choices, choice, group, integer, real
+from ...modelkit.status import BAD_INPUT, OK
+from ...modelkit.variables import Choices, choice, group, integer, real
+from .. import seat
 
 SUPPLIED, FX, FY = range(seat.INSIDE, seat.INSIDE + 3)  # work of the control; force where it lags
 FORCE_SCALE = 10.0  # N

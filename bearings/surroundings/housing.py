@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from touchdown.modelkit import body
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.model import Model, memory_layout
-from touchdown.modelkit.ports import Energy, MountLoad, MountState
-from touchdown.modelkit.variables import group, real
+from ...modelkit import body
+from ...modelkit.kernel import kernel
+from ...modelkit.model import Model, memory_layout
+from ...modelkit.ports import Energy, MountLoad, MountState
+from ...modelkit.variables import group, real
 
 X, Y, VX, VY, WORK, LOSS = range(6)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import touchdown
 from speeds.measured import Block, Spread, exponent, in_turns
 from speeds.scenes import recorded
-from touchdown.bearings.rolling.balls.declarations import MOST_BALLS
+from touchdown.bearings.rolling.ball_set import MOST_BALLS
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene

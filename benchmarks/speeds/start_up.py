@@ -12,7 +12,7 @@ from pathlib import Path
 
 from speeds.measured import Block, spread
 from touchdown.fmus.recipes import names, recipe
-from touchdown.master.components.library.sources import built
+from touchdown.master.components.loading import built
 
 WAYS = {"in process": ["--in-process"], "native FMUs": ["--native"], "FMUs in Python": []}
 # A process that is small itself: what one starts counts the memory of who started it as its own.

@@ -5,20 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from touchdown.fmus.description.making import Making, add_surroundings, by_pythonfmu, identity
-from touchdown.fmus.description.units import add_units
-from touchdown.fmus.description.variables import (
+from ...modelkit.model import Model, Slot, slots
+from ...modelkit.variables import Causality
+from .variables import (
     SET,
+    Making,
+    add_surroundings,
+    add_units,
+    by_pythonfmu,
     causality,
     choices_of,
     fmi_type,
+    identity,
     items,
     roles,
     values,
     written,
 )
-from touchdown.modelkit.model import Model, Slot, slots
-from touchdown.modelkit.variables import Causality
 
 CAPABILITIES = {  # of every FMU
     "canHandleVariableCommunicationStepSize": "true",

@@ -5,12 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from touchdown.fmus.description.arrays import Array, arrays, time_reference
-from touchdown.fmus.description.making import Making, add_surroundings, identity
-from touchdown.fmus.description.units import add_units
-from touchdown.fmus.description.variables import SET, causality, choices_of, items, roles, values, written
-from touchdown.modelkit.model import Model, Slot, slots
-from touchdown.modelkit.variables import Causality, Scalar, Spec
+from ...modelkit.model import Model, Slot, slots
+from ...modelkit.variables import Causality, Scalar, Spec
+from .variables import (
+    SET,
+    Array,
+    Making,
+    add_surroundings,
+    add_units,
+    arrays,
+    causality,
+    choices_of,
+    identity,
+    items,
+    roles,
+    time_reference,
+    values,
+    written,
+)
 
 CAPABILITIES = {  # of every FMU
     "canHandleVariableCommunicationStepSize": "true",

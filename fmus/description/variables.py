@@ -1,13 +1,180 @@
-"""Variables as either version of FMI describes them."""
+"""Variables, arrays and units as either version of FMI describes them.
+
+Variables as FMI 3.0 has them: a member of all modes, balls or nodes is one array.
+
+`journal.mode[1].x` to `journal.mode[20].x` become `journal.mode.x` of 20. Where an array's elements lie in
+memory, one record apart, does not change; its value reference is the place of the first.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import hashlib
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
 from itertools import zip_longest
+from typing import Any
+from xml.etree.ElementTree import Element, SubElement
 
-from touchdown.modelkit.model import Model, Slot, slots
-from touchdown.modelkit.units import display_unit
-from touchdown.modelkit.variables import Causality, Choices, Scalar, Spec, Variability
+from ...modelkit.kernel import source_hash
+from ...modelkit.model import Model, Slot, slots
+from ...modelkit.units import DISPLAYED, display_unit, per_display
+from ...modelkit.variables import Causality, Choices, Scalar, Spec, Variability
+from ..version import RELEASED, VERSION
+
+_SYMBOLS = {
+    "m": {"m": 1},
+    "kg": {"kg": 1},
+    "s": {"s": 1},
+    "rad": {"rad": 1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+    "W": {"kg": 1, "m": 2, "s": -3},
+    "Pa": {"kg": 1, "m": -1, "s": -2},
+    "1": {},
+}
+
+
+def base_unit(unit: str) -> dict[str, int] | None:
+    """SI exponents of a unit such as "N.s/m2"; None where it has none (N/m^n)."""
+    if "^" in unit:
+        return None
+    exponents: dict[str, int] = {}
+    sign = 1
+    tokens = re.findall(r"[A-Za-z]+-?\d*|1|[/.()]", unit)
+    if "".join(tokens) != unit:
+        raise ValueError(f"unknown unit {unit!r}")
+    for token in tokens:
+        if token == "/":
+            sign = -1
+            continue
+        if token in ".()":
+            continue
+        match = re.fullmatch(r"([A-Za-z]+|1)(-?\d*)", token)
+        if match is None or match[1] not in _SYMBOLS:
+            raise ValueError(f"unknown unit {unit!r}")
+        power = int(match[2] or 1) * sign
+        for symbol, count in _SYMBOLS[match[1]].items():
+            exponents[symbol] = exponents.get(symbol, 0) + count * power
+    return {symbol: count for symbol, count in exponents.items() if count}
+
+
+def add_units(root: Element, exposed: Sequence[Slot], more: Iterable[str] = ()) -> None:
+    """The units of some variables, and those that they are shown in; either version's XML."""
+    definitions = SubElement(root, "UnitDefinitions")
+    used = {s.variable.spec.unit for s in exposed if s.variable.spec.kind is Scalar.REAL}
+    for unit in sorted(used.union(more)):
+        element = SubElement(definitions, "Unit", {"name": unit})
+        exponents = base_unit(unit)
+        if exponents is not None:
+            SubElement(element, "BaseUnit", {k: str(v) for k, v in exponents.items()})
+        for shown in DISPLAYED.get(unit, ()):
+            if shown != unit:
+                factor = repr(per_display(unit, shown))
+                SubElement(element, "DisplayUnit", {"name": shown, "factor": factor})
+
+
+SEVERAL = ("mode", "ball", "node")  # groups whose members become arrays, and elements of those again
+_ELEMENT = re.compile(rf"((?:.*\.)?(?:{'|'.join(SEVERAL)}))\[\d+\]\.(\w+)")
+
+
+@dataclass(frozen=True)
+class Array:
+    """A variable: a scalar, or the elements of an array, which differ in their start values alone."""
+
+    name: str
+    elements: tuple[Slot, ...]
+    dimension: int | None  # None: a scalar
+
+    @property
+    def first(self) -> Slot:
+        """What stands for all of them."""
+        return self.elements[0]
+
+    @property
+    def stride(self) -> int:
+        """Words from one element to the next."""
+        return self.elements[1].index - self.first.index if len(self.elements) > 1 else 0
+
+
+def arrays(model: Model) -> tuple[Array, ...]:
+    """All exposed variables of `model`, in the order of their first elements."""
+    found: dict[str, list[Slot]] = {}
+    for slot in slots(model):
+        found.setdefault(_array_of(slot.variable.name), []).append(slot)
+    return tuple(_array(name, elements) for name, elements in found.items())
+
+
+def element(array: str, index: tuple[int, ...]) -> str:
+    """Name of an array's element: x[2], x[1,2], mode[2].x of mode.x, as in FMI 2.0; of a scalar: ()."""
+    counted = f"[{','.join(map(str, index))}]" if index else ""
+    group, _, member = array.rpartition(".")
+    if group.rpartition(".")[2] in SEVERAL:
+        return f"{group}{counted}.{member}"
+    return f"{array}{counted}"
+
+
+def time_reference(model: Model) -> int:
+    """Value reference of the independent variable: the place of the time in memory."""
+    fields: Any = model.memory.fields
+    return fields["time"][1] // 8
+
+
+def _array_of(name: str) -> str:
+    match = _ELEMENT.fullmatch(name)
+    return f"{match[1]}.{match[2]}" if match else name
+
+
+def _array(name: str, elements: list[Slot]) -> Array:
+    scalar = elements[0].variable.name == name
+    return Array(name, tuple(elements), None if scalar else len(elements))
+
+
+@dataclass(frozen=True)
+class Making:
+    """How an FMU is made, and what follows from that."""
+
+    tool: str
+    guid: str
+    needs_tool: bool  # in its host
+
+
+def by_pythonfmu(model: Model) -> Making:
+    """The making of an FMU that is Python."""
+    return Making(f"touchdown-cosim {VERSION}, PythonFMU {version('pythonfmu')}", guid(model), True)
+
+
+def guid(model: Model) -> str:
+    """Identity of a model's FMU: equal sources, equal GUID."""
+    packages = ("modelkit", "rotor", "bearings", "fmus")
+    digest = hashlib.sha256(
+        f"{model.name} {model.content} {VERSION} {source_hash(packages)}".encode()
+    ).hexdigest()
+    return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"
+
+
+def identity(model: Model, making: Making) -> dict[str, str]:
+    """What the FMU is, and who made it with what: attributes that both versions of FMI have."""
+    return {
+        "modelName": model.title,
+        "description": model.about,
+        "author": "touchdown-cosim",
+        "license": "MIT",
+        "version": VERSION,
+        "generationTool": making.tool,
+        "generationDateAndTime": RELEASED,
+        "variableNamingConvention": "structured",
+    }
+
+
+def add_surroundings(root: Element, log_categories: Mapping[str, str]) -> None:
+    """Categories of its log, and how long and by which steps it is tried."""
+    categories = SubElement(root, "LogCategories")
+    for name, meaning in log_categories.items():
+        SubElement(categories, "Category", {"name": name, "description": meaning})
+    SubElement(root, "DefaultExperiment", {"startTime": "0.0", "stopTime": "0.1", "stepSize": "2e-05"})
+
 
 SET = (Causality.PARAMETER, Causality.INPUT)  # what has a start value
 

@@ -14,23 +14,21 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import tostring
 
-from touchdown.fmus.build import kept_sound, write
-from touchdown.fmus.description.making import Making, guid
-from touchdown.fmus.native.compiler import SOURCE, command, library
-from touchdown.fmus.native.faces import FMI_2, Face
-from touchdown.fmus.native.in_c import ENTRIES, InC, sources
-from touchdown.fmus.native.kernels import bitcode
-from touchdown.fmus.native.tables import Choice, Held, source
-from touchdown.fmus.native.targets import NativeError, Target, chosen
-from touchdown.fmus.native.texts import header
-from touchdown.fmus.presentation import references, terminals
-from touchdown.fmus.presentation.documentation import page
-from touchdown.fmus.presentation.icon import icon
-from touchdown.fmus.recipes import Recipe, parameter_sets
-from touchdown.fmus.variants.modes import refusal
-from touchdown.fmus.version import VERSION
-from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.model import Model, ModelError
+from ...modelkit.instance import Instance
+from ...modelkit.model import Model, ModelError
+from ..build import kept_sound, write
+from ..description.variables import Making, guid
+from ..presentation import references, terminals
+from ..presentation.documentation import page
+from ..presentation.icon import icon
+from ..recipes import Recipe, parameter_sets
+from ..variants import refusal
+from ..version import VERSION
+from .compiler import SOURCE, NativeError, Target, chosen, command, library
+from .in_c import ENTRIES, InC, sources
+from .interfaces import FMI_2, Face
+from .kernels import bitcode
+from .tables import Choice, Held, header, source
 
 MODES = (2, 5, 10)  # per plane, that rotors hold constants for; the scenes ask for these
 _HEAD = b"<?xml version='1.0' encoding='UTF-8'?>\n"

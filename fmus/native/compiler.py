@@ -1,8 +1,9 @@
-"""What turns C and bitcode into a library: LLVM, and the system's compiler or zig's."""
+"""What turns C and bitcode into a library, and the machines it can be built for."""
 
 from __future__ import annotations
 
 import os
+import platform
 import re
 import shutil
 import signal
@@ -10,12 +11,127 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from touchdown.fmus.native.targets import NativeError, Target, here
+
+class NativeError(Exception):
+    """A native FMU cannot be built here; the message says why and what to do."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A processor and a system: what LLVM and the compiler call them, and where FMI keeps the library."""
+
+    name: str
+    triple: str  # LLVM's
+    processor: str  # the least that code is made for
+    zig: str  # zig's triple; for Linux with the oldest glibc that will do
+    folder: str  # in binaries/, of FMI 2.0
+    folder_3: str  # of FMI 3.0
+    suffix: str
+
+    @property
+    def checked(self) -> bool:
+        """Whether the library looks at the processor before it is used: older ones lack instructions."""
+        return self.processor == _V3
+
+
+_LINUX, _WINDOWS = "x86_64-unknown-linux-gnu", "x86_64-pc-windows-gnu"
+_V2, _V3 = "x86-64-v2", "x86-64-v3"  # of 2009 and of 2013: detailed bearings take 1.3 times as long on v2
+_ALL = (
+    Target("linux-x86_64", _LINUX, _V3, "x86_64-linux-gnu.2.17", "linux64", "x86_64-linux", ".so"),
+    Target("linux-x86_64-v2", _LINUX, _V2, "x86_64-linux-gnu.2.17", "linux64", "x86_64-linux", ".so"),
+    Target(
+        "linux-aarch64",
+        *(
+            "aarch64-unknown-linux-gnu",
+            "generic",
+            "aarch64-linux-gnu.2.17",
+            "aarch64-linux",
+            "aarch64-linux",
+            ".so",
+        ),
+    ),
+    Target("windows-x86_64", _WINDOWS, _V3, "x86_64-windows-gnu", "win64", "x86_64-windows", ".dll"),
+    Target("windows-x86_64-v2", _WINDOWS, _V2, "x86_64-windows-gnu", "win64", "x86_64-windows", ".dll"),
+    Target(
+        *("macos-arm64", "arm64-apple-macosx11.0.0", "apple-m1", "aarch64-macos.11.0"),
+        *("darwin64", "aarch64-darwin", ".dylib"),
+    ),
+)
+TARGETS = {target.name: target for target in _ALL}
+_SYSTEMS = {"linux": "linux", "win32": "windows", "darwin": "macos"}
+_PROCESSORS = {"AMD64": "x86_64", "arm64": "arm64" if sys.platform == "darwin" else "aarch64"}
+
+
+def here() -> Target | None:
+    """The machine this runs on; None where native FMUs are not built for its kind."""
+    machine = platform.machine()
+    system = _SYSTEMS.get(sys.platform, sys.platform)
+    return TARGETS.get(f"{system}-{_PROCESSORS.get(machine, machine)}")
+
+
+def _least() -> Target | None:
+    """The target for the machine this runs on: the plainer one where its processor is older."""
+    own = here()
+    if own is None or not own.checked:
+        return own
+    from llvmlite.binding import get_host_cpu_features  # slow to import
+
+    has = get_host_cpu_features()
+    return (
+        own if all(has.get(feature) for feature in ("avx2", "fma", "bmi2")) else TARGETS[f"{own.name}-v2"]
+    )
+
+
+def chosen(names: list[str]) -> tuple[Target, ...]:
+    """Targets by name, each once; none: this machine. Raises NativeError for an unknown name."""
+    known = ", ".join(TARGETS)
+    for name in names:
+        if name not in TARGETS:
+            raise NativeError(f"there is no target {name}; there are {known}")
+    own = _least()
+    if names:
+        found = tuple(TARGETS[name] for name in dict.fromkeys(names))
+        _require_apart(found)
+        return found
+    if own is None:
+        raise NativeError(
+            f"native FMUs for this machine ({sys.platform}, {platform.machine()}) are not built; choose a "
+            f"--target of {known}"
+        )
+    return (own,)
+
+
+def _require_apart(targets: tuple[Target, ...]) -> None:
+    """Raise NativeError for two that FMI keeps in one place."""
+    by_folder: dict[str, Target] = {}
+    for target in targets:
+        other = by_folder.setdefault(target.folder, target)
+        if other != target:
+            raise NativeError(f"{other.name} and {target.name} have one place in an FMU; choose one")
+
+
+def places(targets: tuple[Target, ...]) -> dict[str, Target]:
+    """Folders in binaries/, and whose library lies there, in FMUs of FMI 2.0.
+
+    Hosts on 64-bit ARM look where FMI 2.0 has 64-bit Linux: there it lies, too, where nothing else does.
+    """
+    found = {target.folder: target for target in targets}
+    arm = TARGETS["linux-aarch64"]
+    if arm in targets:
+        found.setdefault("linux64", arm)
+    return found
+
+
+def places_3(targets: tuple[Target, ...]) -> dict[str, Target]:
+    """The same in FMUs of FMI 3.0, which names processor and system."""
+    return {target.folder_3: target for target in targets}
+
 
 SOURCE = Path(__file__).parent / "source"
 COMMON = ("instance.h", "model.h", "numba.c")  # of all libraries; the face is one more

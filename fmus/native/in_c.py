@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.fmus.description.units import base_unit
-from touchdown.fmus.native.targets import NativeError
-from touchdown.fmus.recipes import Recipe
-from touchdown.modelkit import status
-from touchdown.modelkit.model import Model, memory_layout, slots
-from touchdown.modelkit.variables import Nothing
+from ...modelkit import status
+from ...modelkit.model import Model, memory_layout, slots
+from ...modelkit.variables import Nothing
+from ..description.variables import base_unit
+from ..recipes import Recipe
+from .compiler import NativeError
 
 ENTRIES = """
 #include "memory.h"

@@ -22,15 +22,14 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, cast
 
-from touchdown.fmus.native.targets import NativeError
-from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.kernel import source_hash
-from touchdown.modelkit.kernel.cache_folder import own_folder, put
-from touchdown.modelkit.kernel.linked import KernelDispatcher
-from touchdown.modelkit.kernel.machine_code import KernelCache, sealed, unsealed
-from touchdown.modelkit.kernel.shipped import plain_processor
-from touchdown.modelkit.kernel.tried import NUMBA
-from touchdown.modelkit.model import Model
+from ...modelkit.integrators import dopri
+from ...modelkit.kernel import source_hash
+from ...modelkit.kernel.cache_folder import own_folder, put
+from ...modelkit.kernel.front_end import NUMBA
+from ...modelkit.kernel.linked import KernelDispatcher
+from ...modelkit.kernel.machine_code import KernelCache, plain_processor, sealed, unsealed
+from ...modelkit.model import Model
+from .compiler import NativeError
 
 ENTRIES = ("settle", "start", "advance")
 BARE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # entries are for C alone

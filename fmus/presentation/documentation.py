@@ -10,14 +10,14 @@ from inspect import cleandoc
 from itertools import groupby
 from pathlib import Path
 
-from touchdown.fmus.description.variables import causality
-from touchdown.fmus.python.host import NEEDED
-from touchdown.fmus.python.link import Interpreter
-from touchdown.fmus.python.sources import ROOT
-from touchdown.fmus.recipes import Recipe
-from touchdown.fmus.version import VERSION
-from touchdown.modelkit.model import Model, Slot, slots
-from touchdown.modelkit.variables import Causality
+from ...modelkit.model import Model, Slot, slots
+from ...modelkit.variables import Causality
+from ..description.variables import causality
+from ..python.host import NEEDED
+from ..python.link import Interpreter
+from ..python.sources import ROOT
+from ..recipes import Recipe
+from ..version import VERSION
 
 SOURCE = "O. Halminen, Multibody models for examination of touchdown bearing systems (LUT, 2016)"
 PHYSICS = ("touchdown.bearings.", "touchdown.rotor.")
@@ -98,19 +98,21 @@ def _documented(model: Model) -> list[str]:
     if not model.advance.__module__.startswith(PHYSICS):
         return [""]
     text = _source(model.advance.__module__)
-    parts = (name for name in _imports(text) if name.startswith(PHYSICS))
+    parts = (name for name in _imports(text, model.advance.__module__) if name.startswith(PHYSICS))
     return [_docstring(text), *(_docstring(_source(name)) for name in parts)]
 
 
-def _imports(text: str) -> Iterator[str]:
-    """Modules of the project that `text` imports, in order, each once."""
+def _imports(text: str, importer: str) -> Iterator[str]:
+    """Modules of the project that `text`, the source of `importer`, imports, in order, each once."""
     seen: set[str] = set()
     for node in ast.walk(ast.parse(text)):
-        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("touchdown."):
+        if not isinstance(node, ast.ImportFrom) or not node.level:
             continue
+        package = importer.split(".")[: -node.level]
+        source = ".".join((*package, *filter(None, [node.module])))
         for name in node.names:
-            whole = f"{node.module}.{name.name}"
-            module = whole if _path(whole).is_file() else str(node.module)
+            whole = f"{source}.{name.name}"
+            module = whole if _path(whole).is_file() else source
             if module not in seen:
                 seen.add(module)
                 yield module

@@ -9,7 +9,7 @@ from enum import Enum, auto
 
 import numpy as np
 
-from touchdown.modelkit.model import Model, slots
+from ...modelkit.model import Model, slots
 
 SIZE, SMALL = 64, 16  # pixels
 FINER = 4  # sub-pixels along each side, for smooth edges

@@ -19,11 +19,10 @@ from dataclasses import dataclass
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, indent
 
-from touchdown.fmus.description.variables import causality, scalars
-from touchdown.fmus.presentation.terminals import ports
-from touchdown.fmus.presentation.xml import document
-from touchdown.modelkit.model import Model, Slot, slots
-from touchdown.modelkit.variables import Causality, Scalar
+from ...modelkit.model import Model, Slot, slots
+from ...modelkit.variables import Causality, Scalar
+from ..description.variables import causality, scalars
+from .terminals import document, ports
 
 NAME, VERSION = "org.fmi-standard.fmi-ls-ref", "1.0.0-alpha.1"
 FOLDER = f"extra/{NAME}"

@@ -1,4 +1,6 @@
-"""terminalsAndIcons/: which variables belong to one port, and pictures to draw FMU and ports with.
+"""Terminals and icons: which variables belong to one port, and pictures to draw them with.
+
+terminalsAndIcons/: which variables belong to one port, and pictures to draw FMU and ports with.
 
 FMI 3.0 defines it (2.4.9), and FMI 2.0 takes it over from its release 2.0.4 on. Tools that know it connect
 a bearing with a journal by one line instead of thirty: members of one name belong together.
@@ -7,13 +9,18 @@ a bearing with a journal by one line instead of thirty: members of one name belo
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from xml.etree.ElementTree import Element, SubElement, indent
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from touchdown.fmus.description.variables import causality
-from touchdown.fmus.presentation.icon import dot, icon
-from touchdown.fmus.presentation.xml import document
-from touchdown.modelkit.model import Model, Slot
-from touchdown.modelkit.variables import Causality
+from ...modelkit.model import Model, Slot
+from ...modelkit.variables import Causality
+from ..description.variables import causality
+from .icon import dot, icon
+
+
+def document(root: Element) -> bytes:
+    """A file with `root` in it, laid out as it is."""
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+
 
 FOLDER = "terminalsAndIcons"
 PORT_ICON = "port"

@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from touchdown.fmus.python.host import NEEDED
+from .host import NEEDED
 
 
 class LinkError(Exception):

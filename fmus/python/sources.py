@@ -10,13 +10,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from touchdown.modelkit.kernel import PHYSICS_PACKAGES, source_hash
+from ...modelkit.kernel import PHYSICS_PACKAGES, source_hash
 
 ROOT = Path(__file__).resolve().parents[2]
 SLAVE_MODULES = (
-    *("__init__.py", "slave.py", "refusals.py", "version.py"),
-    *(f"description/{name}.py" for name in ("__init__", "fmi2", "making", "units", "variables")),
-    *(f"variants/{name}.py" for name in ("__init__", "starts", "modes")),
+    *("__init__.py", "slave.py", "messages.py", "variants.py", "version.py"),
+    *(f"description/{name}.py" for name in ("__init__", "fmi2", "variables")),
 )
 _IMPORT = re.compile(r"^([ \t]*(?:from|import)) touchdown\.(modelkit|rotor|bearings|fmus)\b", re.MULTILINE)
 

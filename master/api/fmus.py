@@ -7,24 +7,23 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from touchdown.fmus import build as builder
-from touchdown.fmus.native.build import MODES, Native, prepare
-from touchdown.fmus.native.build import build as build_native
-from touchdown.fmus.native.faces import FACES, FMI_2, Face
-from touchdown.fmus.native.in_c import recipe_in_c
-from touchdown.fmus.native.targets import NativeError, chosen
-from touchdown.fmus.python.link import LinkError, interpreter
-from touchdown.fmus.recipes import Recipe, names
-from touchdown.fmus.variants.modes import ALL, RIGID, told_of
-from touchdown.master.api.scenes import PathLike
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
-from touchdown.master.common.several import several
-from touchdown.master.components.library.sources import locate
-from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.contract import Report
-from touchdown.master.scene.run_spec import CALL_TIMEOUT
-from touchdown.modelkit.model import ModelError
+from ...fmus import build as builder
+from ...fmus.native.build import MODES, Native, prepare
+from ...fmus.native.build import build as build_native
+from ...fmus.native.compiler import NativeError, chosen
+from ...fmus.native.in_c import recipe_in_c
+from ...fmus.native.interfaces import FACES, FMI_2, Face
+from ...fmus.python.link import LinkError, interpreter
+from ...fmus.recipes import Recipe, names
+from ...fmus.variants import ALL, RIGID, told_of
+from ...modelkit.model import ModelError
+from ..common.errors import TouchdownError, several
+from ..common.files import writing_to
+from ..components.loading import locate
+from ..interop.check import check_fmu
+from ..interop.contract import Report
+from ..scene.run_spec import CALL_TIMEOUT
+from .run import PathLike
 
 
 def build(

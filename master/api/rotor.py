@@ -1,4 +1,4 @@
-"""A flexible rotor for Python: from a file or from its parts, to look at and to put into a scene."""
+"""A flexible rotor for Python, alone and in bearings."""
 
 from __future__ import annotations
 
@@ -12,34 +12,95 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from touchdown.master.api.in_bearings import InBearings, InScene
-from touchdown.master.api.scenes import PathLike, as_scene
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import keep_other, writing_to
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.importing import import_rotor
-from touchdown.master.studies.rotor.report import (
-    MODES,
-    SPEED,
-    described,
-    find_rotor,
-    on_supports,
-    report_text,
-    supported,
-)
-from touchdown.master.studies.rotor.scene_report import described_in, scene_text, title_of
-from touchdown.modelkit.kernel.cache_folder import kept, put
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file import written
-from touchdown.rotor.imports.places import Places
-from touchdown.rotor.modal.critical import critical_speeds
-from touchdown.rotor.modal.modes import fullest
-from touchdown.rotor.portrait import Portrait
+from ...modelkit.kernel.cache_folder import kept, put
+from ...modelkit.model import ModelError
+from ...rotor.beams.shaft import Shaft
+from ...rotor.file import written
+from ...rotor.imports.formats import Places
+from ...rotor.modal.modes import fullest
+from ...rotor.modal.supported import log_decrements
+from ...rotor.modal.whirl_speeds import Held, critical_speeds
+from ...rotor.properties import Portrait
+from ..common.errors import TouchdownError
+from ..common.files import keep_other, writing_to
+from ..scene.scene import Scene
+from ..studies.rotor.report import MODES, SPEED, described, find_rotor, on_supports, report_text, supported
+from ..studies.rotor.scene_report import described_in, import_rotor, scene_text, title_of
+from ..studies.rotor.supported import RPM
+from .run import PathLike, as_scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
+
+
+class InBearings:
+    """Modes of a rotor in bearings at a speed (M), by their size, without those that hardly swing."""
+
+    def __init__(self, held: Held, title: str) -> None:
+        self.title, self._held = title, held
+        self.roots: np.ndarray = held.whirl.roots[held.swinging]
+        """Complex eigenvalues (M,), 1/s, imaginary part positive."""
+        self.senses: np.ndarray = held.whirl.sense[held.swinging]
+        """1 circular whirl with the spin, -1 against it, 0 in a plane (M,)."""
+        self.stable: bool = held.whirl.stable
+        """Whether nothing grows."""
+
+    @property
+    def speed(self) -> float:
+        """Spin speed (rad/s)."""
+        return self._held.speed
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Damped (M,), Hz."""
+        return self._held.whirl.frequencies[self._held.swinging]
+
+    @property
+    def damping_ratios(self) -> np.ndarray:
+        """Of critical damping (M,); below 0 a mode grows."""
+        return self._held.whirl.damping_ratios[self._held.swinging]
+
+    @property
+    def log_decrements(self) -> np.ndarray:
+        """Logarithmic decrements (M,)."""
+        return log_decrements(self.roots)
+
+    @property
+    def critical_speeds(self) -> np.ndarray:
+        """Damped, of all whirls up to the end of the diagram, ascending (C,), rad/s."""
+        return np.array([one.speed for one in self._held.lines.crossings])
+
+    def campbell(self, figure: FigureBase | None = None) -> list[Axes]:
+        """Damped whirl frequencies [Hz] over speed [rpm], above their damping ratios [1].
+
+        On a figure or a part of one; without, pyplot makes one. Returns its axes.
+        """
+        from ..results.figures.style import drawable
+        from ..studies.rotor.supported import held_campbell
+
+        return held_campbell(drawable(figure), self._held, self.title)
+
+    def __repr__(self) -> str:
+        verdict = "stable" if self.stable else "unstable"
+        lowest = ", ".join(f"{f:.1f}" for f in self.frequencies[:4])
+        return f"<{self.title} at {RPM * self.speed:.5g} rpm: {verdict}, {lowest} ... Hz>"
+
+
+class InScene:
+    """The rotor of a scene: `levitated` and `resting`, each None where nothing holds it so."""
+
+    def __init__(
+        self, levitated: InBearings | None, resting: InBearings | None, report: Callable[[], str]
+    ) -> None:
+        self.levitated, self.resting, self._report = levitated, resting, report
+
+    def report(self) -> str:
+        """All figures as a table, with what its bearings are."""
+        return self._report()
+
+    def __repr__(self) -> str:
+        return f"<{self.levitated}, {self.resting}>"
 
 
 @dataclass(frozen=True, repr=False)
@@ -251,15 +312,15 @@ class RotorPlot:
 
     def modes(self, figure: FigureBase | None = None) -> list[Axes]:
         """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
-        from touchdown.master.results.figures.style import drawable
-        from touchdown.master.studies.rotor.figure import modes
+        from ..results.figures.style import drawable
+        from ..studies.rotor.figure import modes
 
         return modes(drawable(figure), self._portrait())
 
     def campbell(self, figure: FigureBase | None = None) -> list[Axes]:
         """Whirl frequencies of the free rotor [Hz] over speed [rpm]."""
-        from touchdown.master.results.figures.style import drawable
-        from touchdown.master.studies.rotor.figure import campbell
+        from ..results.figures.style import drawable
+        from ..studies.rotor.figure import campbell
 
         return campbell(drawable(figure), self._portrait())
 
@@ -268,8 +329,8 @@ class RotorPlot:
 
         Raises TouchdownError where no two nodes hold it.
         """
-        from touchdown.master.results.figures.style import drawable
-        from touchdown.master.studies.rotor.figure import critical
+        from ..results.figures.style import drawable
+        from ..studies.rotor.figure import critical
 
         portrait = self._portrait()
         if not portrait.critical:
@@ -281,9 +342,9 @@ class RotorPlot:
 
         Raises TouchdownError where it has less than two to lie on.
         """
-        from touchdown.master.results.figures.style import drawable
-        from touchdown.master.studies.rotor.figure import rest
-        from touchdown.master.studies.rotor.report import TO_REST
+        from ..results.figures.style import drawable
+        from ..studies.rotor.figure import rest
+        from ..studies.rotor.report import TO_REST
 
         portrait = self._portrait()
         if portrait.rest is None:

@@ -1,18 +1,83 @@
-"""Run a scene."""
+"""Scenes and runs for Python."""
 
 from __future__ import annotations
 
+import os
 import warnings
 from pathlib import Path
 
-from touchdown.master.api.scenes import PathLike, as_scene
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.folder.reopened import reopened
-from touchdown.master.results.result import Result
-from touchdown.master.results.run import Pictures, natively, run_scene
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop import spread as spread_study
+from ..common.errors import Ended, TouchdownError, one_of
+from ..coupling import steppers
+from ..coupling.steppers.stepper import Stepper
+from ..interop import scenes as anywhere
+from ..results.folder import reopened
+from ..results.result import Result
+from ..results.run import Pictures, natively, run_scene
+from ..scene import schemes
+from ..scene.file import shipped
+from ..scene.scene import Scene
+from ..scene.schemes import Scheme
+from ..studies.drop import spread as spread_study
+
+PathLike = str | os.PathLike[str]
+
+
+def scenes() -> dict[str, str]:
+    """The scenes that come with the project: titles by name.
+
+    >>> touchdown.scenes()["rotor2-case1"]
+    'Rotor II dropped at 10000 rpm, bearings in line'
+    """
+    return {name: load(name).title for name in shipped()}
+
+
+def load(name_or_path: PathLike) -> Scene:
+    """A scene by name or path: of the project's, a .toml of yours, an SSP package, a run's scene.json.
+
+    Raises TouchdownError where there is none, or it has a mistake.
+
+    >>> scene = touchdown.load("disk-caged-simplified")
+    >>> scene.run.duration  # s
+    5.0
+    """
+    return anywhere.find_scene(os.fspath(name_or_path))
+
+
+def as_scene(scene: PathLike | Scene) -> Scene:
+    """The scene itself, or the one of that name or path."""
+    return scene if isinstance(scene, Scene) else load(scene)
+
+
+def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> None:
+    """Let scenes, sweeps and comparisons name a coupling scheme of your own.
+
+    With a `stepper`, a subclass of Stepper or of one of the project's, the scheme's `sequence` is the name
+    it gets; without, `sequence` names one there is. Raises TouchdownError where the name of the scheme or
+    of the new sequence is another's, where there is no such sequence, or a value cannot be; registering
+    the same again is no mistake. Processes that a sweep starts know it too, where they can import the
+    stepper: from a script or a module, not from a notebook.
+
+    >>> mean_and_slope = touchdown.Scheme(
+    ...     name="velocity-slope", title="velocity extrapolated, mean and slope",
+    ...     order=1, slopes=True, modes=False, error_order=2, bears=0.08,
+    ... )
+    >>> touchdown.register_scheme(mean_and_slope)
+    >>> scene = touchdown.load("disk-caged-simplified")
+    >>> scene = scene.set({"run.duration": "8 ms", "run.scheme": "velocity-slope"})
+    >>> touchdown.run(scene, in_process=True).summary["scheme"]
+    'velocity-slope'
+    """
+    known = steppers.SEQUENCES
+    if stepper is None and scheme.sequence not in known:
+        raise TouchdownError(
+            f"scheme {scheme.name}: there is no sequence {scheme.sequence}; "
+            f"{one_of(scheme.sequence, known)}, or give a stepper"
+        )
+    if stepper is not None:
+        steppers.check(scheme.sequence, stepper)
+    schemes.register(scheme)
+    if stepper is not None:
+        steppers.register(scheme.sequence, stepper)
 
 
 def run(

@@ -1,4 +1,4 @@
-"""Many runs: a sweep over settings, verdicts over phases of the unbalance, a comparison of schemes."""
+"""Studies and figures of the source for Python."""
 
 from __future__ import annotations
 
@@ -10,23 +10,45 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from touchdown.master.api.scenes import PathLike, as_scene
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.progress import bar_over, growing_bar, named_progress
-from touchdown.master.common.several import several
-from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.schemes import SCHEMES, scheme
-from touchdown.master.scene.tables import above_zero
-from touchdown.master.studies.drop.levitation import shortened
-from touchdown.master.studies.schemes import compare as schemes_study
-from touchdown.master.studies.schemes.compare import STEPS, Asked, Comparison, pieces
-from touchdown.master.studies.sweep import sweep as sweep_study
-from touchdown.master.studies.sweep.design import Design, designed
-from touchdown.master.studies.sweep.results import Sweep
-from touchdown.master.studies.sweep.results import merge as merged
-from touchdown.master.studies.sweep.sweep import Running as SweepRunning
-from touchdown.master.studies.verdict.report import write_report
-from touchdown.master.studies.verdict.study import Plan, Running, Study, study_verdict
+from ..common.errors import TouchdownError, several
+from ..common.progress import bar_over, growing_bar, named_progress
+from ..scene.scene import Scene
+from ..scene.schemes import SCHEMES, scheme
+from ..scene.tables import above_zero
+from ..studies.comparison import schemes as schemes_study
+from ..studies.comparison.schemes import STEPS, Asked, Comparison, pieces
+from ..studies.dissertation.exhibits.exhibit import Exhibit
+from ..studies.dissertation.exhibits.registry import dropping, entry, make
+from ..studies.drop.first_impact import shortened
+from ..studies.sweep import sweep as sweep_study
+from ..studies.sweep.definition import Design, designed
+from ..studies.sweep.results import Sweep
+from ..studies.sweep.results import merge as merged
+from ..studies.sweep.sweep import Running as SweepRunning
+from ..studies.verdict.report import write_report
+from ..studies.verdict.study import Plan, Running, Study, study_verdict
+from .run import PathLike, as_scene
+
+
+def figure(name: str | int, *, dark: bool = False, jobs: int = 2, progress: bool = False) -> Exhibit:
+    """A figure or table of the source as it comes out here: its picture, and rows beside its values.
+
+    name: such as 25 or "table7"; `touchdown figure` lists them. Returns `figure` (matplotlib's; None for
+    some tables), `rows` (each with what, source, ours, deviation, verdict) and `notes` (what is assumed).
+    What it needs is run, `jobs` drops at a time in processes of their own: a script needs
+    `if __name__ == "__main__":` around it. dark: on a dark ground. Raises TouchdownError for a figure that
+    the models do not give, and where a run stops; Ctrl-C raises KeyboardInterrupt.
+
+    >>> picture, rows, notes = touchdown.figure("table1")
+    >>> print(rows[4].what, rows[4].source, rows[4].ours)
+    6904: pitch diameter [mm] 26.1 28.5
+    >>> rows[4].verdict
+    'differs: 17 balls do not fit on 26.1 mm; mean of bore and outside diameter'
+    """
+    chosen = entry(str(name))
+    with growing_bar("drops", not progress) as growing, dropping(jobs, growing) as drops:
+        return make(chosen, drops, dark)
+
 
 Item = TypeVar("Item")
 

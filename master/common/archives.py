@@ -10,8 +10,8 @@ import zlib
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.modelkit.kernel.cache_folder import is_own
+from ...modelkit.kernel.cache_folder import is_own
+from .errors import TouchdownError
 
 LARGEST = 512 * 1024**2  # bytes, unpacked; VARIABLE says otherwise
 VARIABLE = "TOUCHDOWN_LARGEST_FMU"
@@ -94,7 +94,7 @@ def write_archive(path: Path, content: Mapping[str, bytes]) -> None:
 
     Fixed times and no compression. Raises TouchdownError where it cannot be written.
     """
-    from touchdown.fmus.build import EPOCH  # imports all models, which unpacking can do without
+    from ...fmus.build import EPOCH  # imports all models, which unpacking can do without
 
     fresh = path.with_name(f".{path.name}.{os.getpid()}")
     try:

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from touchdown.modelkit.kernel.cache_folder import KINDS, TAG, is_cache, user_cache
+from ...modelkit.kernel.cache_folder import KINDS, TAG, is_cache, user_cache
 
 AGE = 30.0  # days without use after which an entry goes
 LIMIT = 2 * 1024**3  # bytes, of all entries

@@ -1,9 +1,12 @@
-"""Errors that are the user's to mend: one line that names the thing, the value and the remedy."""
+"""Errors that are the user's to correct, how a run ended, and arguments of which there may be several."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from difflib import get_close_matches
+from enum import Enum
+from typing import TypeVar, cast
 
 FAILED = 2  # exit status: it could not be done
 MOST_BEGUN = 8  # names that a name begins, to be told
@@ -36,3 +39,29 @@ def with_remedy(error: Exception, name: str, known: Iterable[str]) -> str:
     """What an error says, and of the names there are, where it is of an unknown `name`, the nearest."""
     names = tuple(known)
     return f"{error}; {one_of(name, names)}" if names else str(error)
+
+
+class Ended(Enum):
+    """How it ended; the values are for people.
+
+    >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
+    >>> strict = scene.set({"run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
+    >>> touchdown.run(strict, in_process=True).ended
+    <Ended.STOPPED: 'stopped'>
+    """
+
+    COMPLETED = "completed"
+    AS_WANTED = "as wanted"  # earlier, since what watched it had seen enough
+    INTERRUPTED = "interrupted"  # by Ctrl-C, SIGTERM, SIGHUP or SIGQUIT
+    STOPPED = "stopped"  # it could not go on
+    DIED = "died"  # its process was killed, or crashed
+
+
+Item = TypeVar("Item")
+
+
+def several(given: Item | Iterable[Item]) -> list[Item]:
+    """All that are given; a number, a text or a path is one by itself."""
+    if isinstance(given, (str, os.PathLike)) or not isinstance(given, Iterable):
+        return [cast(Item, given)]
+    return list(cast(Iterable[Item], given))

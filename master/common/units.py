@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from numbers import Integral, Real
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.modelkit import units
+from ...modelkit import units
+from .errors import TouchdownError
 
 Scale = tuple[float, float]  # factor and offset
 IN_HERTZ = ("bandwidth",)  # variables in rad/s that are no speeds

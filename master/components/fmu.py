@@ -26,18 +26,10 @@ from fmpy.fmi2 import (
     fmi2True,
 )
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import (
-    WHOLE,
-    ByFunctions,
-    Call,
-    Component,
-    InMemory,
-    Kind,
-    put,
-)
-from touchdown.master.components.interface import by_pythonfmu, describe, units_of, variables_of
-from touchdown.master.components.unpack import unpack
+from ..common.errors import TouchdownError
+from .component import WHOLE, ByFunctions, Call, Component, InMemory, Kind, put
+from .description import by_pythonfmu, describe, units_of, variables_of
+from .unpack import unpack
 
 OK, WARNING = 0, 1
 DISCARD = 2  # fmi2Status
@@ -236,7 +228,7 @@ class LoadedFmu(ArchivedFmu):
     def _check(self, status: int, doing: str) -> None:
         if status > WARNING:
             self._stepping = False
-            if status == DISCARD and self._ended_itself():
+            if status == DISCARD and not self._messages and self._ended_itself():
                 raise TouchdownError(f"component {self.name}: its FMU ended the simulation (at {doing})")
             reason = self._reason(f"it answered '{STATUS[min(status, 5)]}' and gave no reason")
             if status == DISCARD:

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from fmpy.fmi3 import FMU3Slave
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import EXACT, READABLE, Call, put
-from touchdown.master.components.fmu import OK, WARNING, LoadedFmu
+from ..common.errors import TouchdownError
+from .component import EXACT, READABLE, Call, put
+from .fmu import OK, WARNING, LoadedFmu
 
 CALLS = (  # in the order of FMI 2.0's, `fmu.CALLS`
     "loading its library",

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import ByFunctions, Call, InMemory
-from touchdown.master.components.fmu import FmuComponent, LoadedFmu, untold
-from touchdown.master.components.fmu3 import Fmu3Component
-from touchdown.master.components.interface import fmi_version
+from ..common.errors import TouchdownError
+from .component import ByFunctions, Call, InMemory
+from .description import fmi_version
+from .fmu import FmuComponent, LoadedFmu, untold
+from .fmu3 import Fmu3Component
 
 
 class _Foreign(LoadedFmu):

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from io import BufferedReader
 from pathlib import Path
 
-from touchdown.master.common.archives import is_unpacked, refuse_hostile, refuse_large
-from touchdown.master.common.errors import TouchdownError
-from touchdown.modelkit.kernel import cache_folder
+from ...modelkit.kernel import cache_folder
+from ..common.archives import is_unpacked, refuse_hostile, refuse_large
+from ..common.errors import TouchdownError
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 
-from touchdown.fmus.recipes import bore_of, preset
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import SETTABLE, Component, check_value, value_of
-from touchdown.master.coupling.bonds.bond import found
-from touchdown.master.coupling.connections import (
+from ...fmus.recipes import bore_of, preset
+from ...modelkit.model import ModelError
+from ...modelkit.variables import Causality
+from ..common.errors import TouchdownError
+from ..components.component import SETTABLE, Component, check_value, value_of
+from ..scene.plausible import Seat, remarks
+from ..scene.scene import ComponentSpec, Scene
+from ..scene.schemes import Scheme
+from .bonds.bond import found
+from .connections import (
     Attachment,
     Connection,
     attachment,
@@ -20,12 +25,7 @@ from touchdown.master.coupling.connections import (
     require_real,
     sensor_connections,
 )
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.plausible import Seat, remarks
-from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.schemes import Scheme
-from touchdown.modelkit.model import ModelError
-from touchdown.modelkit.variables import Causality
+from .system import System
 
 PLAIN = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme

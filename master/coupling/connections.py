@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from itertools import count
 from typing import NamedTuple
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import Scale
-from touchdown.master.components.component import Component, Kind, Variable
-from touchdown.master.components.contract import (
+from ...modelkit.variables import Causality
+from ..common.errors import TouchdownError, one_of
+from ..common.units import Scale
+from ..components.component import (
     FORCE,
     LOAD,
     MODE_LOAD,
@@ -26,10 +26,12 @@ from touchdown.master.components.contract import (
     REACH,
     SENSED,
     SLOPE,
+    Component,
+    Kind,
+    Variable,
 )
-from touchdown.master.scene.schemes import Scheme
-from touchdown.master.scene.wires import Wire
-from touchdown.modelkit.variables import Causality
+from ..scene.scene import Wire
+from ..scene.schemes import Scheme
 
 CROSSING = {(kind, kind) for kind in (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)} | {
     (Kind.INTEGER, Kind.ENUMERATION),

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.components.component import Component
-from touchdown.master.components.contract import JUMP, WORK
-from touchdown.master.coupling.connections import Attachment, Connection, full
-from touchdown.master.coupling.loop.kernels.exchange import scale
+from ..components.component import JUMP, WORK, Component
+from .connections import Attachment, Connection, full
+from .loop.kernels.exchange import scale
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ import math
 from collections.abc import Sequence
 from graphlib import CycleError, TopologicalSorter
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.coupling.observer import BEAT, Moment, Observer
-from touchdown.master.coupling.system import System
+from ..common.errors import Ended
+from .observer import BEAT, Moment, Observer
+from .system import System
 
 STEPS = 12  # successive macro steps that are looked at, at the begin and at every beat
 LEAST_GAIN = 1.05  # what grows more slowly may be a motion

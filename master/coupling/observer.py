@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.coupling.system import System
+from ..common.errors import Ended
+from .system import System
 
 BEAT = 64  # macro steps between looks at what needs none at every step
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 from typing import ClassVar
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.components.contract import POSITION
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.ledger.heard import CLEARANCE, told_by_master
-from touchdown.master.coupling.observer import Moment, Observer
-from touchdown.master.coupling.system import System
+from ..common.errors import Ended
+from ..components.component import POSITION
+from .connections import Attachment
+from .ledger.auditor import CLEARANCE, told_by_master
+from .observer import Moment, Observer
+from .system import System
 
 DEEP = 2.0  # clearances off the middle of the bore
 LOST = 100.0  # and so many of them where the run ends

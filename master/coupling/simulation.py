@@ -10,27 +10,24 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.interrupts import Interrupts, interrupts_noted
-from touchdown.master.components.component import Component
-from touchdown.master.components.library.loading import Stepping, load_component
-from touchdown.master.coupling.assembly import assemble
-from touchdown.master.coupling.bonds.told import exchange, unjoined
-from touchdown.master.coupling.ledger import Balance, Judge, Ledger, Shortening
-from touchdown.master.coupling.ledger.heard import heard
-from touchdown.master.coupling.loop.retirement import Retirement
-from touchdown.master.coupling.loop.span import Values, named_zero, span, swapped_away
-from touchdown.master.coupling.loop.steps import MacroSteps
-from touchdown.master.coupling.loop.stretches import Stretches
-from touchdown.master.coupling.loop_gain import LoopGain
-from touchdown.master.coupling.observer import BEAT, Moment, Observer
-from touchdown.master.coupling.penetration import Penetration
-from touchdown.master.coupling.recorder import Recorder
-from touchdown.master.coupling.steppers import stepper
-from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.scene import Scene
+from ..common.errors import Ended, TouchdownError
+from ..common.interrupts import Interrupts, interrupts_noted
+from ..components.component import Component
+from ..components.loading import Stepping, load_component
+from ..scene.scene import Scene
+from .assembly import assemble
+from .bonds.description import exchange, unjoined
+from .ledger import Balance, Judge, Ledger, Shortening
+from .ledger.auditor import heard
+from .loop.compiled import MacroSteps, Stretches
+from .loop.span import Retirement, Values, named_zero, span, swapped_away
+from .loop_gain import LoopGain
+from .observer import BEAT, Moment, Observer
+from .penetration import Penetration
+from .recorder import Recorder
+from .steppers import stepper
+from .steppers.stepper import Stepper
+from .system import System
 
 MOST_STEPS = 10**9  # macro steps of a run; days of work
 

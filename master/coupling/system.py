@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import scaled
-from touchdown.master.components.component import EXACT, Component, Kind
-from touchdown.master.components.contract import REACH
-from touchdown.master.coupling.bonds.bond import Bond
-from touchdown.master.coupling.connections import Attachment, Connection, hit_together, split, used_modes
-from touchdown.master.coupling.layout import Intake, lay_out
+from ..common.errors import TouchdownError
+from ..common.units import scaled
+from ..components.component import EXACT, REACH, Component, Kind
+from .bonds.bond import Bond
+from .connections import Attachment, Connection, hit_together, split, used_modes
+from .layout import Intake, lay_out
 
 RATE = "contact.rate"  # of a touchdown bearing: how fast the journal swings on its contact, rad/s
 

@@ -8,16 +8,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from fmpy.validation import validate_fmu
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import NUMBERS, Component
-from touchdown.master.components.fmu import ArchivedFmu
-from touchdown.master.components.library.loading import Stepping, load_component
-from touchdown.master.components.library.sources import foreign
-from touchdown.master.interop.contract import BEARING, ROLES, Report, check_ports, check_role, ports
-from touchdown.master.interop.experiments import Experiment, experiments, largest_deviation
-from touchdown.master.interop.press import press
-from touchdown.master.scene.run_spec import CALL_TIMEOUT
-from touchdown.modelkit.variables import Causality
+from ...modelkit.variables import Causality
+from ..common.errors import TouchdownError
+from ..components.component import NUMBERS, Component
+from ..components.fmu import ArchivedFmu
+from ..components.loading import Stepping, foreign, load_component
+from ..scene.run_spec import CALL_TIMEOUT
+from .contract import BEARING, ROLES, Report, check_ports, check_role, ports
+from .experiments import Experiment, experiments, largest_deviation
+from .press import press
 
 DRY_RUN_STEPS, DRY_RUN_STEP = 10, 1e-5
 DRY_RUN_SPEED = 1e-3  # m/s, of what a bearing holds

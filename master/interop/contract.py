@@ -9,8 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from touchdown.master.components.component import Component, Kind, Variable
-from touchdown.master.components.contract import (
+from ...modelkit.ports import MODES
+from ...modelkit.variables import Causality
+from ..components.component import (
     FORCE,
     JUMP,
     LOAD,
@@ -25,10 +26,11 @@ from touchdown.master.components.contract import (
     STATIC,
     UNITS,
     WORK,
+    Component,
+    Kind,
+    Variable,
 )
-from touchdown.master.coupling.ledger.heard import CLEARANCE, REPORT
-from touchdown.modelkit.ports import MODES
-from touchdown.modelkit.variables import Causality
+from ..coupling.ledger.auditor import CLEARANCE, REPORT
 
 TAKING = (Causality.INPUT,)
 GIVING = (Causality.OUTPUT, Causality.CALCULATED_PARAMETER)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from touchdown.fmus.python.host import NEEDED
-from touchdown.fmus.python.link import (
+from ...fmus.python.host import NEEDED
+from ...fmus.python.link import (
     LinkError,
     interpreter,
     patchelf,
@@ -21,12 +21,12 @@ from touchdown.fmus.python.link import (
     starts_alone,
     why_not_compiled,
 )
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.interface import describe
-from touchdown.master.components.unpack import unpack
-from touchdown.master.interop import trial
-from touchdown.modelkit.kernel.cache_folder import user_cache, why_temporary
-from touchdown.modelkit.kernel.machine_code import about_shipped
+from ...modelkit.kernel.cache_folder import user_cache, why_temporary
+from ...modelkit.kernel.machine_code import about_shipped
+from ..common.errors import TouchdownError
+from ..components.description import describe
+from ..components.unpack import unpack
+from . import trial
 
 PATIENCE = 600.0  # s; a first step compiles for a minute at most
 

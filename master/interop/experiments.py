@@ -18,10 +18,10 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import NUMBERS, Component, Kind, Variable, check_value, value_of
-from touchdown.master.interop.ssp import xml
-from touchdown.master.interop.ssp.bindings import parameters
+from ..common.errors import TouchdownError
+from ..components.component import NUMBERS, Component, Kind, Variable, check_value, value_of
+from .ssp import xml
+from .ssp.structure import parameters
 
 FOLDER = "extra/org.fmi-standard.fmi-ls-ref"
 MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"

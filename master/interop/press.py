@@ -12,10 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Component
-from touchdown.master.components.contract import FORCE, POSITION
-from touchdown.master.interop.contract import Report
+from ..common.errors import TouchdownError
+from ..components.component import FORCE, POSITION, Component
+from .contract import Report
 
 STEP = 1e-5  # s
 MOVING, RESTING = 10, 40  # steps between two places, and at the one where the force is read
@@ -58,7 +57,7 @@ class _Rig:
 
     def _step(self, place: np.ndarray, velocity: np.ndarray) -> None:
         suffixes: tuple[str, ...] = (*POSITION, *VELOCITY)
-        values = dict(zip(suffixes, (*place, *velocity), strict=True))
+        values: dict[str, float] = dict(zip(suffixes, map(float, (*place, *velocity)), strict=True))
         self._component.inputs[:] = [values[name.rpartition(".")[2]] for name in self._fed]
         self._component.push()
         self._component.step(self._steps * STEP, STEP)

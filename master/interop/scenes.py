@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.interop.ssp.read import read
-from touchdown.master.scene import file
-from touchdown.master.scene.restored import read_resolved
-from touchdown.master.scene.scene import Scene
+from ..common.errors import TouchdownError
+from ..scene import file
+from ..scene.file import read_resolved
+from ..scene.scene import Scene
+from .ssp.read import read
 
 
 def find_scene(name: str) -> Scene:

@@ -10,20 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from touchdown.master.report.chapters.accuracy import accuracy
-from touchdown.master.report.chapters.drop import drop, test_figures
-from touchdown.master.report.chapters.figures import spectra, stresses
-from touchdown.master.report.chapters.forces import forces
-from touchdown.master.report.chapters.life import life
-from touchdown.master.report.chapters.machine import machine
-from touchdown.master.report.chapters.model import model
-from touchdown.master.report.chapters.repeat import repeat
-from touchdown.master.report.chapters.rolling import balls, run_up
-from touchdown.master.report.chapters.settings import settings
-from touchdown.master.report.chapters.summary import summary
-from touchdown.master.report.facts.subject import Subject
-from touchdown.master.report.page.blocks import Absent, Block, Section
-from touchdown.master.results.recording import NotRecordedError
+from ..results.recording import NotRecordedError
+from .blocks import Absent, Block, Section
+from .chapters.basis import accuracy, model, repeat, settings
+from .chapters.bearings import balls, life, run_up
+from .chapters.contact import forces, spectra, stresses
+from .chapters.drop import drop, test_figures
+from .chapters.machine import machine
+from .chapters.summary import summary
+from .subject import Subject
 
 
 @dataclass(frozen=True)

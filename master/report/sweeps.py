@@ -12,12 +12,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import spoken, with_unit
-from touchdown.master.report.facts.labels import NODE, label
-from touchdown.master.report.facts.numbers import NONE, digits, quantity, share
-from touchdown.master.report.facts.subject import number
-from touchdown.master.report.page.blocks import (
+from ..common.errors import TouchdownError
+from ..common.units import spoken, with_unit
+from ..results.figures.style import sized
+from ..results.whirl.evidence import first_contact
+from ..results.whirl.verdict import clopper_pearson, has_verdict, whirling
+from ..scene.scene import amended
+from ..studies.sweep.definition import Column
+from ..studies.sweep.members import Member
+from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
+from ..studies.sweep.results import Sweep
+from .blocks import (
     Absent,
     Block,
     Folded,
@@ -31,17 +36,10 @@ from touchdown.master.report.page.blocks import (
     Tile,
     Tiles,
 )
-from touchdown.master.report.page.writing import Page, made_now
-from touchdown.master.report.pictures.svg import inline
-from touchdown.master.results.figures.style import sized
-from touchdown.master.results.whirl.evidence import first_contact
-from touchdown.master.results.whirl.share import clopper_pearson
-from touchdown.master.results.whirl.told import has_verdict, whirling
-from touchdown.master.scene.titles import amended
-from touchdown.master.studies.sweep.definition import Column
-from touchdown.master.studies.sweep.journal import Member
-from touchdown.master.studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
-from touchdown.master.studies.sweep.results import Sweep
+from .charts import inline
+from .numbers import NODE, NONE, digits, label, quantity, share
+from .page import Page, made_now
+from .subject import number
 
 FIRST_FORCE = "first_impact_contact_force_N"
 FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"

@@ -10,13 +10,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import READABLE, Component, Variable
-from touchdown.master.components.contract import MOUNTED
-from touchdown.master.coupling.connections import Attachment, Connection, full
-from touchdown.master.coupling.system import System
-from touchdown.master.results.recording import Recording
-from touchdown.master.scene.scene import Scene
+from ..common.errors import TouchdownError
+from ..components.component import MOUNTED, READABLE, Component, Variable
+from ..coupling.connections import Attachment, Connection, full
+from ..coupling.system import System
+from ..scene.scene import Scene
+from .recording import Recording
 
 HOUSING = f"{MOUNTED}.x"  # what a bearing knows of the housing it moves with
 

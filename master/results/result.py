@@ -12,18 +12,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.several import several
-from touchdown.master.results.ending import Ending, Finished
-from touchdown.master.results.recording import Recording
-from touchdown.master.results.summary import table
-from touchdown.master.scene.scene import Scene
+from ..common.errors import Ended, several
+from ..scene.scene import Scene
+from .ending import Ending, Finished
+from .recording import Recording
+from .summary import table
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from touchdown.master.results.figures.plot import Plot
+    from .figures.plot import Plot
 
 RECORDING = "result.h5"
 
@@ -74,7 +73,7 @@ class Result:
 
         Every variable has the attributes units and long_name, and is read when it is looked at.
         """
-        from touchdown.master.results.dataset import dataset
+        from .recording import dataset
 
         return dataset(self.recording)
 
@@ -93,7 +92,7 @@ class Result:
     @property
     def plot(self) -> Plot:
         """Pictures: `plot.orbit()`, `plot.forces()` and more, each of which returns its axes."""
-        from touchdown.master.results.figures.plot import Plot
+        from .figures.plot import Plot
 
         return Plot(self._finished)
 

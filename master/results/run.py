@@ -9,24 +9,22 @@ from functools import partial
 from pathlib import Path
 from typing import Literal
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
-from touchdown.master.common.interrupts import interrupts_noted
-from touchdown.master.common.progress import bars
-from touchdown.master.components.library.ahead import compile_beside, new_models
-from touchdown.master.components.library.sources import foreign
-from touchdown.master.coupling.simulation import Outcome, macro_steps, open_system, simulate
-from touchdown.master.results.ending import Finished, ending
-from touchdown.master.results.folder import TABLE, ResultsFolder, claimed
-from touchdown.master.results.folder.ending import write_ending
-from touchdown.master.results.motion.until import UntilSettled, unsettled
-from touchdown.master.results.recording import Recording, write_csv
-from touchdown.master.results.result import RECORDING, Result, Scratch
-from touchdown.master.results.summary import summarise
-from touchdown.master.results.whirl.evidence import first_contact
-from touchdown.master.scene.run_spec import SETTLED
-from touchdown.master.scene.scene import Scene
+from ..common.errors import Ended, TouchdownError
+from ..common.files import writing_to
+from ..common.interrupts import interrupts_noted
+from ..common.progress import bars
+from ..components.compile_ahead import compile_beside, new_models
+from ..components.loading import foreign
+from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
+from ..scene.run_spec import SETTLED
+from ..scene.scene import Scene
+from .ending import Finished, ending
+from .folder import TABLE, ResultsFolder, claimed, write_ending
+from .recording import Recording, write_csv
+from .result import RECORDING, Result, Scratch
+from .summary import summarise
+from .until import UntilSettled, unsettled
+from .whirl.evidence import first_contact
 
 Pictures = bool | Literal["dark"]  # whether to draw, and on which ground
 
@@ -47,7 +45,7 @@ def run_scene(
     Raises TouchdownError where the run cannot start. One that stops part-way (also by Ctrl-C) leaves all
     it recorded, and says why in the result.
     """
-    macro_steps(scene.run.duration, scene.run.macro_step)  # what is endless shows no bar
+    refuse_endless(scene.run.duration, scene.run.macro_step)  # before it shows a bar
     scratch = None
     if folder is None:
         scratch = Scratch()
@@ -155,7 +153,7 @@ def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Pa
         write_csv(run.recording, folder / TABLE)
     if not pictures or len(run.recording.time) < 2:  # broken off before its first step
         return []
-    from touchdown.master.results.figures.drawing import draw_all  # matplotlib is slow to import
+    from .figures.plot import draw_all  # matplotlib is slow to import
 
     return draw_all(run, folder, dark=pictures == "dark")
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 
-from touchdown.master.coupling.simulation import Outcome
-from touchdown.master.results.ending import Readable, Teller
+from ..coupling.simulation import Outcome
+from .ending import Readable, Teller
 
 MPA = 1e-6
 KINDS = ("bending", "shear")

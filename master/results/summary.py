@@ -9,28 +9,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.ledger.heard import told_by_master
-from touchdown.master.coupling.simulation import Outcome, energy_scale
-from touchdown.master.results.ending import Readable, housing_port
-from touchdown.master.results.motion.course import Course, course, proposed, settled_at
-from touchdown.master.results.motion.impact import (
-    FIRST_IMPACT,
-    Reported,
-    latest,
-    over_at,
-    stresses_at,
-    values_at,
-)
-from touchdown.master.results.motion.spectra import hann
-from touchdown.master.results.recording import NotRecordedError, Recording
-from touchdown.master.results.stresses import stress_figures
-from touchdown.master.results.whirl.contacts import Orbit
-from touchdown.master.results.whirl.drive import force_phase
-from touchdown.master.results.whirl.verdict import Episode, Verdict, Whirl, classify
-from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.variables import Causality
+from ...modelkit.variables import Causality
+from ..common.errors import Ended
+from ..coupling.connections import Attachment
+from ..coupling.ledger.auditor import told_by_master
+from ..coupling.simulation import Outcome, energy_scale
+from ..scene.scene import Scene
+from .ending import Readable, housing_port
+from .first_impact import FIRST_IMPACT, Reported, latest, over_at, stresses_at, values_at
+from .recording import NotRecordedError, Recording
+from .settling import Course, course, proposed, settled_at
+from .spectra import hann
+from .stresses import stress_figures
+from .whirl.contacts import Orbit
+from .whirl.verdict import Episode, Verdict, Whirl, classify, force_phase
 
 STANDS_OUT = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)

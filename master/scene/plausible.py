@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from touchdown.master.common.errors import TouchdownError
+from ..common.errors import TouchdownError
 
 RPM = 2.0 * math.pi / 60.0
 MOST_BORE_SPEED = 1e3  # m rpm, bore times speed: what grease-lubricated ball bearings run

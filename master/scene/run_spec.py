@@ -2,14 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import to_si
-from touchdown.master.scene.schemes import DEFAULT, SCHEMES, Scheme, scheme
-from touchdown.master.scene.tables import above_zero, beginnings, refuse_unknown, switch, whole
+from ..common.errors import TouchdownError, one_of
+from ..common.units import to_si
+from .schemes import DEFAULT, SCHEMES, Scheme, scheme
+from .tables import above_zero, beginnings, refuse_unknown, switch, whole
+
+
+def shorter_step(run: RunSpec, share: float, order: int) -> float:
+    """A macro step (s) with which the ledger should hold, after `share` of the turnover was too much.
+
+    From the order at which the residual falls with the step, to half of what is warned of.
+    """
+    wanted = 0.5 * run.warn_residual / share if math.isfinite(share) else 0.0
+    step = run.macro_step * max(wanted, 1e-9) ** (1.0 / order)
+    return tidy(min(step, 0.5 * run.macro_step))
+
+
+def tidy(step: float) -> float:
+    """The largest of 1, 2 or 5 times a power of ten that is not above `step`."""
+    power = 10.0 ** math.floor(math.log10(step))
+    return power * max(digit for digit in (1, 2, 5) if digit * power <= step * (1.0 + 1e-9))
+
 
 CALL_TIMEOUT = 60.0  # s
 AUTO = "auto"  # as the scheme has it

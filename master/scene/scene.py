@@ -1,21 +1,148 @@
-"""A scene: components, how they are attached, and how to run them. Frozen: changes make copies."""
+"""A scene: components, how they are attached, and how to run them."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from fnmatch import fnmatchcase
-from pathlib import Path
-from typing import cast
+from pathlib import Path, PurePath
+from typing import NamedTuple, cast
 
-from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
-from touchdown.master.common.units import plain, with_unit
-from touchdown.master.scene.run_spec import UNITS, RunSpec, with_changes
-from touchdown.master.scene.schemes import Scheme
-from touchdown.master.scene.tables import component_name, switch, whole
-from touchdown.master.scene.titles import retitled
-from touchdown.master.scene.wires import BondSpec, Wire
+from ..common.errors import TouchdownError, one_of, with_remedy
+from ..common.units import Scale, plain, to_si, with_unit
+from .run_spec import UNITS, RunSpec, with_changes
+from .schemes import Scheme
+from .tables import component_name, entries, items, pairs, refuse_unknown, switch, texts, whole
+
+
+class Wire(NamedTuple):
+    """A single variable feeding another, COMPONENT.VARIABLE both."""
+
+    source: str
+    target: str
+    scale: Scale | None = None  # factor and offset; None: as it is, in equal units
+
+
+class BondSpec(NamedTuple):
+    """A force one way and a motion the other, whose product is power.
+
+    What a file gives as a list says by its units, or else by its order, which motion is which.
+    """
+
+    force: Wire
+    position: Wire | None = None
+    velocity: Wire | None = None
+    motion: tuple[Wire, ...] = ()  # not told apart yet
+
+    @property
+    def wires(self) -> tuple[Wire, ...]:
+        """All of them, the force first."""
+        told = (self.force, self.position, self.velocity)
+        return (*(wire for wire in told if wire is not None), *self.motion)
+
+
+BOND = 'such as [["s1.f", "s2.f"], ["s2.x", "s1.x2"], ["s2.v", "s1.v2"]]'
+
+
+def wires(value: object, where: str) -> tuple[Wire, ...]:
+    """Pairs, some with factor and offset."""
+    listed = [items(wire) for wire in items(value) or ()]
+    if not isinstance(value, list) or None in listed:
+        raise TouchdownError(f'{where} must be a list such as [["rotor.A.x", "probe.x"]]')
+    return tuple(_wire(wire, where) for wire in listed if wire is not None)
+
+
+def _wire(wire: Sequence[object], where: str) -> Wire:
+    """Source and target, and where it is scaled, factor and offset."""
+    ((source, target),) = pairs([list(wire[:2])], where)
+    if len(wire) == 2:
+        return Wire(source, target)
+    if len(wire) != 4:
+        raise TouchdownError(f"{where}: {wire}: after source and target, give factor and offset")
+    what = f"{where}: {source} to {target}"
+    return Wire(
+        source, target, (to_si(wire[2], "1", f"{what}, factor"), to_si(wire[3], None, f"{what}, offset"))
+    )
+
+
+def bonds(value: object, where: str) -> tuple[BondSpec, ...]:
+    """A bond as a list of its wires, the force first; or a list of bonds, of which each may be a table."""
+    listed = items(value)
+    if listed is None:
+        raise TouchdownError(f"{where} must be a list of wires, the force first, {BOND}")
+    return tuple(_bonds(listed, where))
+
+
+def _bonds(listed: Sequence[object], where: str) -> Iterator[BondSpec]:
+    if listed and all(texts(list(items(wire) or ())[:2]) for wire in listed):  # wires: a single bond
+        yield _listed(listed, where)
+        return
+    for bond in listed:
+        table = entries(bond)
+        if table is None:
+            yield _listed(items(bond) or (), where)
+            continue
+        refuse_unknown(table, ("force", "position", "velocity"), where)
+        named = {kind: wires([wire], f"{where}.{kind}")[0] for kind, wire in table.items()}
+        if "force" not in named or len(named) == 1:
+            raise TouchdownError(f"{where} needs force, and position or velocity or both")
+        yield BondSpec(named["force"], named.get("position"), named.get("velocity"))
+
+
+def _listed(listed: Sequence[object], where: str) -> BondSpec:
+    found = wires(list(listed), where)
+    if not 2 <= len(found) <= 3:
+        raise TouchdownError(
+            f"{where} has {len(found)} wires; a bond is a force and one or two of motion, {BOND}"
+        )
+    return BondSpec(found[0], motion=found[1:])
+
+
+MOST = 3  # changes that a title names
+_DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
+
+
+def retitled(title: str, component: str, before: str, after: str, alone: bool) -> str:
+    """A scene's title once `component` is the FMU `after` in place of `before`.
+
+    Where the title names `before`, and that is the only component of its kind (`alone`), it names `after`
+    instead; else what was swapped is added.
+
+    >>> retitled("A disk on a simplified caged bearing", "bearing", "simplified_caged", "bushing", True)
+    'A disk on a bushing bearing'
+    >>> retitled("Two bearings", "bearing_A", "amb", "my/own.fmu", False)
+    'Two bearings (bearing_A: own)'
+    """
+    old, new = _words(before), _words(after)
+    if old == new:
+        return title
+    added = f" ({component}: {{}})"
+    if added.format(old) in title:
+        return title.replace(added.format(old), added.format(new))
+    found = re.search(rf"\b{re.escape(old)}\b", title, re.IGNORECASE) if alone else None
+    if found is None:
+        return title + added.format(new)
+    capital = found[0][0].isupper() and not old[0].isupper()
+    return title[: found.start()] + (new[0].upper() + new[1:] if capital else new) + title[found.end() :]
+
+
+def amended(title: str, changes: Sequence[str]) -> str:
+    """A scene's title with what was set beside the scene, which the title may deny.
+
+    >>> amended("A disk at 9000 rpm", ["rotor.speed = 12000 rpm"])
+    'A disk at 9000 rpm, but with rotor.speed = 12000 rpm'
+    """
+    if not changes:
+        return title
+    more = f" and {len(changes) - MOST} more" if len(changes) > MOST else ""
+    return f"{title}, but with {', '.join(changes[:MOST])}{more}"
+
+
+def _words(fmu: str) -> str:
+    """What an FMU is called, for people: the name of its file without underscores."""
+    return _DIGEST.sub("", PurePath(fmu).stem).replace("_", " ")
 
 
 @dataclass(frozen=True)
@@ -245,7 +372,7 @@ def checked_preset(name: object, where: str, *folders: Path) -> str | None:
     if name is None:
         return None
     # imports numba, which a list of scenes can do without
-    from touchdown.fmus.recipes import CatalogueError, find_preset
+    from ...fmus.recipes import CatalogueError, find_preset
 
     try:
         return find_preset(str(name), *folders)

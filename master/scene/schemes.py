@@ -19,8 +19,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
+from ...modelkit.ports import ACCELERATION, HOLD, MODEL, VELOCITY
+from ..common.errors import TouchdownError, one_of
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.common.units import to_si
-from touchdown.modelkit.units import NUMBER
+from ...modelkit.units import NUMBER
+from ..common.errors import TouchdownError, one_of
+from ..common.units import to_si
 
 DEEPEST = 32
 NAME = re.compile(r"\w[\w -]*")  # of a component

@@ -1,49 +1,46 @@
-"""The verbs of the command `touchdown`, one module each; `ALL` is in the order of its help."""
+"""The verbs of the command `touchdown`, in the groups and the order of its help."""
 
 from __future__ import annotations
 
-from touchdown.master.verbs import run
-from touchdown.master.verbs.fmus import build, cache, check, container, doctor, ssp
-from touchdown.master.verbs.machines import catalogue, new, scenes
-from touchdown.master.verbs.reports import animate, report
-from touchdown.master.verbs.studies import (
-    advise,
-    compare,
-    compare_bearings,
-    compare_modes,
-    compare_rotors,
-    figure,
-    merge,
-    stability,
-    sweep,
-    verdict,
-)
-from touchdown.master.verbs.studies.rotors import import_rotor, rotor
-from touchdown.master.verbs.verb import Verb
+from collections.abc import Mapping
 
-ALL: tuple[Verb, ...] = (
-    scenes.VERB,
-    catalogue.VERB,
-    new.VERB,
-    run.VERB,
-    report.VERB,
-    animate.VERB,
-    advise.VERB,
-    sweep.VERB,
-    merge.VERB,
-    verdict.VERB,
-    rotor.VERB,
-    import_rotor.VERB,
-    compare.VERB,
-    compare_bearings.VERB,
-    compare_rotors.VERB,
-    compare_modes.VERB,
-    figure.VERB,
-    stability.VERB,
-    build.VERB,
-    ssp.VERB,
-    container.VERB,
-    check.VERB,
-    doctor.VERB,
-    cache.VERB,
-)
+from . import comparisons, fmus, machines, runs, source, sweeps
+from .verb import Verb
+
+GROUPS: Mapping[str, tuple[Verb, ...]] = {
+    "your machine": (
+        machines.NEW,
+        machines.SCENES,
+        machines.CATALOGUE,
+        machines.ROTOR,
+        machines.IMPORT_ROTOR,
+    ),
+    "run and look": (
+        runs.RUN,
+        runs.REPORT,
+        runs.ANIMATE,
+    ),
+    "studies": (
+        sweeps.SWEEP,
+        sweeps.MERGE,
+        sweeps.VERDICT,
+        comparisons.COMPARE,
+        comparisons.COMPARE_MODES,
+        comparisons.ADVISE,
+        comparisons.STABILITY,
+    ),
+    "the source": (
+        source.FIGURE,
+        source.COMPARE_BEARINGS,
+        source.COMPARE_ROTORS,
+    ),
+    "FMUs and systems": (
+        fmus.BUILD,
+        fmus.CHECK,
+        fmus.SSP,
+        fmus.CONTAINER,
+        fmus.DOCTOR,
+        fmus.CACHE,
+    ),
+}
+ALL: tuple[Verb, ...] = tuple(verb for group in GROUPS.values() for verb in group)

@@ -7,18 +7,18 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import to_si
-from touchdown.master.scene.run_spec import UNTIL
-from touchdown.master.scene.schemes import DEFAULT, SCHEMES
-from touchdown.master.verbs import completion
-from touchdown.master.verbs.completion import complete
-from touchdown.master.verbs.screen import warn
+from ..common.errors import TouchdownError
+from ..common.units import to_si
+from ..scene.run_spec import UNTIL
+from ..scene.schemes import DEFAULT, SCHEMES
+from . import completion
+from .completion import complete
+from .verb import warn
 
 if TYPE_CHECKING:
-    from touchdown.master.interop.packing import Making
-    from touchdown.master.scene.scene import Scene
-    from touchdown.master.studies.sweep.results import Sweep
+    from ..interop.container import Making
+    from ..scene.scene import Scene
+    from ..studies.sweep.results import Sweep
 
 MOST = 10_000  # of what is counted: runs, repetitions
 MOST_JOBS = 256  # processes, each of a hundred MB and more
@@ -142,14 +142,14 @@ def add_quiet(verb: argparse.ArgumentParser) -> None:
 
 def chosen_scene(options: argparse.Namespace) -> Scene:
     """The scene that the options of `add_scene` ask for. Raises TouchdownError."""
-    from touchdown.master.interop.scenes import find_scene
+    from ..interop.scenes import find_scene
 
     chosen = swapped(find_scene(options.scene), options).set(settings(options))
     if options.scheme is not None:
         chosen = chosen.set({"run.scheme": options.scheme})
     chosen = timed(chosen, options)
     if options.macro_step == "auto":
-        from touchdown.master.studies.schemes.advisor import advise
+        from ..studies.comparison.schemes import advise
 
         advice = advise(chosen)[chosen.run.scheme.name]
         print(f"macro step {1e6 * advice.macro_step:g} us: {advice.reason}")
@@ -167,7 +167,7 @@ def timed(scene: Scene, options: argparse.Namespace) -> Scene:
 
 def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
     """`scene` with what --swap puts into it, by the names that --names gives. Raises TouchdownError."""
-    from touchdown.master.scene.file import read_names
+    from ..scene.file import read_names
 
     for text in options.swap:
         name, fmu = assignment(text, "--swap")
@@ -180,7 +180,7 @@ def swapped(scene: Scene, options: argparse.Namespace) -> Scene:
 
 def show_sweep(found: Sweep, folder: Path, options: argparse.Namespace) -> None:
     """Print what a sweep found, and draw its maps into `folder`, as the options of `add_maps` ask."""
-    from touchdown.master.studies.sweep.report import report_lines
+    from ..studies.sweep.report import report_lines
 
     lines, complaints = report_lines(found.members, options.pick)
     print("\n".join(lines))
@@ -192,7 +192,7 @@ def show_sweep(found: Sweep, folder: Path, options: argparse.Namespace) -> None:
 
 def making(options: argparse.Namespace) -> Making:
     """How the options of `add_making` ask for FMUs. Raises TouchdownError."""
-    from touchdown.master.interop.packing import Making
+    from ..interop.container import Making
 
     return Making(options.link_python, options.native)
 
@@ -240,7 +240,7 @@ def several_above_zero(text: str | None, unit: str, option: str) -> tuple[float,
 
     A unit at the end is everyone's. Raises TouchdownError.
     """
-    from touchdown.master.studies.sweep.variation import listed
+    from ..studies.sweep.definition import listed
 
     if text is None:
         return ()
@@ -255,7 +255,7 @@ def angle(text: str, option: str) -> float:
 
 def results_folder(options: argparse.Namespace, default: str | None = None) -> Path:
     """The folder that -o names, or runs/DEFAULT; it is made. Raises TouchdownError where it cannot be."""
-    from touchdown.master.results.run import make_writable
+    from ..results.run import make_writable
 
     folder: Path = options.output or Path("runs") / str(default)
     make_writable(folder)

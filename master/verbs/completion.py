@@ -9,8 +9,8 @@ import argparse
 from collections.abc import Callable, Iterable
 from typing import Any, cast
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.scene.schemes import SCHEMES
+from ..common.errors import TouchdownError
+from ..scene.schemes import SCHEMES
 
 Completer = Callable[..., Iterable[str]]
 """Takes `prefix`, what is typed of the word, and `parsed_args`, the options before it."""
@@ -23,7 +23,7 @@ def complete(action: argparse.Action, completer: Completer) -> None:
 
 def scenes(**_: object) -> list[str]:
     """Names of the scenes that come with the project."""
-    from touchdown.master.scene.file import shipped
+    from ..scene.file import shipped
 
     return list(shipped())
 
@@ -35,28 +35,28 @@ def schemes(**_: object) -> list[str]:
 
 def figures(**_: object) -> list[str]:
     """Names of the source's figures and tables."""
-    from touchdown.master.studies.dissertation.exhibits.registry import ENTRIES
+    from ..studies.dissertation.exhibits.registry import ENTRIES
 
     return ["all", "list", *(entry.name for entry in ENTRIES)]
 
 
 def fmus(**_: object) -> list[str]:
     """Names of the FMUs that the project's scripts make."""
-    from touchdown.fmus.scripts import scripts
+    from ...fmus.scripts import scripts
 
     return list(scripts())
 
 
 def targets(**_: object) -> list[str]:
     """Machines that native FMUs are built for."""
-    from touchdown.fmus.native.targets import TARGETS
+    from ...fmus.native.compiler import TARGETS
 
     return list(TARGETS)
 
 
 def settings(parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """NAME= of what --set takes: the keys of [run], and what the scene itself sets."""
-    from touchdown.master.scene.run_spec import RunSpec
+    from ..scene.run_spec import RunSpec
 
     keys = [f"run.{key}=" for key in RunSpec.__dataclass_fields__]
     return keys + [f"{name}.{key}=" for name, part in _components(parsed_args) for key in _set_in(part)]
@@ -74,7 +74,7 @@ def components(parsed_args: argparse.Namespace, **_: object) -> list[str]:
 
 def _components(parsed_args: argparse.Namespace) -> list[tuple[str, Any]]:
     """[components] of the scene that is named already, unchecked; none where it is not, or is no scene."""
-    from touchdown.master.scene.file import locate, tables
+    from ..scene.file import locate, tables
 
     try:
         return list(tables(locate(parsed_args.scene))["components"].items())
@@ -83,6 +83,6 @@ def _components(parsed_args: argparse.Namespace) -> list[tuple[str, Any]]:
 
 
 def _set_in(component: Any) -> list[str]:
-    from touchdown.master.scene.tables import flat
+    from ..scene.tables import flat
 
     return list(flat(component.get("set", {})))

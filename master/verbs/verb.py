@@ -1,9 +1,13 @@
-"""What a verb of the command is."""
+"""What a verb of the command is, and what several verbs show."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import io
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,3 +37,55 @@ class Verb:
         )
         self.declare(parser)
         parser.set_defaults(run=self.execute)
+
+
+BROKEN_OFF = 130  # exit status: by Ctrl-C
+
+
+def complain(text: str) -> None:
+    """One line on stderr, from `touchdown`, whatever is quoted in it: what does not print is escaped."""
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    with suppress(OSError):  # there is no other place to say it
+        print(f"touchdown: {shown}", file=sys.stderr)
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """A line on stderr for each of them."""
+    for warning in warnings:
+        complain(f"warning: {warning}")
+
+
+def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:
+    """One line, where FMUs of others' are about to run; `fmus` says which have a process of their own."""
+    own = [fmu for fmu, isolated in fmus.items() if isolated]
+    here = [fmu for fmu, isolated in fmus.items() if not isolated]
+    said = [f"in a process of its own: {', '.join(own)}"] if own else []
+    said += [f"in the master's process (see --isolate): {', '.join(here)}"] if here else []
+    if said:
+        print(f"runs code that others wrote, {'; '.join(said)}", flush=True)
+
+
+def broken_off() -> int:
+    """Say that the user interrupted it; returns the exit status."""
+    complain("interrupted")
+    return BROKEN_OFF
+
+
+def show_any_text() -> None:
+    """Let what a terminal's encoding has not be shown as escapes, such as \\xb5 for the sign of micro."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def undelivered() -> str:
+    """Why what was printed did not arrive, or "": a reader may go when it has seen enough."""
+    if sys.stdout is None:
+        return ""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        with suppress(OSError), open(os.devnull, "wb") as nowhere:
+            os.dup2(nowhere.fileno(), sys.stdout.fileno())  # Python's own try at its end would fail, too
+        return "" if isinstance(error, BrokenPipeError) else str(error.strerror)
+    return ""

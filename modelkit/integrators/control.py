@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from touchdown.modelkit.kernel import kernel
+from ..kernel import kernel
 
 SMALLEST_STEP = 1e-15  # s; far below the fastest motion here (0.1 us)
 MOST_STEPS = 1_000_000  # in one macro step; a slower advance is a failure, not patience

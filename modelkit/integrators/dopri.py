@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
+from ..kernel import kernel
+from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
+from .control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
 
 STAGES = 7
 TRIAL = STAGES  # the row of scratch behind the stages

@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
+from ..kernel import kernel
+from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
+from .control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
 
 STAGES = 4
 EXPONENT = 1.0 / 3.0  # the error is of order 3 in the step

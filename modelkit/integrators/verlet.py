@@ -18,9 +18,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from touchdown.modelkit.integrators.control import MOST_STEPS, SMALLEST_STEP
-from touchdown.modelkit.kernel import kernel
-from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
+from ..kernel import kernel
+from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
+from .control import MOST_STEPS, SMALLEST_STEP
 
 OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
 FADING = 0.999  # of the largest frequency, a step

@@ -9,13 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from touchdown.modelkit.kernel.compiled import (
-        PHYSICS_PACKAGES,
-        kernel,
-        kernel_of,
-        source_hash,
-        woven,
-    )
+    from .compiled import PHYSICS_PACKAGES, kernel, kernel_of, source_hash, woven
 
 __all__ = ["PHYSICS_PACKAGES", "kernel", "kernel_of", "source_hash", "woven"]
 

@@ -17,10 +17,10 @@ import numba
 from numba.core import config
 from numba.core.dispatcher import Dispatcher
 
-from touchdown.modelkit.kernel import shipped
-from touchdown.modelkit.kernel.cache_folder import own_folder
-from touchdown.modelkit.kernel.machine_code import KernelCache
-from touchdown.modelkit.kernel.tried import is_tried
+from . import machine_code
+from .cache_folder import own_folder
+from .front_end import is_tried
+from .machine_code import KernelCache
 
 
 @cache
@@ -92,7 +92,7 @@ def _dispatcher(function: Callable[..., object], options: Mapping[str, bool]) ->
     """`linked`, or, with a numba that this was not tried with, what numba makes of it: the same results."""
     if cast(Any, config).DISABLE_JIT or not is_tried():
         return cast(Any, numba).njit(error_model="numpy", **options)(function)
-    from touchdown.modelkit.kernel.linked import KernelDispatcher
+    from .linked import KernelDispatcher
 
     return KernelDispatcher(function, targetoptions=options)
 
@@ -109,6 +109,6 @@ def _machine_code_folder(packages: tuple[str, ...]) -> Path | None:
 @cache
 def _shipped(packages: tuple[str, ...]) -> Path | None:
     """Where machine code of these sources came along with the installation; None where none did."""
-    brought = shipped.folder("machine-code")
+    brought = machine_code.folder("machine-code")
     found = None if brought is None else brought / source_hash(packages)
     return found if found is not None and found.is_dir() else None

@@ -1,11 +1,15 @@
 """numba's way from a function to LLVM code, without what kernels have no use for.
 
+numba's way from a function to LLVM code, without what kernels have no use for.
+
 Most of the time that a kernel takes to compile is numba's own, in Python: over a third of its passes look
 for what no kernel contains, and the type of each sum and product is found by trying dozens of candidates.
 """
 
 from __future__ import annotations
 
+from functools import cache
+from importlib.metadata import version
 from typing import Any
 
 from numba.core import typed_passes, types, untyped_passes
@@ -13,6 +17,16 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 from numba.core.utils import OPERATORS_TO_BUILTINS
+
+NUMBA = ((0, 68), (0, 68))  # the first and the last
+
+
+@cache
+def is_tried() -> bool:
+    """Whether numba is of a version among them."""
+    numbers = tuple(int(part) for part in version("numba").split(".")[:2])
+    return NUMBA[0] <= numbers <= NUMBA[1]
+
 
 UNUSED = (  # `with`, branches on constants, literally(), functions that numba inlines; checks, reports
     untyped_passes.WithLifting,

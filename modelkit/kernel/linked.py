@@ -18,7 +18,7 @@ from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
 from numba.core.typing.templates import make_concrete_template
 
-from touchdown.modelkit.kernel.front_end import FrontEnd
+from .front_end import FrontEnd
 
 OPTIONS = {"nopython": True, "error_model": "numpy"}  # of every kernel
 COUNTING = "NRT_"  # begins the names of functions that count references

@@ -21,8 +21,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.element import Element, ring_area
+from .element import Element, element_matrices, ring_area
 
 
 @dataclass(frozen=True)
@@ -126,7 +125,7 @@ class Beams:
         size = self.coordinates
         mass, stiffness, polar = np.zeros((size, size)), np.zeros((size, size)), np.zeros((size, size))
         for i, element in enumerate(self.elements):
-            own = beam.matrices(element)
+            own = element_matrices(element)
             at = slice(2 * i, 2 * i + 4)
             mass[at, at] += own.mass
             stiffness[at, at] += own.stiffness

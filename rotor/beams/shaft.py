@@ -1,4 +1,6 @@
-"""A flexible rotor as data: what it is made of, and what sits on it and holds it.
+"""A flexible rotor as data: elements, masses, seats, supports, and the matrices of the whole.
+
+A flexible rotor as data: what it is made of, and what sits on it and holds it.
 
 It is a stepped shaft of circular beam elements, or a superelement of matrices. Nodes are numbered from 1,
 at the ends of the elements in their order; positions are measured along the axis from node 1. SI units.
@@ -6,17 +8,18 @@ at the ends of the elements in their order; positions are measured along the axi
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
+from scipy import linalg
 
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.body import Beams
-from touchdown.rotor.beams.body import PointMass as PointMass
-from touchdown.rotor.beams.body import disc as disc
-from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.superelement import Superelement
+from ...modelkit.model import ModelError
+from .body import Beams, Matrices, PointMass
+from .element import Element
+from .superelement import Superelement
 
 MOST_NODES = 2000
 MOST_STATIONS = 8
@@ -125,3 +128,100 @@ class Shaft:
     def diametral_inertia(self) -> float:
         """About a diameter through the centre of mass (kg m2)."""
         return self.body.diametral_inertia
+
+
+TOO_UNLIKE = (
+    "the elements of the rotor are too unlike each other to be calculated together; "
+    "look for very short or very thin ones"
+)
+
+
+def assemble(shaft: Shaft) -> Matrices:
+    """The matrices of what the rotor is made of."""
+    return shaft.body.matrices()
+
+
+def unit_forces(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
+    """A force of 1 N at each of `nodes` (1-based), a column each (2N, len(nodes))."""
+    check_nodes(shaft, nodes)
+    forces = np.zeros((2 * shaft.nodes, len(nodes)))
+    for column, node in enumerate(nodes):
+        forces[2 * (node - 1), column] = 1.0
+    return forces
+
+
+def check_nodes(shaft: Shaft, nodes: Sequence[int]) -> None:
+    """Raises ModelError where one of `nodes` (1-based) does not exist."""
+    for node in nodes:
+        if not 1 <= node <= shaft.nodes:
+            raise ModelError(f"node {node}: the rotor {shaft.title} has nodes 1 to {shaft.nodes}")
+
+
+def solve(stiffness: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    """Deflections of a held rotor, scaled first: deflections and slopes are of different size.
+
+    Raises ModelError where elements are too unlike each other to be calculated together.
+    """
+    scale = 1.0 / np.sqrt(np.diag(stiffness))
+    try:
+        factor = linalg.cho_factor(stiffness * np.outer(scale, scale))
+    except linalg.LinAlgError:
+        raise ModelError(TOO_UNLIKE) from None
+    return (scale * linalg.cho_solve(factor, (scale * loads.T).T).T).T
+
+
+CLOSE = 1e-7  # m; a node this close is the one that is meant
+SHORTEST = 1e-4  # m; of an element
+
+AtNode = TypeVar("AtNode", PointMass, Unbalance, Station, Support)
+
+
+def node_at(shaft: Shaft, position: float) -> int | None:
+    """The node (from 1) at `position` (m from node 1), or None."""
+    apart = np.abs(shaft.positions() - position)
+    nearest = int(np.argmin(apart))
+    return nearest + 1 if apart[nearest] <= CLOSE else None
+
+
+def with_node(shaft: Shaft, position: float) -> Shaft:
+    """The same rotor with a node at `position` (m from node 1), which cuts an element where there is none.
+
+    Raises ModelError where the position is beyond the shaft, less than 0.1 mm from another node, or not a
+    node of a superelement.
+    """
+    if node_at(shaft, position) is not None:
+        return shaft
+    z = shaft.positions()
+    if not 0.0 < position < z[-1]:
+        raise ModelError(
+            f"{1e3 * position:g} mm is not on the rotor {shaft.title}, which ends at {1e3 * z[-1]:g} mm"
+        )
+    if not shaft.elements:
+        near = int(np.argmin(np.abs(z - position)))
+        raise ModelError(
+            f"{1e3 * position:g} mm is no node of the rotor {shaft.title}, whose {shaft.body.kind} know "
+            f"nothing between nodes; the nearest is node {near + 1} at {1e3 * z[near]:g} mm"
+        )
+    cut = int(np.searchsorted(z, position)) - 1
+    if min(position - z[cut], z[cut + 1] - position) < SHORTEST:
+        near = cut + 1 if position - z[cut] < SHORTEST else cut + 2
+        raise ModelError(
+            f"{1e3 * position:g} mm is less than 0.1 mm from node {near} of the rotor {shaft.title}; "
+            f"name that node"
+        )
+    element = shaft.elements[cut]
+    place = (position - z[cut]) / element.length
+    pieces = (element.between(0.0, place), element.between(place, 1.0))
+
+    def moved(things: tuple[AtNode, ...]) -> tuple[AtNode, ...]:
+        return tuple(replace(t, node=t.node + 1) if t.node > cut + 1 else t for t in things)
+
+    return replace(
+        shaft,
+        elements=(*shaft.elements[:cut], *pieces, *shaft.elements[cut + 1 :]),
+        points=moved(shaft.points),
+        unbalances=moved(shaft.unbalances),
+        stations=moved(shaft.stations),
+        sensors=moved(shaft.sensors),
+        supports=moved(shaft.supports),
+    )

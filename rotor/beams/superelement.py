@@ -14,8 +14,8 @@ from functools import cached_property
 import numpy as np
 from scipy import linalg, sparse
 
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.body import Matrices, rigid_motion
+from ...modelkit.model import ModelError
+from .body import Matrices, rigid_motion
 
 MOST_COORDINATES = 1000  # its matrices are full
 ROUNDING = 1e-6  # of others' matrices

@@ -50,9 +50,8 @@ In place of materials, elements, discs and point masses a rotor may have [supere
 whole in one plane (`rotor.file.superelement`), which `touchdown import-rotor` writes.
 """
 
-from touchdown.rotor.file.parser import parse
-from touchdown.rotor.file.storage import find, load, save, shipped, text_of
-from touchdown.rotor.file.table import RotorFileError
-from touchdown.rotor.file.writer import written
+from .reader import RotorFileError, parse
+from .storage import find, load, save, shipped, text_of
+from .writer import written
 
 __all__ = ["RotorFileError", "find", "load", "parse", "save", "shipped", "text_of", "written"]

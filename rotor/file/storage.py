@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.file.parser import parse
-from touchdown.rotor.file.table import RotorFileError
-from touchdown.rotor.file.writer import written
+from ..beams.shaft import Shaft
+from .reader import RotorFileError, parse
+from .writer import written
 
 DATA = Path(__file__).parents[1] / "data"
 

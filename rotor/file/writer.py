@@ -12,12 +12,11 @@ import re
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from touchdown.modelkit.units import SCALES, to_si
-from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Support, Unbalance
-from touchdown.rotor.file.parser import parse
-from touchdown.rotor.file.superelement import superelement_lines
-from touchdown.rotor.file.table import RotorFileError
+from ...modelkit.units import SCALES, to_si
+from ..beams.body import PointMass
+from ..beams.element import Element
+from ..beams.shaft import Shaft, Station, Support, Unbalance
+from .reader import RotorFileError, parse, superelement_lines
 
 PREFERRED = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
 DIGITS = 15  # decimal digits that a float holds

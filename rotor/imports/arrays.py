@@ -19,12 +19,11 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.modelkit.units import UnitError, to_si
-from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.imports.cells import named, separator, text_of
-from touchdown.rotor.imports.matrices import of_matrices
-from touchdown.rotor.imports.mistakes import ImportedRotorError
-from touchdown.rotor.imports.modes import of_modes
+from ...modelkit.units import UnitError, to_si
+from ..beams.shaft import Shaft
+from .matrices import of_matrices
+from .modal import of_modes
+from .tables import ImportedRotorError, named, separator, text_of
 
 MATRICES = ("M", "K", "G", "C")
 

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import MOST_STATIONS, PointMass, Shaft, Station, Support
-from touchdown.rotor.imports.mistakes import ImportedRotorError
+from ..beams.body import PointMass
+from ..beams.element import Element
+from ..beams.shaft import MOST_STATIONS, Shaft, Station, Support
+from .tables import ImportedRotorError
 
 LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")
 TOLD = (  # attributes of elements that matter here

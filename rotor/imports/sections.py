@@ -22,11 +22,11 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from touchdown.modelkit.units import UnitError, to_si
-from touchdown.rotor.beams.element import Element, split
-from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
-from touchdown.rotor.imports.cells import named, separator
-from touchdown.rotor.imports.mistakes import ImportedRotorError
+from ...modelkit.units import UnitError, to_si
+from ..beams.body import PointMass
+from ..beams.element import Element, split
+from ..beams.shaft import MOST_NODES, Shaft, Station, Unbalance
+from .tables import ImportedRotorError, named, separator
 
 UNITS = {  # column: SI unit; those of text and of pure numbers are not here
     "length": "m", "outer diameter": "m", "inner diameter": "m", "outer diameter end": "m",

@@ -12,12 +12,11 @@ from functools import lru_cache
 
 import numpy as np
 
-from touchdown.modelkit.ports import MODES
-from touchdown.modelkit.variables import array, group, integer, real
-from touchdown.rotor.beams.shaft import MOST_STATIONS, Shaft
-from touchdown.rotor.modal.modes import MOST_SOLVED, RIGID, Basis, basis
-from touchdown.rotor.modal.stresses import recovery
-from touchdown.rotor.modal.watched import MOST_WATCHED, watched
+from ...modelkit.ports import MODES
+from ...modelkit.variables import array, group, integer, real
+from ..beams.shaft import MOST_STATIONS, Shaft
+from .modes import MOST_SOLVED, RIGID, Basis, basis
+from .stresses import MOST_WATCHED, recovery, watched
 
 MOST_MODES = MOST_SOLVED + MOST_STATIONS  # per plane, residual vectors included
 MOST_ENDS = 2 * MOST_WATCHED  # of elements

@@ -14,12 +14,10 @@ import numpy as np
 from scipy import linalg, sparse
 from scipy.sparse import linalg as splinalg
 
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import TOO_UNLIKE, assemble, solve, unit_forces
-from touchdown.rotor.beams.body import Matrices
-from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft
+from ...modelkit.model import ModelError
+from ..beams.body import Matrices
+from ..beams.element import Element, element_matrices
+from ..beams.shaft import TOO_UNLIKE, Shaft, assemble, solve, unit_forces
 
 RIGID = 2  # rigid modes per plane
 MOST_SOLVED = 128  # modes per plane of a long list of nodes
@@ -151,7 +149,7 @@ def _lowest(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, n
 
 def _highest(element: Element) -> float:
     """Highest squared frequency of a free element."""
-    own = beam.matrices(element)
+    own = element_matrices(element)
     return float(linalg.eigh(own.stiffness, own.mass, eigvals_only=True)[-1])
 
 

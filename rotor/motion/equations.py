@@ -1,4 +1,18 @@
-"""Motion of a rotor in modal coordinates, both planes in one complex number p = p_x + i p_y.
+"""State and equations of motion of a rotor in modal coordinates.
+
+The state of a rotor of n modes and S stations, and views of its parts.
+
+    q = (p_x, p_y, v_x, v_y, angle, spin, loss, work of the load at each station)        (4 n + 3 + S,)
+
+Modal coordinates p (n,) in m kg^0.5 and velocities v = p' (n,) in m kg^0.5/s, of mass-normalised modes
+that are the same in both planes; angle in rad, spin in rad/s; loss and work in J, since the start.
+
+The gyroscopic coupling of the modes by the modal polar matrix G (n, n), polar inertia per length.
+
+v' = i Omega G v turns the velocities v of the principal axes of G: with G = Q diag(g) Q^T, those of
+Q^T v by the angles g_k int Omega dt.
+
+Motion of a rotor in modal coordinates, both planes in one complex number p = p_x + i p_y.
 
 (3.29) with mass-normalised free-free modes, the same in both planes:
 
@@ -13,13 +27,170 @@ the unbalance's reaction on the spin, without which it would make energy.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel
-from touchdown.rotor.drag import drag
-from touchdown.rotor.motion.gyroscopics import polar_product
-from touchdown.rotor.motion.loads import modal_forces, moment
-from touchdown.rotor.motion.state import ANGLE, LOSS, SPIN, WORK, modal, rest
-from touchdown.rotor.motion.unbalance import spin_momentum, unbalance_of
+import numpy as np
+
+from ...modelkit.kernel import kernel
+
+ANGLE, SPIN, LOSS, WORK = range(4)  # behind the modal coordinates and velocities; WORK: one per station
+
+
+class Planar(NamedTuple):
+    """A quantity of every mode in both planes, (n,) each."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
+class Modal(NamedTuple):
+    """Modal coordinates and velocities, (n,) each; of a derivative, its velocities and accelerations."""
+
+    px: np.ndarray
+    py: np.ndarray
+    vx: np.ndarray
+    vy: np.ndarray
+
+
+@kernel
+def planar(row, m):
+    """The first 2 n places of `row` as `Planar` views."""
+    n = m.d.modes
+    return Planar(row[:n], row[n : 2 * n])
+
+
+@kernel
+def modal(q, m):
+    """The modal part of a state or of its derivative, (N,): views of n each."""
+    n = m.d.modes
+    return Modal(q[:n], q[n : 2 * n], q[2 * n : 3 * n], q[3 * n : 4 * n])
+
+
+@kernel
+def rest(q, m):
+    """What is behind it: a view (3 + S,) with the places ANGLE, SPIN, LOSS, WORK + station."""
+    return q[4 * m.d.modes :]
+
+
+@kernel
+def moment(m, since_middle):
+    """Torque (N m) of all loads, `since_middle` (s) after the middle of the macro step."""
+    total = 0.0
+    for j in range(m.d.stations):
+        load = m.u.station[j]
+        total += load.mz + load.dmz * since_middle
+    return total
+
+
+@kernel
+def spin_up(m, since_middle, spin):
+    """Spin acceleration (rad/s2) by loads and drag at `spin` (rad/s), without the unbalance's reaction."""
+    return (moment(m, since_middle) - drag(spin, m.p)) / m.d.inertia
+
+
+@kernel
+def modal_forces(m, since_middle, fx, fy):
+    """Modal forces of loads and gravity into fx, fy (n,), N/kg^0.5, `since_middle` (s) after the middle."""
+    for k in range(m.d.modes):
+        fx[k] = 0.0
+        fy[k] = -m.p.gravity * m.d.weight[k]
+    for j in range(m.d.stations):
+        load = m.u.station[j]
+        _add(m, j, load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle, fx, fy)
+
+
+@kernel
+def modal_force_rates(m, dfx, dfy):
+    """Their rates into dfx, dfy (n,), N/(kg^0.5 s), the same throughout the macro step."""
+    for k in range(m.d.modes):
+        dfx[k] = 0.0
+        dfy[k] = 0.0
+    for j in range(m.d.stations):
+        load = m.u.station[j]
+        _add(m, j, load.dfx, load.dfy, dfx, dfy)
+
+
+@kernel
+def _add(m, j, x, y, fx, fy):
+    """Add a force (x, y) at station j, in N or N/s, to modal ones (n,)."""
+    if x != 0.0 or y != 0.0:
+        for k in range(m.d.modes):
+            fx[k] += m.d.shape[j, k] * x
+            fy[k] += m.d.shape[j, k] * y
+
+
+@kernel
+def unbalance_of(m, k, cosine, sine):
+    """Unbalance (x, y) of mode k in the fixed frame, kg^0.5 m; cosine and sine of the rotor's angle."""
+    own = m.d.unbalance
+    ux, uy = m.p.unbalance_scale * own.x[k], m.p.unbalance_scale * own.y[k]
+    return ux * cosine - uy * sine, ux * sine + uy * cosine
+
+
+@kernel
+def spin_momentum(vx, vy, m, angle):
+    """Angular momentum (N m s) that the modal velocities (n,) give the unbalance at `angle` (rad).
+
+    Re sum v conj(i U exp(i angle)).
+    """
+    if not m.d.unbalance.present:
+        return 0.0
+    cosine, sine = math.cos(angle), math.sin(angle)
+    total = 0.0
+    for k in range(m.d.modes):
+        ux, uy = unbalance_of(m, k, cosine, sine)
+        total += vy[k] * ux - vx[k] * uy
+    return total
+
+
+@kernel
+def polar_product(m, k, x, y):
+    """Component k of G x and of G y, x and y (n,); in their unit."""
+    gx, gy = 0.0, 0.0
+    for i in range(m.d.modes):
+        gx += m.d.gyroscopic.polar[k, i] * x[i]
+        gy += m.d.gyroscopic.polar[k, i] * y[i]
+    return gx, gy
+
+
+@kernel
+def turn_velocities(vx, vy, angle, m, spare_x, spare_y):
+    """v <- exp(i angle G) v in place, v (n,) in any unit, angle (rad) that of the rotor; spare: (n,)."""
+    n, axes = m.d.modes, m.d.gyroscopic.turn
+    for k in range(n):
+        along_x, along_y = 0.0, 0.0  # the principal axis
+        for i in range(n):
+            along_x += axes[k, i] * vx[i]
+            along_y += axes[k, i] * vy[i]
+        turned = angle * m.d.gyroscopic.principal[k]
+        cosine, sine = math.cos(turned), math.sin(turned)
+        spare_x[k] = along_x * cosine - along_y * sine
+        spare_y[k] = along_x * sine + along_y * cosine
+    for i in range(n):
+        vx[i], vy[i] = 0.0, 0.0
+    for k in range(n):
+        for i in range(n):
+            vx[i] += axes[k, i] * spare_x[k]
+            vy[i] += axes[k, i] * spare_y[k]
+
+
+@kernel
+def add_spin_up(q, m, alpha, fx, fy):
+    """Add i alpha G p to modal forces fx, fy (n,), N/kg^0.5; alpha: spin acceleration (rad/s2)."""
+    px, py, _, _ = modal(q, m)
+    for k in range(m.d.modes):
+        gx, gy = polar_product(m, k, px, py)
+        fx[k] -= alpha * gy
+        fy[k] += alpha * gx
+
+
+DRAG_SPEED = 0.1  # rad/s; below it the constant torque fades, so that it cannot reverse the spin
+
+
+@kernel
+def drag(spin, p):
+    """Torque (N m) against the spin (rad/s); p: parameters `drag` (N m) and `viscous_drag` (N m s/rad)."""
+    return p.drag * math.tanh(spin / DRAG_SPEED) + p.viscous_drag * spin
 
 
 @kernel

@@ -1,4 +1,6 @@
-"""A macro step of the rotor, divided into strides.
+"""A macro step of the flexible rotor.
+
+A macro step of the rotor, divided into strides.
 
 In a stride the gyroscopic coupling turns the velocities (exactly, in the principal axes of G) for half of
 it, each mode swings alone (exactly, under a load linear in time) for the whole of it, and the velocities
@@ -9,17 +11,209 @@ however fast.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from touchdown.modelkit.kernel import kernel
-from touchdown.rotor.drag import drag
-from touchdown.rotor.motion import stress_report
-from touchdown.rotor.motion.equations import accelerate
-from touchdown.rotor.motion.exchange import account
-from touchdown.rotor.motion.gyroscopics import add_spin_up, turn_velocities
-from touchdown.rotor.motion.loads import modal_force_rates, modal_forces, moment, spin_up
-from touchdown.rotor.motion.state import ANGLE, LOSS, SPIN, modal, planar, rest
-from touchdown.rotor.motion.swing import LinearLoad, prepare_stride, swing
-from touchdown.rotor.motion.unbalance import spin_momentum
+import numpy as np
+
+from ...modelkit import numerics
+from ...modelkit.kernel import kernel
+from ...modelkit.ports import MODES
+from ...modelkit.variables import array, real
+from ..modal.data import MOST_MODES
+from . import outputs
+from .equations import (
+    ANGLE,
+    LOSS,
+    SPIN,
+    WORK,
+    accelerate,
+    add_spin_up,
+    drag,
+    modal,
+    modal_force_rates,
+    modal_forces,
+    moment,
+    planar,
+    rest,
+    spin_momentum,
+    spin_up,
+    turn_velocities,
+    unbalance_of,
+)
+
+
+@kernel
+def account(q, m, step, start, area, turned, swept):
+    """Add the work (J) of each load over a macro step of `step` (s) to the state q (N,) at its end.
+
+    Mean times displacement, and slope times the first moment of the velocity about the middle: int s v dt
+    is half the step times the sum of both ends' displacements, less the area under them. start, area:
+    `Planar`, modal coordinates at the start (m kg^0.5) and their integrals over the step. Of the spin,
+    displacement and first moment are `turned` (rad) and `swept` (rad s).
+    """
+    px, py, _, _ = modal(q, m)
+    start_x, start_y = start
+    area_x, area_y = area
+    tail = rest(q, m)
+    half = 0.5 * step
+    for j in range(m.d.stations):
+        u = m.u.station[j]
+        if u.fx == 0.0 and u.fy == 0.0 and u.dfx == 0.0 and u.dfy == 0.0 and u.mz == 0.0 and u.dmz == 0.0:
+            continue
+        x, y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
+        for k in range(m.d.modes):
+            shape = m.d.shape[j, k]
+            x += shape * (px[k] - start_x[k])
+            y += shape * (py[k] - start_y[k])
+            moment_x += shape * (half * (px[k] + start_x[k]) - area_x[k])
+            moment_y += shape * (half * (py[k] + start_y[k]) - area_y[k])
+        work = u.fx * x + u.fy * y + u.dfx * moment_x + u.dfy * moment_y
+        tail[WORK + j] += work + u.mz * turned + u.dmz * swept
+
+
+@kernel
+def take_mode_loads(q, m):
+    """Give each mode of q (N,) what mean and slope did not say of the loads.
+
+    Their work is the energy it brings. What they change of the unbalance's momentum is taken from the spin.
+    """
+    _, _, vx, vy = modal(q, m)
+    tail = rest(q, m)
+    angle = tail[ANGLE] + m.p.unbalance_angle
+    after = spin_momentum(vx, vy, m, angle)
+    for j in range(m.d.stations):
+        before = after
+        for k in range(m.d.modes):
+            slot = int(m.d.slot[j, k])
+            if slot >= 0 and not (m.d.lumped[j] > 0.0 and slot == MODES - 1):
+                tail[WORK + j] += _kick(q, m, j, k, m.u.station[j].mode[slot])
+        after = spin_momentum(vx, vy, m, angle)
+        change = (before - after) / m.d.inertia
+        tail[WORK + j] += 0.5 * change * (before + after)
+        tail[SPIN] += change
+
+
+@kernel
+def _kick(q, m, j, k, load):
+    """Move mode k by a `ModeLoad` at station j; returns the energy (J) that brings."""
+    px, py, vx, vy = modal(q, m)
+    shape = m.d.shape[j, k]
+    x, y, u, v = shape * load.qx, shape * load.qy, shape * load.px, shape * load.py
+    energy = m.d.stiffness[k] * (x * (px[k] + 0.5 * x) + y * (py[k] + 0.5 * y))
+    energy += u * (vx[k] + 0.5 * u) + v * (vy[k] + 0.5 * v)
+    px[k] += x
+    py[k] += y
+    vx[k] += u
+    vy[k] += v
+    return energy
+
+
+SLOW = 1e-4  # (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
+
+
+@dataclass(frozen=True)
+class Stride:
+    """`oscillator.Step` of every mode, for one length."""
+
+    length: float = real(0.0, "s", "of the stride")
+    zz: np.ndarray = array(MOST_MODES)
+    zv: np.ndarray = array(MOST_MODES)
+    vz: np.ndarray = array(MOST_MODES)
+    vv: np.ndarray = array(MOST_MODES)
+    zf: np.ndarray = array(MOST_MODES)
+    vf: np.ndarray = array(MOST_MODES)
+    zg: np.ndarray = array(MOST_MODES)
+    vg: np.ndarray = array(MOST_MODES)
+
+
+class LinearLoad(NamedTuple):
+    """Modal forces f + df s, s (s) after the middle of the macro step; (n,) each, N/kg^0.5 and per s."""
+
+    fx: np.ndarray
+    fy: np.ndarray
+    dfx: np.ndarray
+    dfy: np.ndarray
+
+
+class Swung(NamedTuple):
+    """One mode in one plane at the end of a stride, and what it gathered."""
+
+    p: float  # m kg^0.5
+    v: float  # m kg^0.5/s
+    area: float  # int p dt
+    heat: float  # int 2 zeta omega v^2 dt, J
+
+
+@kernel
+def prepare_stride(m, h):
+    """Set m.s.stride to every mode's exact stride of h (s), unless it is so already."""
+    stride = m.s.stride
+    if stride.length == h:
+        return
+    for k in range(m.d.modes):
+        s = numerics.step(m.d.stiffness[k], m.d.damping[k], h)
+        stride.zz[k], stride.zv[k], stride.vz[k], stride.vv[k] = s.zz, s.zv, s.vz, s.vv
+        stride.zf[k], stride.vf[k], stride.zg[k], stride.vg[k] = s.zf, s.vf, s.zg, s.vg
+    stride.length = h
+
+
+@kernel
+def swing(q, m, load, since_middle, h, alpha, area):
+    """Each mode of q (N,) alone for h (s) about `since_middle` (s), under a `LinearLoad` and unbalance.
+
+    alpha: spin acceleration (rad/s2). Adds int p dt to `area` (`Planar`); returns the heat (J).
+    """
+    px, py, vx, vy = modal(q, m)
+    area_x, area_y = area
+    spin, angle = rest(q, m)[SPIN], rest(q, m)[ANGLE] + m.p.unbalance_angle
+    angle_end = angle + h * (spin + 0.5 * alpha * h)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    cosine_end, sine_end = math.cos(angle_end), math.sin(angle_end)
+    square, square_end = spin * spin, (spin + alpha * h) ** 2
+    lost = 0.0
+    for k in range(m.d.modes):
+        fx, fy = load.fx[k] + load.dfx[k] * since_middle, load.fy[k] + load.dfy[k] * since_middle
+        dfx, dfy = load.dfx[k], load.dfy[k]
+        if m.d.unbalance.present:
+            ux, uy = _pull(m, k, cosine, sine, square, alpha)
+            ux_end, uy_end = _pull(m, k, cosine_end, sine_end, square_end, alpha)
+            fx, fy = fx + 0.5 * (ux + ux_end), fy + 0.5 * (uy + uy_end)
+            dfx, dfy = dfx + (ux_end - ux) / h, dfy + (uy_end - uy) / h
+        in_x = _along(m, k, h, px[k], vx[k], fx, dfx)
+        in_y = _along(m, k, h, py[k], vy[k], fy, dfy)
+        px[k], vx[k], py[k], vy[k] = in_x.p, in_x.v, in_y.p, in_y.v
+        area_x[k] += in_x.area
+        area_y[k] += in_y.area
+        lost += in_x.heat + in_y.heat
+    return lost
+
+
+@kernel
+def _pull(m, k, cosine, sine, square, alpha):
+    """Modal force (x, y) of the unbalance: (square - i alpha) U exp(i theta), square that of the spin."""
+    ux, uy = unbalance_of(m, k, cosine, sine)
+    return square * ux + alpha * uy, square * uy - alpha * ux
+
+
+@kernel
+def _along(m, k, h, p, v, f, df):
+    """`Swung` of mode k over a stride of h (s) under the load f + df (t - h/2), from p and v.
+
+    The area follows from the equation of motion, the heat is the work of the load less the energy gained.
+    """
+    s, damping, stiffness = m.s.stride, m.d.damping[k], m.d.stiffness[k]
+    p_end = s.zz[k] * p + s.zv[k] * v + s.zf[k] * f + s.zg[k] * df
+    v_end = s.vz[k] * p + s.vv[k] * v + s.vf[k] * f + s.vg[k] * df
+    if stiffness * h * h < SLOW:
+        area = 0.5 * h * (p + p_end) + h * h / 12.0 * (v - v_end)
+    else:
+        area = (f * h - (v_end - v) - damping * (p_end - p)) / stiffness
+    heat = 0.0
+    if damping > 0.0:
+        heat = f * (p_end - p) + df * (0.5 * h * (p_end + p) - area)
+        heat -= 0.5 * ((v_end - v) * (v_end + v) + stiffness * (p_end - p) * (p_end + p))
+    return Swung(p_end, v_end, area, heat)
 
 
 @kernel
@@ -51,7 +245,7 @@ def advance(q, m, step, longest, work):
         turned, reaction = _stride(q, m, since_middle, h, load, reaction, area, spare)
         swept += since_middle * turned
         if m.p.stress.active and i + 1 < strides:
-            stress_report.look(q, m, since_middle + 0.5 * h, work[5:7])
+            outputs.look(q, m, since_middle + 0.5 * h, work[5:7])
     account(q, m, step, start, area, tail[ANGLE] - angle, swept)
 
 

@@ -1,14 +1,194 @@
-"""What a rotor tells of its state: motion at the stations and sensors, energy, and what never changes."""
+"""Outputs of the flexible rotor: motion, energy, stresses.
+
+Stresses along a rotor: now, at their peak, and node by node when they peaked.
+
+They are looked at after every stride of the rotor, since a macro step may be longer than a mode's swing.
+
+sigma = r E Y'' (3.20, 3.21) and tau = 4/3 V/A (3.22, 3.23; solid sections) at both ends of every element,
+from the modal coordinates, and from the loads by what the modes left out would add (mode acceleration).
+A node's stress is the larger of its elements'. R: ends of the elements at the nodes that are watched
+(`rotor.modal.watched`), two each but for the shaft's ends.
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.modelkit.kernel import kernel
-from touchdown.rotor.motion.equations import accelerate, energies
-from touchdown.rotor.motion.state import LOSS, SPIN, WORK, Planar, modal, rest
+from ...modelkit.kernel import kernel
+from ...modelkit.variables import SWITCH, choice, integer, real
+from .equations import LOSS, SPIN, WORK, Planar, accelerate, energies, modal, rest
+
+
+@dataclass(frozen=True)
+class StressOptions:
+    """What to compute of the stresses."""
+
+    active: int = choice(1, SWITCH, "whether stresses are computed")
+    mode_acceleration: int = choice(1, SWITCH, "loads add to the kept modes what those left out would")
+    node: int = integer(
+        0,
+        "node whose vertical bending stress decides when the stresses along the rotor are kept; "
+        "0: the largest bending stress anywhere",
+        minimum=0,
+    )
+
+
+@dataclass(frozen=True)
+class StressReport:
+    """The largest stresses; resultants of both planes."""
+
+    bending: float = real(0.0, "Pa", "largest bending stress along the rotor", local=True, nominal=1e6)
+    shear: float = real(0.0, "Pa", "largest shear stress along the rotor", local=True, nominal=1e6)
+    peak_bending: float = real(0.0, "Pa", "largest bending stress since the start", local=True, nominal=1e6)
+    peak_bending_time: float = real(0.0, "s", "when", local=True)
+    peak_bending_node: int = integer(0, "where; nodes count from 1", local=True)
+    peak_shear: float = real(0.0, "Pa", "largest shear stress since the start", local=True, nominal=1e6)
+    peak_shear_time: float = real(0.0, "s", "when", local=True)
+    peak_shear_node: int = integer(0, "where; nodes count from 1", local=True)
+    kept_time: float = real(0.0, "s", "instant of the stresses kept along the rotor", local=True)
+
+
+@dataclass(frozen=True)
+class NodeStress:
+    """Stresses at a node, at the instant that was kept, and the node's own peaks."""
+
+    bending_x: float = real(0.0, "Pa", "bending stress in the horizontal plane, when kept", local=True)
+    bending_y: float = real(0.0, "Pa", "bending stress in the vertical plane, when kept", local=True)
+    shear_x: float = real(0.0, "Pa", "shear stress by horizontal forces, when kept", local=True)
+    shear_y: float = real(0.0, "Pa", "shear stress by vertical forces, when kept", local=True)
+    peak_bending: float = real(0.0, "Pa", "largest bending stress since the start", local=True)
+    peak_shear: float = real(0.0, "Pa", "largest shear stress since the start", local=True)
+    position: float = real(0.0, "m", "along the axis, from node 1", constant=True, shown="mm")
+
+
+class Along(NamedTuple):
+    """One kind of stress at the ends of the elements, (R,) each, Pa."""
+
+    x: np.ndarray
+    y: np.ndarray
+    both: np.ndarray  # resultant of both planes
+
+
+class Peak(NamedTuple):
+    """The largest stress (Pa) and its node, from 1."""
+
+    stress: float
+    node: int
+
+
+@kernel
+def report(q, m, work):
+    """Stresses in the state q (N,) at the end of a macro step, and what is kept of them, in m.o (Pa).
+
+    work: scratch, as in `look`.
+    """
+    m.o.stress.bending, m.o.stress.shear = look(q, m, m.half, work)
+
+
+@kernel
+def look(q, m, since_middle, work):
+    """Keep in m.o what is largest of the stresses of q (N,), at a time within the macro step.
+
+    since_middle: s after its middle; work: scratch, two rows of 3 R or more. Returns the largest bending
+    and the largest shear stress now (Pa).
+    """
+    bending, shear = _along(work[0], m), _along(work[1], m)
+    rows = m.d.stress
+    _recover(rows.bending, rows.bending_load, q, m, since_middle, bending)
+    _recover(rows.shear, rows.shear_load, q, m, since_middle, shear)
+    worst_bending, worst_shear, watched = _largest(bending, shear, m)
+    o, time = m.o.stress, m.time + m.half + since_middle
+    if worst_bending.stress > o.peak_bending:
+        o.peak_bending, o.peak_bending_node = worst_bending.stress, worst_bending.node
+        o.peak_bending_time = time
+    if worst_shear.stress > o.peak_shear:
+        o.peak_shear, o.peak_shear_node = worst_shear.stress, worst_shear.node
+        o.peak_shear_time = time
+    if watched > m.s.watched:
+        m.s.watched = watched
+        o.kept_time = time
+        _keep(bending, shear, m)
+    return worst_bending.stress, worst_shear.stress
+
+
+@kernel
+def _along(row, m):
+    """`Along` as views of a row of scratch."""
+    n = m.d.stress.ends
+    return Along(row[:n], row[n : 2 * n], row[2 * n : 3 * n])
+
+
+@kernel
+def _recover(per_mode, per_load, q, m, since_middle, stress):
+    """Set one kind of `stress` (Along) of q (N,) under the loads `since_middle` (s) after the middle.
+
+    per_mode (n, R), per_load (S, R): stress per modal coordinate and per force.
+    """
+    px, py, _, _ = modal(q, m)
+    for i in range(len(stress.x)):
+        stress.x[i], stress.y[i] = 0.0, 0.0
+    for k in range(m.d.modes):
+        _add(per_mode[k], px[k], py[k], stress)
+    for j in range(m.d.stations if m.p.stress.mode_acceleration == 1 else 0):
+        load = m.u.station[j]
+        fx, fy = load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle
+        if fx != 0.0 or fy != 0.0:
+            _add(per_load[j], fx, fy, stress)
+    for i in range(len(stress.x)):
+        stress.both[i] = math.sqrt(stress.x[i] * stress.x[i] + stress.y[i] * stress.y[i])
+
+
+@kernel
+def _add(row, x, y, stress):
+    """Add `row` (R,) times x and y to the two planes of `stress` (Along); becomes vector code."""
+    for i in range(len(stress.x)):
+        stress.x[i] += row[i] * x
+        stress.y[i] += row[i] * y
+
+
+@kernel
+def _largest(bending, shear, m):
+    """Largest bending and shear along the rotor (`Peak` each), and the stress that decides what is kept.
+
+    Updates the nodes' own peaks. bending, shear: `Along`.
+    """
+    rows, decisive = m.d.stress, m.p.stress.node
+    most_bending, most_shear, watched = Peak(0.0, 0), Peak(0.0, 0), 0.0
+    for i in range(rows.ends):
+        node = int(rows.node[i])
+        own = m.o.node[int(rows.place[i])]
+        own.peak_bending = max(own.peak_bending, bending.both[i])
+        own.peak_shear = max(own.peak_shear, shear.both[i])
+        if bending.both[i] > most_bending.stress:
+            most_bending = Peak(bending.both[i], node)
+        if shear.both[i] > most_shear.stress:
+            most_shear = Peak(shear.both[i], node)
+        if node == decisive:
+            watched = max(watched, abs(bending.y[i]))
+    return most_bending, most_shear, watched if decisive else most_bending.stress
+
+
+@kernel
+def _keep(bending, shear, m):
+    """Keep bending and shear (`Along` each) in m.o.node (Pa)."""
+    rows = m.d.stress
+    for i in range(m.d.watched):
+        o = m.o.node[i]
+        o.bending_x, o.bending_y, o.shear_x, o.shear_y = 0.0, 0.0, 0.0, 0.0
+    for i in range(rows.ends):
+        o = m.o.node[int(rows.place[i])]
+        o.bending_x, o.bending_y = _larger(o.bending_x, bending.x[i]), _larger(o.bending_y, bending.y[i])
+        o.shear_x, o.shear_y = _larger(o.shear_x, shear.x[i]), _larger(o.shear_y, shear.y[i])
+
+
+@kernel
+def _larger(before, stress):
+    """The one of larger size, with its sign (Pa)."""
+    return stress if abs(stress) > abs(before) else before
 
 
 @kernel

@@ -12,24 +12,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from touchdown.master.api.figures import figure
     from touchdown.master.api.fmus import build, check
-    from touchdown.master.api.machines import catalogue, new
-    from touchdown.master.api.report import animate, report
+    from touchdown.master.api.machines import animate, catalogue, new, report
     from touchdown.master.api.rotor import Rotor
-    from touchdown.master.api.run import open_result, run
-    from touchdown.master.api.scenes import load, scenes
-    from touchdown.master.api.schemes import register_scheme
-    from touchdown.master.api.studies import compare, merge, sweep, verdict
-    from touchdown.master.common.ended import Ended
-    from touchdown.master.common.errors import TouchdownError
+    from touchdown.master.api.run import load, open_result, register_scheme, run, scenes
+    from touchdown.master.api.studies import compare, figure, merge, sweep, verdict
+    from touchdown.master.common.errors import Ended, TouchdownError
     from touchdown.master.coupling.steppers.stepper import Stepper
     from touchdown.master.results.result import Result
     from touchdown.master.scene.scene import Scene
     from touchdown.master.scene.schemes import Scheme
-    from touchdown.master.studies.sweep.design import Design
+    from touchdown.master.studies.sweep.definition import Design
+    from touchdown.rotor.beams.body import PointMass
     from touchdown.rotor.beams.element import Element
-    from touchdown.rotor.beams.shaft import PointMass, Station, Support, Unbalance
+    from touchdown.rotor.beams.shaft import Station, Support, Unbalance
 
     __version__: str
 
@@ -67,30 +63,30 @@ __all__ = [
 ]
 
 _HOMES = {
-    "figure": "master.api.figures",
+    "figure": "master.api.studies",
     "build": "master.api.fmus",
     "check": "master.api.fmus",
     "catalogue": "master.api.machines",
     "new": "master.api.machines",
-    "animate": "master.api.report",
-    "report": "master.api.report",
+    "animate": "master.api.machines",
+    "report": "master.api.machines",
     "Rotor": "master.api.rotor",
     "open_result": "master.api.run",
     "run": "master.api.run",
-    "load": "master.api.scenes",
-    "scenes": "master.api.scenes",
-    "register_scheme": "master.api.schemes",
+    "load": "master.api.run",
+    "scenes": "master.api.run",
+    "register_scheme": "master.api.run",
     "compare": "master.api.studies",
     "merge": "master.api.studies",
     "sweep": "master.api.studies",
     "verdict": "master.api.studies",
-    "Ended": "master.common.ended",
+    "Ended": "master.common.errors",
     "TouchdownError": "master.common.errors",
     "Stepper": "master.coupling.steppers.stepper",
     "Result": "master.results.result",
     "Scene": "master.scene.scene",
     "Scheme": "master.scene.schemes",
-    "Design": "master.studies.sweep.design",
+    "Design": "master.studies.sweep.definition",
     "Element": "rotor.beams.element",
     "PointMass": "rotor.beams.shaft",
     "Station": "rotor.beams.shaft",

@@ -11,9 +11,9 @@ from systems import history, rotor_on
 
 from touchdown.bearings import detailed_caged, detailed_cageless, seat
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import BALLS
-from touchdown.bearings.rolling.bodies.state import ANGLE, SIZE, SPIN, VX, VY, X, Y
+from touchdown.bearings.rolling.ball_bodies import ANGLE, SIZE, SPIN, VX, VY, X, Y
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
+from touchdown.bearings.rolling.ring import BALLS
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System

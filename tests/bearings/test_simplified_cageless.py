@@ -15,7 +15,7 @@ from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.numerics.angles import cosine_and_sine
+from touchdown.modelkit.numerics import cosine_and_sine
 
 SCENE = "disk-cageless-simplified"
 

@@ -11,8 +11,7 @@ from fmpy import extract
 from hosting import COMPILER, compiled
 
 from touchdown.fmus.native.build import cached
-from touchdown.fmus.native.compiler import command
-from touchdown.fmus.native.targets import NativeError, here
+from touchdown.fmus.native.compiler import NativeError, command, here
 from touchdown.fmus.recipes import recipe
 
 Native = Callable[[str], Path]

@@ -19,8 +19,7 @@ from slave_driver import Slave
 
 from touchdown.fmus.build import build
 from touchdown.fmus.description.fmi2 import describe
-from touchdown.fmus.description.units import base_unit
-from touchdown.fmus.description.variables import causality
+from touchdown.fmus.description.variables import base_unit, causality
 from touchdown.fmus.recipes import names, recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import Model, ModelError, Slot, slots

@@ -9,7 +9,7 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from touchdown.fmus.recipes import names, recipe
-from touchdown.fmus.variants.modes import told_of
+from touchdown.fmus.variants import told_of
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 from touchdown.modelkit.instance import Instance

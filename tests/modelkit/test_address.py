@@ -9,7 +9,7 @@ from numba import carray, cfunc, njit, types
 
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance, explanation
-from touchdown.modelkit.kernel.address import (
+from touchdown.modelkit.kernel.memory import (
     advance_address,
     call_advance,
     call_exchange,

@@ -85,9 +85,9 @@ def test_a_kernel_may_call_itself() -> None:
 
 STEPPED = """
 import sys
-from touchdown.modelkit.kernel import tried
+from touchdown.modelkit.kernel import front_end
 if sys.argv[1] == "plain":
-    tried.NUMBA = ((0, 1), (0, 1))
+    front_end.NUMBA = ((0, 1), (0, 1))
 from touchdown.modelkit.kernel.machine_code import KernelCache
 KernelCache.active = False
 from touchdown.bearings.surroundings.housing import MODEL

@@ -10,7 +10,8 @@ import damage
 import numba
 import pytest
 
-from touchdown.modelkit.kernel import cache_folder, machine_code, shipped
+from touchdown.modelkit.kernel import cache_folder, machine_code
+from touchdown.modelkit.kernel import machine_code as shipped
 from touchdown.modelkit.kernel.machine_code import KernelCache
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from touchdown.modelkit.numerics.oscillator import load_for, step
+from touchdown.modelkit.numerics import load_for, step
 
 KINDS = [
     (0.0, 0.0),

@@ -17,8 +17,8 @@ import pytest
 from touchdown.rotor.beams.element import Element, cowper
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import load, shipped
-from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 
 ross = pytest.importorskip("ross")
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from touchdown.bearings import seat
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import BALLS
-from touchdown.bearings.rolling.bodies.state import SPIN, VX, VY
+from touchdown.bearings.rolling.ball_bodies import SPIN, VX, VY
+from touchdown.bearings.rolling.ring import BALLS
 from touchdown.modelkit.instance import Instance
 
 

@@ -12,14 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.processes.orphans import die_with_parent
-from touchdown.master.components.component import Component
-from touchdown.master.components.fmu import CALLS, FmuComponent
-from touchdown.master.components.fmu3 import CALLS as CALLS_3
-from touchdown.master.components.foreign import foreign_fmu
-from touchdown.master.components.isolation.board import Ask, Board, Word
-from touchdown.master.components.isolation.crossing import CUT_OFF, GoneError, Side
+from ...common.errors import TouchdownError
+from ...common.watched import die_with_parent
+from ..component import Component
+from ..fmu import CALLS, FmuComponent
+from ..fmu3 import CALLS as CALLS_3
+from ..foreign import foreign_fmu
+from .shared_memory import CUT_OFF, Ask, Board, GoneError, Side, Word
 
 SETTING, STEPPING, READING = (CALLS.index(name) for name in ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal"))
 FOREVER = 1e9  # s

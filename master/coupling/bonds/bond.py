@@ -1,4 +1,6 @@
-"""A bond: a force that one component gives and another takes, and the motion that comes back.
+"""Bonds: a force that one component gives and another takes, and the motion that comes back.
+
+A bond: a force that one component gives and another takes, and the motion that comes back.
 
 Their product is power, so what crosses a bond can be audited, and exchanged as neither of both can alone.
 The giver of the force takes motion; its taker gives it.
@@ -10,11 +12,55 @@ import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import Unit
-from touchdown.master.components.component import Component
-from touchdown.master.coupling.connections import Attachment, Connection
-from touchdown.master.scene.wires import BondSpec, Wire
+from ....modelkit.ports import HOLD
+from ...common.errors import TouchdownError
+from ...common.units import Unit
+from ...components.component import Component
+from ...scene.run_spec import AUTO, RunSpec
+from ...scene.scene import BondSpec, Wire
+from ..connections import Attachment, Connection
+
+
+@dataclass(frozen=True)
+class Way:
+    """How motion is told ahead and force handed on over a macro step.
+
+    `stretches`: parts of the step after each of which the force is known; `ahead` and `force`: points that
+    the polynomials of motion and force pass through at most, 0 and 1 for values that are held. Their errors
+    fall with macro step ** `error_order`.
+    """
+
+    name: str
+    title: str
+    stretches: int
+    ahead: int
+    force: int
+    error_order: int
+
+    @property
+    def held(self) -> bool:
+        """Whether plain values are held over the step."""
+        return self.ahead == 0
+
+
+WAYS: Mapping[str, Way] = {
+    way.name: way
+    for way in (
+        Way("smooth", "motion told ahead, force after it, each by two holds", 1, 2, 4, 4),
+        Way("contact", "the same twice a step", 2, 2, 3, 3),
+        Way("hold", "force and motion held", 1, 0, 1, 1),
+    )
+}
+
+
+def way_of(run: RunSpec) -> Way:
+    """The one that a run asks for, or that fits its scheme."""
+    if run.bonds != AUTO:
+        return WAYS[run.bonds]
+    if run.scheme.order == HOLD:
+        return WAYS["hold"]
+    return WAYS["smooth" if run.scheme.sequence == "gauss-seidel" else "contact"]
+
 
 Dimension = Mapping[str, int]
 NEWTON: Dimension = {"kg": 1, "m": 1, "s": -2}

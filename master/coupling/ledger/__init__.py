@@ -24,9 +24,8 @@ so for what is made inside bearings, `shortening` divides macro steps in a whirl
 
 from __future__ import annotations
 
-from touchdown.master.coupling.ledger.accounts import Ledger
-from touchdown.master.coupling.ledger.balance import Balance
-from touchdown.master.coupling.ledger.judge import Judge
-from touchdown.master.coupling.ledger.shortening import Shortening
+from ..loop.division import Shortening
+from .accounts import Ledger
+from .alarms import Balance, Judge
 
 __all__ = ["Balance", "Judge", "Ledger", "Shortening"]

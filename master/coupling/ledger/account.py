@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from touchdown.master.coupling.bonds.crossing import Crossing
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.loop.kernels.books import BOOK
+from ..bonds.exchange import Crossing
+from ..connections import Attachment
+from ..loop.kernels.accounts import BOOK
 
 SETTLED = 4  # steps in which a bond has done work, before it is judged
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from touchdown.master.components.contract import FORCE, JUMP, POSITION, WORK
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.ledger.account import Account, BondAccount, SeatAccount
-from touchdown.master.coupling.ledger.witness import witnesses
-from touchdown.master.coupling.loop.kernels.books import BOOK, book, worst_of
-from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System
+from ...components.component import FORCE, JUMP, POSITION, WORK
+from ..connections import Attachment
+from ..loop.kernels.accounts import BOOK, book, worst_of
+from ..steppers.stepper import Stepper
+from ..system import System
+from .account import Account, BondAccount, SeatAccount
+from .auditor import witnesses
 
 VELOCITY = tuple(f"v{axis}" for axis in POSITION)
 

@@ -10,9 +10,9 @@ from threading import Thread
 
 import numpy as np
 
-from touchdown.master.common.processes.cores import threads
-from touchdown.master.coupling.loop.kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
-from touchdown.modelkit.kernel.atomic import WORD
+from ....modelkit.kernel.memory import WORD
+from ...common.pool import threads
+from .kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
 
 PATIENCE = 20_000  # looks in vain, some ms, after which a helper leaves
 FREE = 0.9  # share of a stretch that a helper has its processor, where nobody else wants that

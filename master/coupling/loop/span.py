@@ -1,14 +1,21 @@
-"""When a run begins and ends, and what its times count from."""
+"""When a run begins and ends, and which components are stepped no more."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.scene.run_spec import RunSpec
-from touchdown.master.scene.scene import Scene
+import numpy as np
+
+from ....modelkit.variables import Causality
+from ...common.errors import TouchdownError
+from ...components.component import LOAD, SLOPE, Component, Kind
+from ...scene.run_spec import RunSpec
+from ...scene.scene import Scene
+from ..observer import Moment, Observer
+from ..steppers.stepper import Stepper
 
 FINENESS = 1e-3  # of a macro step, that times must tell apart
 
@@ -109,3 +116,55 @@ def swapped_away(scene: Scene, name: str, system: Values) -> bool:
     """Whether COMPONENT.VARIABLE is not there because another FMU was put in for that component."""
     spec = scene.components.get(name.partition(".")[0])
     return spec is not None and bool(spec.instead_of) and name not in system
+
+
+ACTIVE = "active"  # an output; 0: the component does nothing any more but for the load it still gives
+
+
+class Follower(Protocol):
+    """What reads the signals."""
+
+    def retired(self, names: Sequence[str]) -> None:
+        """These components are stepped no more, and what is exchanged stands elsewhere in the signals."""
+        ...
+
+
+class Retirement(Observer):
+    """Takes idle components out of the exchange, and tells stepper and followers."""
+
+    at_beats_only = True
+
+    def __init__(self, stepper: Stepper, followers: Iterable[Follower]) -> None:
+        self._stepper, self._followers = stepper, list(followers)
+        components = stepper.system.components
+        self._signs = {name: _signs_of_work(c) for name, c in components.items() if _can_rest(c)}
+
+    def stepped(self, now: Moment) -> None:
+        idle = [name for name, signs in self._signs.items() if not signs().any()]
+        if not idle:
+            return
+        now.system.retire(idle)
+        self._stepper.follow()
+        for follower in self._followers:
+            follower.retired(idle)
+        for name in idle:
+            del self._signs[name]
+
+    def due(self, now: Moment) -> int:
+        """At beats, while there is who may retire."""
+        return now.next_beat if self._signs else now.steps
+
+
+def _can_rest(component: Component) -> bool:
+    variable = component.variables.get(ACTIVE)
+    return variable is not None and (variable.causality, variable.kind) == (Causality.OUTPUT, Kind.INTEGER)
+
+
+def _signs_of_work(component: Component) -> Callable[[], np.ndarray]:
+    """Fetches what is all zero where a component is idle: whether it is active, and the loads it gives."""
+    loads = [
+        v.name
+        for v in component.variables.values()
+        if v.causality is Causality.OUTPUT and v.name.rpartition(".")[2] in LOAD + SLOPE
+    ]
+    return component.reader([ACTIVE, *loads])

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.steppers.bonded import Bonded
-from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
-from touchdown.master.coupling.steppers.halving import Halving
-from touchdown.master.coupling.steppers.iterated import Iterated
-from touchdown.master.coupling.steppers.iterated_bonds import IteratedBonds
-from touchdown.master.coupling.steppers.jacobi import Jacobi
-from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.run_spec import RunSpec
-from touchdown.modelkit.ports import HOLD
+from ....modelkit.ports import HOLD
+from ...common.errors import TouchdownError
+from ...scene.run_spec import RunSpec
+from ..system import System
+from .bonded import Bonded, IteratedBonds
+from .gauss_seidel import GaussSeidel
+from .halving import Halving
+from .iterated import Iterated
+from .jacobi import Jacobi
+from .stepper import Stepper
 
 _OWN: Mapping[str, type[Stepper]] = {
     "gauss-seidel": GaussSeidel,

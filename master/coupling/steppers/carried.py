@@ -8,9 +8,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from touchdown.master.coupling import steppers
-from touchdown.master.scene import schemes
-from touchdown.master.scene.schemes import Scheme
+from ...scene import schemes
+from ...scene.schemes import Scheme
+from .. import steppers
 
 Task = TypeVar("Task")
 Value = TypeVar("Value")

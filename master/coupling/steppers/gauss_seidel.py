@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from touchdown.master.components.component import Component
-from touchdown.master.coupling.layout import Scaling
-from touchdown.master.coupling.steppers.rates import Part, Rates
-from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.run_spec import RunSpec
+from ...components.component import Component
+from ...scene.run_spec import RunSpec
+from ..layout import Scaling
+from ..system import System
+from .rates import Part, Rates
+from .stepper import Stepper
 
 
 class Turn(NamedTuple):

@@ -10,15 +10,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.contract import POSITION
-from touchdown.master.coupling.bonds.crossing import Crossing
-from touchdown.master.coupling.steppers.bonded import Bonded
-from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_any_step, require_states
-from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
-from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.run_spec import RunSpec
+from ...common.errors import TouchdownError
+from ...components.component import POSITION
+from ...scene.run_spec import RunSpec
+from ..bonds.exchange import Crossing
+from ..system import System
+from .bonded import Bonded
+from .gauss_seidel import GaussSeidel
+from .stepper import Checkpoint, Stepper, require_any_step, require_states
 
 DEEPEST = 12  # halvings of a macro step
 EASY = 1.0 / 32.0  # of the tolerance; below it twice the step will do (third order, with a margin)

@@ -16,12 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.contract import GAINS, POSITION
-from touchdown.master.coupling.steppers.checkpoint import Checkpoint, require_states
-from touchdown.master.coupling.steppers.stepper import Stepper
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.run_spec import RunSpec
+from ...common.errors import TouchdownError
+from ...components.component import GAINS, POSITION
+from ...scene.run_spec import RunSpec
+from ..system import System
+from .stepper import Checkpoint, Stepper, require_states
 
 MOST = 16  # repetitions of a step
 DEEPEST = 8  # halvings of a macro step

@@ -6,10 +6,10 @@ energy, unless the bearings lead: then they hand over the load of the step to co
 
 from __future__ import annotations
 
-from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
-from touchdown.master.coupling.steppers.rates import parts_of
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.run_spec import RunSpec
+from ...scene.run_spec import RunSpec
+from ..system import System
+from .gauss_seidel import GaussSeidel
+from .rates import parts_of
 
 
 class Jacobi(GaussSeidel):

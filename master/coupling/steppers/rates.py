@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.contract import LOAD, SLOPE
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.loop.kernels.exchange import cut
-from touchdown.master.coupling.system import System
+from ...common.errors import TouchdownError
+from ...components.component import LOAD, SLOPE
+from ..connections import Attachment
+from ..loop.kernels.exchange import cut
+from ..system import System
 
 
 @dataclass(frozen=True)

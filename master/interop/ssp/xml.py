@@ -1,4 +1,4 @@
-"""XML of a package: read with care, since others wrote it."""
+"""XML of a package: names of the formats, and a careful reader."""
 
 from __future__ import annotations
 
@@ -8,10 +8,28 @@ from urllib.parse import unquote
 from xml.etree.ElementTree import Element, ParseError, fromstring
 from xml.parsers.expat import ExpatError
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.units import BASE, Scale, Unit
-from touchdown.master.components.screening.description import DocumentTypeError, refuse_definitions
-from touchdown.master.interop.ssp.names import NAMESPACES
+from ...common.errors import TouchdownError
+from ...common.units import BASE, Scale, Unit
+from ...components.screening import DocumentTypeError, refuse_definitions
+
+_STANDARD = "http://ssp-standard.org/SSP1/SystemStructure"
+NAMESPACES = {
+    "ssd": f"{_STANDARD}Description",
+    "ssc": f"{_STANDARD}Common",
+    "ssv": f"{_STANDARD}ParameterValues",
+    "ssm": f"{_STANDARD}ParameterMapping",
+    "oms": "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd",
+    "osp": "http://opensimulationplatform.com/SSP/OSPAnnotations",
+    "touchdown": "urn:touchdown-cosim:scene",
+}
+REALS = ("Real", "Float64", "Float32")  # elements of a connector's or a parameter's type, 1.0's and 2.0's
+INTEGERS = ("Integer", *(f"{sign}Int{bits}" for bits in (8, 16, 32, 64) for sign in ("", "U")))
+HEART = "SystemStructure.ssd"
+RESOURCES = "resources"
+STEP_ANNOTATION = "com.opensimulationplatform"  # holds the macro step for libcosim
+MASTER_ANNOTATION = "org.openmodelica"  # holds it for OMSimulator
+SCENE_ANNOTATION = "touchdown-cosim.scene"  # what a scene says beyond its structure
+
 
 CHOICES = ("BooleanMapping", "IntegerMapping", "EnumerationMapping")  # transformations that are not read
 

@@ -7,28 +7,19 @@ from functools import partial
 
 import numpy as np
 
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.animation.motion import motions
-from touchdown.master.report.facts.numbers import digits, listed, quantity, share, speed
-from touchdown.master.report.facts.series import Line
-from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
-from touchdown.master.report.page.blocks import (
-    Absent,
-    Block,
-    Lacking,
-    Motion,
-    Picture,
-    Series,
-    Table,
-    Text,
-)
-from touchdown.master.report.pictures.charts import series
-from touchdown.master.report.pictures.orbit import Orbit, orbits
-from touchdown.master.report.pictures.svg import inline
-from touchdown.master.results.ending import housing_port
-from touchdown.master.results.figures.style import within
-from touchdown.master.results.recording import NotRecordedError
-from touchdown.master.results.summary import relative_orbit
+from ...coupling.connections import Attachment
+from ...results.ending import housing_port
+from ...results.figures.style import within
+from ...results.recording import NotRecordedError
+from ...results.summary import relative_orbit
+from ...results.whirl.evidence import CONTACT
+from ..animation import motions
+from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
+from ..charts import inline, series
+from ..drawings import Orbit, orbits
+from ..numbers import digits, listed, quantity, share, speed
+from ..series import Line
+from ..subject import Subject, number
 
 UM = 1e6
 MOVED = "Where the journal goes"
@@ -79,7 +70,7 @@ def _of_body(subject: Subject, name: str) -> Iterator[tuple[str, str]]:
 def _events(subject: Subject) -> Table:
     rows = []
     for a in subject.seats:
-        falls = subject.figure(FIRST_CONTACT, a)
+        falls = subject.figure(CONTACT, a)
         hits = subject.figure("first_contact_speed_m_s", a)
         loss = subject.figure("largest_displacement_um", a)
         rows.append(
@@ -172,7 +163,7 @@ def test_figures(subject: Subject) -> list[Block]:
         rows.append(
             [
                 subject.name(a),
-                quantity(subject.figure(FIRST_CONTACT, a), "s"),
+                quantity(subject.figure(CONTACT, a), "s"),
                 quantity(None if displacement is None else 1e-6 * displacement, "m", 3),
                 share(beyond, 3),
                 quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),

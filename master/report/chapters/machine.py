@@ -7,23 +7,17 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.facts.numbers import listed, quantity
-from touchdown.master.report.facts.subject import Subject
-from touchdown.master.report.page.blocks import Block, Lacking, Picture, Table
-from touchdown.master.report.pictures.machine import (
-    Section,
-    SideView,
-    Support,
-    draw_side,
-    sections,
-)
-from touchdown.master.report.pictures.svg import inline
-from touchdown.master.results.stresses import stressed
-from touchdown.master.studies.rotor.situations import scene_shaft
-from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft
+from ....rotor.beams.element import Element
+from ....rotor.beams.shaft import Shaft
+from ...common.errors import TouchdownError
+from ...coupling.connections import Attachment
+from ...results.stresses import stressed
+from ...studies.rotor.supports import scene_shaft
+from ..blocks import Block, Lacking, Picture, Table
+from ..charts import inline
+from ..drawings import Section, SideView, Support, draw_side, sections
+from ..numbers import listed, quantity
+from ..subject import Subject
 
 SECTION = ("journal_radius", "clearance")
 BALLS = ("balls.count", "balls.diameter", "balls.pitch_diameter")

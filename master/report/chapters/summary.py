@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from touchdown.bearings import rating
-from touchdown.master.common.ended import Ended
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.report.facts.numbers import RPM, digits, listed, quantity, share
-from touchdown.master.report.facts.rating import Rated, rated
-from touchdown.master.report.facts.subject import FIRST_CONTACT, Subject, number
-from touchdown.master.report.page.blocks import Block, Points, Remark, Table, Text, Tile, Tiles
-from touchdown.master.results.whirl.evidence import evidence
-from touchdown.master.results.whirl.unbalance import unbalanced
-from touchdown.master.studies.rotor.balance import balanced
+from ....bearings import rating
+from ...common.errors import Ended
+from ...coupling.connections import Attachment
+from ...results.whirl.evidence import CONTACT, evidence, unbalanced
+from ...studies.rotor.supports import balanced
+from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
+from ..numbers import RPM, digits, listed, quantity, share
+from ..subject import Rated, Subject, number, rated
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
 UNTOLD = "not told, for no clearance is stated or no orbit recorded"
@@ -115,7 +113,7 @@ def _at(subject: Subject, a: Attachment) -> str:
 def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
     rows = []
     for a in seats:
-        contact = subject.figure(FIRST_CONTACT, a)
+        contact = subject.figure(CONTACT, a)
         words = subject.whirl(a)
         frequency = number(subject.whirl(a, "_frequency_Hz"))
         turns = number(subject.whirl(a, "_revolutions"))

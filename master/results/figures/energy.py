@@ -8,19 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from touchdown.master.results.ending import Finished
-from touchdown.master.results.figures.style import (
-    BLACK,
-    BLUE,
-    COLOURS,
-    SKY,
-    TIME,
-    WIDTH,
-    YELLOW,
-    sized,
-    thinned,
-)
-from touchdown.master.results.summary import energy_total
+from ..ending import Finished
+from ..summary import energy_total
+from .style import BLACK, BLUE, COLOURS, SKY, TIME, WIDTH, YELLOW, sized, thinned
 
 PALETTE = (*COLOURS, BLACK, SKY, YELLOW)  # one per component
 MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pairs repeat late

@@ -1,20 +1,105 @@
-"""Pictures of a run, drawn when they are asked for: `result.plot.orbit()` and so on."""
+"""Pictures of a run: which there are, their files, and how they are asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.results.ending import Finished
-from touchdown.master.results.stresses import stressed
-from touchdown.master.results.summary import energy_total, touchdown_seats
+from matplotlib.figure import Figure
+
+from ...common.errors import TouchdownError, one_of
+from ...common.files import replacing
+from ...coupling.connections import Attachment
+from ..ending import Finished
+from ..recording import NotRecordedError
+from ..stresses import stressed
+from ..summary import energy_total, is_heard, touchdown_seats
+from .energy import energy
+from .forces import contacts, forces, has_contacts
+from .motion import distance, orbits, paths, slowing, speeds
+from .spectra import has_spectrum, has_waterfall, motion_waterfall, spectrum
+from .stress import has_stress, stress
+from .style import darkened, sheet, styled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
+
+
+Picture = tuple[str, Callable[[Figure], object]]  # name of the file, and what draws it on an empty figure
+
+
+DPI = 110
+
+
+@dataclass(frozen=True)
+class OfBearing:
+    """A picture of one touchdown bearing."""
+
+    name: str  # of its file
+    draw: Callable[[Figure, Finished, Attachment], object]
+    there: Callable[[Finished, Attachment], bool] = lambda run, a: True
+    """Whether the run has what it shows."""
+
+
+OF_BEARING = [
+    OfBearing("orbit", paths),
+    OfBearing("force", forces, lambda run, a: f"{a.bearing}.contact.force" in run.recording),
+    OfBearing("speeds", speeds, lambda run, a: f"{a.bearing}.speed.ring" in run.recording),
+    OfBearing("distance", distance, lambda run, a: is_heard(run.system, a)),
+    OfBearing("slowing", slowing, lambda run, a: is_heard(run.system, a)),
+    OfBearing("contacts", contacts, lambda run, a: has_contacts(run.system, a)),
+    OfBearing("spectrum", spectrum, lambda run, a: has_spectrum(run.recording, a)),
+    OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),
+]
+
+NAMES = (*(picture.name for picture in OF_BEARING), "orbits", "stress", "energy")
+"""Of all files, before the component that some have at the end."""
+
+
+def draw_all(run: Finished, folder: Path, dark: bool = False) -> list[Path]:
+    """Draw what the scene is about, as far as it was recorded, into `folder`; returns the files.
+
+    dark: on a dark ground.
+    """
+    made: list[Path] = []
+    for name, draw in _pictures(run):
+        with suppress(NotRecordedError), styled():
+            figure = sheet()
+            draw(figure)
+            if dark:
+                darkened(figure)
+            path = folder / f"{name}.png"
+            with replacing(path) as part:
+                figure.savefig(part, dpi=DPI, format="png")
+            made.append(path)
+    return made
+
+
+def _pictures(run: Finished) -> Iterator[Picture]:
+    seats = touchdown_seats(run.system)
+    for a in seats:
+        tail = f"-{a.bearing}" if len(seats) > 1 else ""
+        for picture in OF_BEARING:
+            if picture.there(run, a):
+                yield f"{picture.name}{tail}", _of_bearing(picture, run, a)
+    if len(seats) > 1:
+        yield "orbits", partial(orbits, run=run, seats=seats)
+    rotors = stressed(run.system)
+    for name in rotors:
+        tail = f"-{name}" if len(rotors) > 1 else ""
+        if has_stress(run.system, name):
+            yield f"stress{tail}", partial(stress, run=run, name=name)
+    if energy_total(run.system, run.recording) is not None:
+        yield "energy", partial(energy, run=run)
+
+
+def _of_bearing(picture: OfBearing, run: Finished, a: Attachment) -> Callable[[Figure], object]:
+    return lambda figure: picture.draw(figure, run, a)
 
 
 class Plot:
@@ -40,21 +125,21 @@ class Plot:
 
     def orbit(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
         """The rotor in the clearance circle of a bearing [µm]."""
-        from touchdown.master.results.figures.motion import draw_orbit
+        from .motion import draw_orbit
 
         with self._on(ax) as axes:
             return draw_orbit(axes, self._run(), self._seat(bearing))
 
     def paths(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """The rotor in the clearance circle, its landing from near, and where rings and cage go [µm]."""
-        from touchdown.master.results.figures.motion import paths
+        from .motion import paths
 
         with self._drawing(figure) as whole:
             return paths(whole, self._run(), self._seat(bearing))
 
     def orbits(self, figure: FigureBase | None = None) -> list[Axes]:
         """The rotor in all its bearings side by side [µm]."""
-        from touchdown.master.results.figures.orbits import orbits
+        from .motion import orbits
 
         self._seat(None)
         with self._drawing(figure) as whole:
@@ -62,7 +147,7 @@ class Plot:
 
     def forces(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Contact forces in a bearing over time [N]: of the rotor, and of the ball hit hardest."""
-        from touchdown.master.results.figures.forces import forces
+        from .forces import forces
 
         seat = self._seat(bearing)
         self._require(f"{seat.bearing}.contact.force")
@@ -71,7 +156,7 @@ class Plot:
 
     def speeds(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Circumferential speeds of rotor, ring, balls and cage over time [m/s]."""
-        from touchdown.master.results.figures.motion import speeds
+        from .motion import speeds
 
         seat = self._seat(bearing)
         self._require(f"{seat.bearing}.speed.ring")
@@ -80,7 +165,7 @@ class Plot:
 
     def contacts(self, ax: Axes | None = None, bearing: str | None = None) -> Axes:
         """The balls of a detailed bearing at the end of the run, and which of them are pressed."""
-        from touchdown.master.results.figures.contacts import draw_contacts, has_contacts
+        from .forces import draw_contacts, has_contacts
 
         run, seat = self._run(), self._seat(bearing)
         if not has_contacts(run.system, seat):
@@ -92,7 +177,7 @@ class Plot:
 
     def energy(self, figure: FigureBase | None = None) -> list[Axes]:
         """Where the energy is, and its balance [J]."""
-        from touchdown.master.results.figures.energy import energy
+        from .energy import energy
 
         run = self._run()
         if energy_total(run.system, run.recording) is None:
@@ -102,8 +187,8 @@ class Plot:
 
     def spectrum(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Amplitude of the inner ring's velocity over frequency, after the landing [m/s, Hz]."""
-        from touchdown.master.results.figures.spectrum import has_spectrum, spectrum
-        from touchdown.master.results.motion.spectra import BEGIN, LENGTH
+        from ..spectra import BEGIN, LENGTH
+        from .spectra import has_spectrum, spectrum
 
         run, seat = self._run(), self._seat(bearing)
         self._require(f"{seat.bearing}.ring.x")
@@ -114,12 +199,7 @@ class Plot:
 
     def waterfall(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Spectra of the rotor's motion one behind the other, while it slows down."""
-        from touchdown.master.results.figures.waterfall import (
-            COARSEST,
-            SHORTEST,
-            has_waterfall,
-            motion_waterfall,
-        )
+        from .spectra import COARSEST, SHORTEST, has_waterfall, motion_waterfall
 
         run, seat = self._run(), self._seat(bearing)
         if not has_waterfall(run.recording, seat):
@@ -132,7 +212,7 @@ class Plot:
 
     def stress(self, figure: FigureBase | None = None, rotor: str | None = None) -> list[Axes]:
         """Stresses of a flexible rotor [MPa] along its axis and over time; of the scene's first."""
-        from touchdown.master.results.figures.stress import has_stress, stress
+        from .stress import has_stress, stress
 
         run = self._run()
         known = [name for name in stressed(run.system) if has_stress(run.system, name)]
@@ -164,7 +244,7 @@ class Plot:
     @contextmanager
     def _drawing(self, figure: FigureBase | None) -> Iterator[FigureBase]:
         """`figure`, or a new one, to draw on in the project's style."""
-        from touchdown.master.results.figures.style import darkened, drawable, styled
+        from .style import darkened, drawable, styled
 
         with styled():
             whole = drawable(figure)

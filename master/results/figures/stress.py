@@ -6,20 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 
-from touchdown.master.coupling.loop.span import zero_of
-from touchdown.master.results.ending import Finished, Readable, Teller
-from touchdown.master.results.figures.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    PURPLE,
-    TIME,
-    WIDTH,
-    beginning,
-    sized,
-    thinned,
-)
-from touchdown.master.results.stresses import KINDS, MPA, along, kept_instant
+from ...coupling.loop.span import zero_of
+from ..ending import Finished, Readable, Teller
+from ..stresses import KINDS, MPA, along, kept_instant
+from .style import BLUE, GREY, ORANGE, PURPLE, TIME, WIDTH, beginning, sized, thinned
 
 PLANES = (("x", "horizontal (x)", BLUE), ("y", "vertical (y)", ORANGE))
 

@@ -1,5 +1,7 @@
 """Where the journal presses on the bore, and how that place moves round it.
 
+Where the journal presses on the bore, and how that place moves round it.
+
 A recording shows a row of contacts with flights between them. In contact the place follows from the force
 on the journal, of which the bearing presses it back: this holds wherever the orbit has its centre, and
 friction turns it by no more than its angle. Where no force was recorded, contact is assumed beyond
@@ -10,12 +12,20 @@ the flight clings to the bore or crosses it as a free body would, along a chord.
 angle a comes as near to the centre as cos(a/2) of the clearance. Gravity bends it: by 0.3 of the
 clearance in a quarter of a pendulum's period. Other flights end the row: bounces through the middle,
 orbits held by something else than the bore (a magnetic bearing, an unbalance).
+
+Swings to and fro along the bore, also those that pass a turn.
+
+A free pendulum turns back at its ends, where its speed goes through zero, and stays within a turn from side
+to side. A driven one may go over the top and come back: one way by up to FURTHEST is still a swing if it
+turns back into a like one, and slows down before it does.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -151,3 +161,202 @@ def _is_hop(turn: np.ndarray, least: np.ndarray) -> np.ndarray:
     clings = (span <= CLINGS) & (least >= NEAR)
     deepest = np.minimum(DEEPER * chord, chord - BENDS)
     return clings | ((span <= HOPS) & (least >= deepest) & (least <= chord + BENDS))
+
+
+ENDS = TURN / 8.0  # left out of a stretch's either end to time it: there it may set out or swing out slowly
+SECTION = TURN / 100.0  # so little of a turn
+REST = 0.5  # of a pendulum's period that it takes for a section: it has come to rest in between
+
+
+class Stretch(NamedTuple):
+    """Turning one way: indices into an angle, and the turn between them (rad, counter-clockwise).
+
+    `timed` are such indices without the stretch's ends, `timed_turn` (rad, no sign) lies between them.
+    """
+
+    first: int
+    last: int
+    turn: float
+    timed: tuple[int, int]
+    timed_turn: float
+
+
+def stretches(angle: np.ndarray, back: float) -> list[Stretch]:
+    """Stretches of turning one way, where turning back by less than `back` (rad) is passed over.
+
+    They follow one another from extreme to extreme. Each is at least `back` long.
+    """
+    ways: list[Stretch] = []
+    low = high = begun = best = sign = 0
+    for i in _turning_points(angle):
+        if sign == 0:
+            low, high = (i if angle[i] < angle[low] else low), (i if angle[i] > angle[high] else high)
+            if angle[high] - angle[low] >= back:
+                sign = 1 if high > low else -1
+                begun, best = min(low, high), max(low, high)
+        elif sign * (angle[i] - angle[best]) > 0.0:
+            best = i
+        elif sign * (angle[best] - angle[i]) >= back:
+            ways.append(stretch(angle, begun, best))
+            begun, best, sign = best, i, -sign
+    if sign:
+        ways.append(stretch(angle, begun, best))
+    return ways
+
+
+def _turning_points(angle: np.ndarray) -> list[int]:
+    """Indices of the first and last value and of all local extremes."""
+    rate = np.diff(angle)
+    inner = np.flatnonzero(rate[:-1] * rate[1:] <= 0.0) + 1
+    return [0, *inner.tolist(), len(angle) - 1]
+
+
+def stretch(angle: np.ndarray, begun: int, best: int) -> Stretch:
+    """From extreme to extreme; timed from where it left the first for good to where it neared the last."""
+    part = angle[begun : best + 1]
+    turned = np.abs(part - part[0])
+    turn = float(part[-1] - part[0])
+    margin = min(ENDS, 0.25 * abs(turn))
+    b = int(np.argmax(turned >= abs(turn) - margin))
+    a = int(np.flatnonzero(turned[: b + 1] <= margin)[-1])
+    return Stretch(begun, best, turn, (begun + a, begun + b), float(abs(part[b] - part[a])))
+
+
+def without_rests(time: np.ndarray, angle: np.ndarray, whole: Stretch, pendulum: float) -> list[Stretch]:
+    """What is left of a stretch when it is cut where it rests; pendulum: a pendulum's period (s).
+
+    time: s, of each of `angle` (rad). Rests at the stretch's very ends stay: they add no turn.
+    """
+    turned = math.copysign(1.0, whole.turn) * (angle[whole.first : whole.last + 1] - angle[whole.first])
+    furthest = np.maximum.accumulate(turned)
+    levels = np.arange(SECTION, furthest[-1], SECTION)
+    after = np.searchsorted(furthest, levels)
+    rests = np.flatnonzero(
+        np.diff(_reached(time[whole.first :], furthest, levels, after)) > REST * pendulum
+    )
+    begins = [whole.first, *(whole.first + after[rests + 1] - 1).tolist()]
+    ends = [*(whole.first + after[rests]).tolist(), whole.last]
+    return [stretch(angle, a, b) for a, b in zip(begins, ends, strict=True) if a < b]
+
+
+def _reached(time: np.ndarray, furthest: np.ndarray, levels: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """When each of `levels` was reached (s); `after`: the first index that lies at it or beyond."""
+    gone = (levels - furthest[after - 1]) / (furthest[after] - furthest[after - 1])
+    return time[after - 1] + gone * (time[after] - time[after - 1])
+
+
+def period(time: np.ndarray, s: Stretch) -> float:
+    """Mean time of a revolution (s); time: s, of each of the angle's values."""
+    return float(time[s.timed[1]] - time[s.timed[0]]) * TURN / s.timed_turn
+
+
+def times(time: np.ndarray, s: Stretch) -> tuple[float, float]:
+    """Start and end (s), the ends taken as fast as the rest: beyond them it may have rested anywhere."""
+    ends = ENDS / TURN * period(time, s)
+    start = max(float(time[s.first]), float(time[s.timed[0]]) - ends)
+    return start, min(float(time[s.last]), float(time[s.timed[1]]) + ends)
+
+
+SWING = TURN / 36.0  # from side to side; less is what is left of a pendulum, or play
+FURTHEST = 2.0 * TURN  # of a swing from side to side: a turn to either side
+LIKE = 0.5  # of a swing's turn: least of the one it turns back into; swings decay
+GROWS = 1.25  # times the one before it: most of a swing that turns back into none such
+LAST_PART = 1.0 / 8.0  # of a swing's turn, at an end at which it turns back, takes of its time
+LINGERS = 0.17  # at least: 0.23 in harmonic motion, 0.125 at constant speed, when something hit it back
+STAYS = 0.45  # at most; more where it came to rest in between
+
+
+def to_and_fro(march: March) -> bool:
+    """Whether it advances either way while in contact: a loop on one side goes back in flight."""
+    advanced = [
+        s.turn for s in stretches(march.angle, SWING) if march.touched(s.first, s.last) * s.turn > 0.0
+    ]
+    return any(turn > 0.0 for turn in advanced) and any(turn < 0.0 for turn in advanced)
+
+
+def is_swing(time: np.ndarray, angle: np.ndarray, ways: list[Stretch], i: int) -> bool:
+    """Whether stretch i of `ways` is one way of a swing: it turns back into a like one, and slowly.
+
+    time: s, of each of `angle` (rad). Where the recording cuts a swing short it need not turn back.
+    """
+    whole = ways[i]
+    before = ways[i - 1] if i > 0 else None
+    after = ways[i + 1] if i + 1 < len(ways) else None
+    if abs(whole.turn) >= FURTHEST or not _is_like(before, whole, after):
+        return False
+    shares = zip((before, after), _last_parts(time, angle, whole), strict=True)
+    return all(other is None or LINGERS <= share <= STAYS for other, share in shares)
+
+
+def _is_like(before: Stretch | None, whole: Stretch, after: Stretch | None) -> bool:
+    """Whether it turns back into a like swing; or came out of one, where the recording may end too soon."""
+    decays = after is not None and abs(after.turn) >= LIKE * abs(whole.turn)
+    return decays or (before is not None and abs(whole.turn) <= GROWS * abs(before.turn))
+
+
+def _last_parts(time: np.ndarray, angle: np.ndarray, whole: Stretch) -> tuple[float, float]:
+    """Parts of a stretch's time that it spends in the first and the last part of its turn."""
+    turned = np.abs(angle[whole.first : whole.last + 1] - angle[whole.first]) / abs(whole.turn)
+    within = time[whole.first : whole.last + 1] - time[whole.first]
+    left = within[np.flatnonzero(turned <= LAST_PART)[-1]]
+    neared = within[np.argmax(turned >= 1.0 - LAST_PART)]
+    return float(left / within[-1]), float(1.0 - neared / within[-1])
+
+
+GRAVITY = 9.81  # m/s2, for the scale of a pendulum's period
+BACK = TURN / 4.0  # friction and rattle turn a whirl back by less, a swing by more
+NEARLY = 0.75 * TURN  # a free swing's one side, half a turn at most, and half as much again
+CREEP = 0.25  # of the pendulum's frequency
+
+
+class Direction(StrEnum):
+    """Of a whirl: as the rotor spins, or against it."""
+
+    FORWARD = "forward"
+    BACKWARD = "backward"
+
+
+@dataclass(frozen=True)
+class Turning:
+    """Contacts that march one way by NEARLY or more and are no swing; without rest, or they creep."""
+
+    march: March
+    stretch: Stretch  # indices into the march
+    time: np.ndarray  # s, of the march's rows
+    creeps: bool  # so slowly that gravity would have swung it back, were it not carried
+
+    @property
+    def whirls(self) -> bool:
+        """Whether it is a whirl."""
+        return self.turns >= 1.0 and not self.creeps
+
+    @property
+    def turns(self) -> float:
+        """How many, without a sign."""
+        return abs(self.stretch.turn) / TURN
+
+    def direction(self, spin: float) -> Direction:
+        """As the rotor spins (rad/s; 0 as above 0), or against it."""
+        along = self.stretch.turn * (-1.0 if spin < 0.0 else 1.0) > 0.0
+        return Direction.FORWARD if along else Direction.BACKWARD
+
+
+def most_turns(march: March) -> float:
+    """The most that a row of contacts goes one way (turns), swings and rests included; no sign."""
+    ways = stretches(march.angle, BACK)
+    return max((abs(way.turn) for way in ways), default=float(np.ptp(march.angle))) / TURN
+
+
+def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
+    """All of a row of contacts, in their order."""
+    time = orbit.time[march.rows]
+    pendulum = TURN * math.sqrt(orbit.clearance / GRAVITY)
+    ways = stretches(march.angle, BACK)
+    for i, whole in enumerate(ways):
+        if abs(whole.turn) < NEARLY or is_swing(time, march.angle, ways, i):
+            continue
+        parts = [p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= NEARLY]
+        for part in parts:
+            yield Turning(march, part, time, CREEP * period(time, part) > pendulum)
+        if not parts:
+            yield Turning(march, whole, time, creeps=True)

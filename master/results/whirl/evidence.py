@@ -5,11 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from touchdown.master.results.ending import Readable
-from touchdown.master.results.whirl.swings import SWING
-from touchdown.master.results.whirl.told import short_of_one
-from touchdown.master.results.whirl.unbalance import unbalanced
-from touchdown.master.results.whirl.verdict import Verdict
+from ..ending import Readable
+from .contacts import SWING
+from .verdict import Verdict, short_of_one
+
+ANGLE = "unbalance_angle"  # of a rotor at the start
+SIZES = ("eccentricity", "unbalance_scale")  # without it there is no unbalance, where a rotor states one
+
+
+def unbalanced(system: Readable) -> list[str]:
+    """The bodies with an unbalance that can be turned, in the order of the scene."""
+    return [
+        name
+        for name in dict.fromkeys(a.body for a in system.attachments)
+        if f"{name}.{ANGLE}" in system
+        and all(system.value(f"{name}.{size}") != 0.0 for size in SIZES if f"{name}.{size}" in system)
+    ]
+
 
 NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn is a hop or two more or less
 MARCHED = "_most_turns_one_way"  # behind the key of a verdict

@@ -1,4 +1,12 @@
-"""What a journal does in its bearing, told from where it presses on the bore.
+"""What a journal does in its bearing: whirl, pendulum, contact, and how that is said.
+
+What drives a whirl, told from the phase of the contact force: evidence beside the orbit.
+
+The bearing presses the journal inwards, and friction turns that force out of the normal. On a journal that
+spins, sliding friction points against the spin: it drives a backward whirl and brakes a forward one, which
+something else has to keep up, an unbalance for one. Where the journal rolls on the bore, nothing does.
+
+What a journal does in its bearing, told from where it presses on the bore.
 
 A journal that whirls is pressed to the bore by its own centrifugal force, all the way round. Against the
 spin, friction drives it; it would roll at the journal's radius over the clearance times the spin, tens of
@@ -31,17 +39,230 @@ NEARLY and CREEP in `turning`, LOOPS in `remarks`.
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import beta
 
-from touchdown.master.results.whirl.contacts import Orbit, about_its_circle, marches, too_coarse
-from touchdown.master.results.whirl.remarks import TOO_COARSE, on_circling, on_turnings
-from touchdown.master.results.whirl.stretches import period, times
-from touchdown.master.results.whirl.swings import to_and_fro
-from touchdown.master.results.whirl.told import AT_THE_END
-from touchdown.master.results.whirl.turning import Direction, Turning, most_turns, turnings
+from .contacts import (
+    BACK,
+    FOLLOWED,
+    PRESSES,
+    TURN,
+    Direction,
+    March,
+    Orbit,
+    Turning,
+    about_its_circle,
+    marches,
+    most_turns,
+    period,
+    stretches,
+    times,
+    to_and_fro,
+    too_coarse,
+    turnings,
+    wrapped,
+)
+
+
+def force_phase(
+    orbit: Orbit, force: tuple[np.ndarray, np.ndarray], episode: Episode, spin: float
+) -> float | None:
+    """Angle (rad) by which the force on the journal leads the inward normal, in the sense of the whirl.
+
+    Above 0 it drives the whirl, below 0 it brakes it; atan of the coefficient of friction, at most, where
+    friction is all there is. Forces are summed over the whirl, so that large ones count for more. force:
+    all that the bearing presses with (N), friction included, x and y, each (rows,); spin as for
+    `classify`. The normal is that of a bore about the orbit's own middle, which may stand off the
+    bearing's. None where nothing presses.
+    """
+    part = (orbit.time >= episode.start) & (orbit.time <= episode.end)
+    size = np.hypot(*force)
+    part &= np.isfinite(orbit.radius) & np.isfinite(size)
+    part[part] = size[part] > PRESSES * np.max(size[part], initial=0.0)
+    if not part.any():
+        return None
+    x, y, fx, fy = orbit.x[part], orbit.y[part], force[0][part], force[1][part]
+    x, y = (values - 0.5 * (np.min(values) + np.max(values)) for values in (x, y))
+    away = np.maximum(np.hypot(x, y), 1e-300)
+    inwards = -float(np.sum((fx * x + fy * y) / away))
+    counter_clockwise = float(np.sum((fy * x - fx * y) / away))
+    forward = episode.direction is Direction.FORWARD
+    sense = 1.0 if forward == (spin >= 0.0) else -1.0
+    return math.atan2(sense * counter_clockwise, inwards)
+
+
+CONFIDENCE = 0.95
+
+
+class Share(NamedTuple):
+    """A part of all, 0 to 1, and the interval that has it with CONFIDENCE."""
+
+    value: float
+    low: float
+    high: float
+
+
+def clopper_pearson(hits: float, count: float) -> Share:
+    """The share of `hits` among `count` independent drops, and its exact binomial interval.
+
+    Both may be no whole numbers, where drops weigh differently. `count` must be above 0.
+    """
+    tail, misses = 0.5 * (1.0 - CONFIDENCE), count - hits
+    low = 0.0 if hits <= 0.0 else float(beta.ppf(tail, hits, misses + 1.0))
+    high = 1.0 if misses <= 0.0 else float(beta.ppf(1.0 - tail, hits + 1.0, misses))
+    return Share(hits / count, low, high)
+
+
+TURNS = "_revolutions"  # behind the key of a seat's verdict: turns of its decisive whirl
+TREND = "_trend"  # behind it: how a whirl goes on at the end
+AT_THE_END = ", still so at the end"
+STILL, OVER = re.compile(r", at \S+ s still whirling.*"), re.compile(r", \S+ to \S+ s$")
+
+
+class Kind(StrEnum):
+    """Verdicts in three classes."""
+
+    SETTLES = "settles"
+    TRANSIENT = "transient whirl"
+    SUSTAINED = "whirls at the end"
+
+
+def still(verdict: str, end: float, trend: str) -> str:
+    """The words on a whirl that goes on when the run ends (s), and how.
+
+    >>> still("backward whirl", 0.5, "decaying")
+    'backward whirl, at 0.5 s still whirling, decaying'
+    """
+    return f"{verdict}, at {end:.4g} s still whirling, {trend}"
+
+
+def over(verdict: str, start: float, end: float) -> str:
+    """The words on a whirl that was over (s) before the run's end.
+
+    >>> over("backward whirl", 0.134, 0.526)
+    'transient backward whirl, 0.134 to 0.526 s'
+    """
+    return f"transient {verdict}, {start:.3g} to {end:.3g} s"
+
+
+def verdict_class(words: str) -> str:
+    """What verdicts in words have in common that differ in times and turns only.
+
+    >>> verdict_class("backward whirl, at 0.5 s still whirling, decaying")
+    'backward whirl, still so at the end'
+    >>> verdict_class("transient backward whirl, 0.134 to 0.526 s")
+    'transient backward whirl'
+    """
+    return OVER.sub("", STILL.sub(AT_THE_END, words)).partition(":")[0]
+
+
+def short_of_one(turns: float) -> str:
+    """Turns below one, two digits behind the point, rounded down: never told as the whole one of a whirl.
+
+    >>> short_of_one(0.996), short_of_one(0.29)
+    ('0.99', '0.29')
+    """
+    return f"{math.floor(100.0 * turns + 1e-9) / 100.0:.2f}"
+
+
+def whirling(summary: Mapping[str, object]) -> str:
+    """The verdict on the seat that whirls most, or still does at the end; "" where none does.
+
+    As `verdict_class` has it: drops compare.
+    """
+    return max((_rank(summary, seat) for seat in _seats(summary)), default=(False, 0.0, ""))[2]
+
+
+def how_it_goes_on(summary: Mapping[str, object]) -> str:
+    """How the whirl goes on of the seat at which it does, the one that turns most; "" where none does."""
+    going = [
+        (_rank(summary, seat)[1], str(trend))
+        for seat in _seats(summary)
+        if (trend := summary.get(f"{seat}{TREND}")) is not None
+    ]
+    return max(going, default=(0.0, ""))[1]
+
+
+def has_verdict(summary: Mapping[str, object]) -> bool:
+    """Whether one could be given at any seat."""
+    return any(summary[seat] is not None for seat in _seats(summary))
+
+
+def kind(words: str) -> Kind:
+    """The class of a verdict in words, as `whirling` gives it."""
+    if not words:
+        return Kind.SETTLES
+    return Kind.SUSTAINED if _goes_on(words) else Kind.TRANSIENT
+
+
+def _seats(summary: Mapping[str, object]) -> list[str]:
+    return [key for key in summary if key.startswith("whirl_") and f"{key}{TURNS}" in summary]
+
+
+def _rank(summary: Mapping[str, object], seat: str) -> tuple[bool, float, str]:
+    words, turns = verdict_class(str(summary[seat])), summary[f"{seat}{TURNS}"]
+    if not isinstance(turns, float) or turns <= 0.0:
+        return False, 0.0, ""
+    return _goes_on(words), turns, words
+
+
+def _goes_on(words: str) -> bool:
+    """Whether a verdict's class is of a whirl that goes on at the end."""
+    return words.endswith(AT_THE_END)
+
+
+TOO_COARSE = "cannot tell: sampled too coarsely"
+LOOPS = 2.0 * TURN  # a bounce or two may chance to circle the centre once
+WIDE = 0.2  # of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
+
+
+def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
+    """On contacts that marched, but not as a whirl does; spin: of the rotor (rad/s, its sign counts)."""
+    if any(t.turns >= 1.0 for t in turnings):
+        return "creeps along the bore"
+    best = max((t for t in turnings if not t.creeps), key=lambda t: t.turns, default=None)
+    if best is None:
+        return ""
+    return f"near miss: {short_of_one(best.turns)} turn {best.direction(spin)}"
+
+
+def on_circling(orbit: Orbit, marches: Sequence[March]) -> str:
+    """On an orbit that circles the bearing's centre, or its own, and presses on the bore in places only."""
+    touched = np.zeros(len(orbit.time), dtype=bool)
+    for march in marches:
+        touched[march.rows] = True
+    loops = [*_loops(orbit), *_loops(_about_its_mean(orbit))]
+    if not loops:
+        return ""
+    rubs = any(touched[first : last + 1].any() for first, last in loops)
+    return "partial rub" if rubs else "orbits without contact"
+
+
+def _about_its_mean(orbit: Orbit) -> Orbit:
+    known = np.isfinite(orbit.radius)
+    x, y = (float(np.mean(part, where=known)) if known.any() else 0.0 for part in (orbit.x, orbit.y))
+    return orbit._replace(x=orbit.x - x, y=orbit.y - y)
+
+
+def _loops(orbit: Orbit) -> Iterator[tuple[int, int]]:
+    """First and last rows of circling one way by LOOPS or more about the origin, WIDE."""
+    angle = orbit.angle
+    wide = orbit.radius >= WIDE
+    joined = wide[:-1] & wide[1:] & (np.abs(wrapped(np.diff(angle))) < FOLLOWED)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], joined, [False]]).astype(int)))
+    for first, last in edges.reshape(-1, 2).tolist():
+        unwrapped = np.unwrap(angle[first : last + 1])
+        for s in stretches(unwrapped, BACK):
+            if abs(s.turn) >= LOOPS:
+                yield first + s.first, first + s.last
+
 
 WAIT = 0.5  # periods from a whirl's end to the recording's end: it still whirls
 

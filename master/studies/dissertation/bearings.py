@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.simulation import open_system
-from touchdown.master.scene.file import load_scene
-from touchdown.master.scene.scene import Scene
+from ...common.errors import TouchdownError
+from ...coupling.simulation import open_system
+from ...scene.file import load_scene
+from ...scene.scene import Scene
 
 STEP_APART = 1e-7  # rad
 MEMBERS = 5  # drops per model
@@ -157,7 +157,7 @@ def member(model: str, number: int, duration: float, settings: Mapping[str, obje
 
 def summary_of(scene: Scene) -> dict[str, object]:
     """Run a scene in process and give its figures."""
-    from touchdown.master.results.run import run_scene
+    from ...results.run import run_scene
 
     with TemporaryDirectory() as folder:
         return run_scene(scene, Path(folder), in_process=True, pictures=False).summary

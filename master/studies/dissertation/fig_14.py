@@ -1,19 +1,43 @@
 """Which drops of rotor I whirl, by speed and misalignment, beside Fig 14 of the source.
 
+Which drops of rotor I whirl, by speed and misalignment, beside Fig 14 of the source.
+
 Whether a rotor whirls is decided by little, the phase of its unbalance for one: so what is counted is the
 part of all phases that whirls, over phases that resolve the windows.
 """
 
 from __future__ import annotations
 
+import statistics
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from touchdown.master.common.progress import Progress
-from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.verdict.circle import Circle
-from touchdown.master.studies.verdict.phases import share, strays, windows
-from touchdown.master.studies.verdict.report import newtons, percent, reach, ways, write_report
-from touchdown.master.studies.verdict.study import Plan, Running, study_verdict
+from ...common.progress import Progress
+from ...scene.file import load_scene
+from ..verdict.report import newtons, percent, reach, ways, write_report
+from ..verdict.study import Circle, Plan, Running, share, strays, study_verdict, windows
+
+SEATS = ("A", "B")
+NO_LIMIT = {"run.stop_residual": 1000.0}  # of what is turned over: never, so that every drop counts
+PHASE = "rotor.unbalance_angle"
+
+
+def phases(members: int) -> dict[str, list[str]]:
+    """The ensemble: unbalance phases around the circle."""
+    return {PHASE: [f"{360.0 * i / members:g} deg" for i in range(members)]}
+
+
+def numbers(figures: Sequence[Mapping[str, object]], key: str) -> list[float]:
+    """A figure of the drops that have it."""
+    return [float(v) for f in figures if isinstance(v := f.get(key), (int, float))]
+
+
+def spread(values: Sequence[float]) -> str:
+    """Median, smallest and largest; a dash where there is none."""
+    if not values:
+        return "-"
+    return f"{statistics.median(values):.3g} ({min(values):.3g} to {max(values):.3g})"
+
 
 SPEEDS = (9000, 18000)  # rpm
 SOURCE = {  # misalignment of each bearing [um]: the source's verdict

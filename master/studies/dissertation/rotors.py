@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.progress import UNSEEN, Progress
-from touchdown.master.results.motion.spectra import lines as tallest
-from touchdown.master.results.motion.spectra import on_grid, waterfall
-from touchdown.master.results.run import run_scene
-from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.dissertation import table_4
-from touchdown.master.studies.dissertation.fig_14 import DURATION, fig_14
-from touchdown.master.studies.verdict.study import Plan
+from ...common.errors import Ended, TouchdownError
+from ...common.progress import UNSEEN, Progress
+from ...results.run import run_scene
+from ...results.spectra import lines as tallest
+from ...results.spectra import on_grid, waterfall
+from ...scene.file import load_scene
+from ..verdict.study import Plan
+from . import table_4
+from .fig_14 import DURATION, fig_14
 
 
 def run_down(folder: Path) -> list[str]:

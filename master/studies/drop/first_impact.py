@@ -1,4 +1,6 @@
-"""The first impact at each touchdown seat of a rotor, watched while a scene runs.
+"""The first impact at each touchdown seat, watched while a scene runs.
+
+The first impact at each touchdown seat of a rotor, watched while a scene runs.
 
 A light inner ring rattles between journal and balls: the momentary contact force swings about what the
 rotor is decelerated by, and parts from it for some ten microseconds at a time. So an impact is over once
@@ -14,14 +16,35 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from touchdown.master.components.contract import FORCE, POSITION
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.observer import Moment, Observer
-from touchdown.master.coupling.simulation import Outcome, simulate
-from touchdown.master.coupling.system import System
-from touchdown.master.results.summary import seat_name
-from touchdown.master.scene.scene import Scene
-from touchdown.modelkit.ports import PARTED
+from ....modelkit.ports import PARTED
+from ...components.component import FORCE, POSITION
+from ...coupling.connections import Attachment
+from ...coupling.observer import Moment, Observer
+from ...coupling.simulation import Outcome, opened, simulate
+from ...coupling.system import System
+from ...results.summary import seat_name
+from ...scene.scene import Scene
+
+SHORT = 2e-3  # s
+
+
+def shortened(scene: Scene) -> Scene:
+    """A copy whose magnetic bearings shut down earlier, all by as much, the first SHORT after the start.
+
+    One that shuts down as early already stays as it is. An unbalanced rotor then falls from another
+    angle: it is another drop of the same machine.
+    """
+    with opened(scene, in_process=True) as system:
+        times = {
+            name: system.value(f"{name}.shutdown_time")
+            for name, component in system.components.items()
+            if "shutdown_time" in component.variables
+        }
+    early = min(times.values(), default=0.0) - scene.run.start_time - SHORT
+    if early <= 0.0:
+        return scene
+    return scene.set({f"{name}.shutdown_time": time - early for name, time in times.items()})
+
 
 AVERAGE = 50e-6  # s
 ROUNDING = 1e-12  # s

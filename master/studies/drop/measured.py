@@ -8,24 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.contract import SENSED
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.coupling.observer import Moment, Observer
-from touchdown.master.coupling.simulation import opened
-from touchdown.master.coupling.system import System
-from touchdown.master.results.summary import seat_name, touchdown_seats
-from touchdown.master.scene.scene import Scene
-from touchdown.master.scene.schemes import DEFAULT
-from touchdown.master.studies.drop.first_impact import (
-    CONTACT,
-    LEAST,
-    ROUNDING,
-    Stop,
-    Trace,
-    reported_inside,
-    run_watched,
-)
+from ...common.errors import TouchdownError
+from ...components.component import SENSED
+from ...coupling.connections import Attachment
+from ...coupling.observer import Moment, Observer
+from ...coupling.simulation import opened
+from ...coupling.system import System
+from ...results.summary import seat_name, touchdown_seats
+from ...scene.scene import Scene
+from ...scene.schemes import DEFAULT
+from .first_impact import CONTACT, LEAST, ROUNDING, Stop, Trace, reported_inside, run_watched
 
 FINE = 1e-6  # s, macro step of what peak forces are measured against
 LONGEST = 5e-3  # s after the first contact

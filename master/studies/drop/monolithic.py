@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.twin import TwinComponent
-from touchdown.master.coupling.loop.span import zero_of
-from touchdown.master.coupling.simulation import open_system
-from touchdown.master.coupling.system import System
-from touchdown.master.scene.scene import Scene
+from ...common.errors import TouchdownError
+from ...components.in_process import TwinComponent
+from ...coupling.loop.span import zero_of
+from ...coupling.simulation import open_system
+from ...coupling.system import System
+from ...scene.scene import Scene
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,11 @@
-"""What runs are measured against: the monolithic solution, as far as two solvers agree on it.
+"""What runs are measured against: the monolithic solution, or the scene's own refinement.
+
+What runs are measured against where there are no equations to join: the scene's own refinement.
+
+An FMU of others' can only be stepped. So the reference is the same drop in finer and finer macro steps, as
+far as two of them agree on it; an error that all steps have in common stays unseen.
+
+What runs are measured against: the monolithic solution, as far as two solvers agree on it.
 
 After some impacts every difference is amplified beyond any use, that of two exact solvers too. So the
 motion is compared point by point only up to the horizon, the last instant up to which both agree.
@@ -13,11 +20,68 @@ from typing import Protocol
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.contract import SENSED
-from touchdown.master.coupling.connections import Attachment
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.monolithic import Monolith
+from ...common.errors import TouchdownError
+from ...components.component import SENSED
+from ...components.loading import foreign
+from ...coupling.connections import Attachment
+from ...coupling.loop.span import until
+from ...coupling.observer import Moment, Observer
+from ...coupling.simulation import opened, simulate
+from ...coupling.system import System
+from ...scene.scene import Scene
+from .measured import FINE, fine
+from .monolithic import Monolith
+
+
+@dataclass(frozen=True)
+class Refined:
+    """The drop in macro steps of `step` (s)."""
+
+    step: float
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        return f"its own steps of {1e6 * self.step:g} us"
+
+
+REFINED = (Refined(0.5 * FINE), Refined(FINE))
+"""The reference, and what it must agree with."""
+
+
+def has_equations(scene: Scene) -> bool:
+    """Whether all components are the project's own models, whose equations can be joined."""
+    return not any(foreign(spec.fmu) for spec in scene.components.values())
+
+
+def refine(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, by: Refined) -> Solve:
+    """Journals at `times` (s from zero), multiples of the macro step on the simulation's clock.
+
+    Raises TouchdownError where the run stops.
+    """
+    finely = fine(scene, by.step)
+    began = clock.perf_counter()
+    with opened(finely, in_process=True) as system:
+        kept = _Kept(system, seats, times, by.step)
+        outcome = simulate(until(finely, system, float(times[-1])), system, observers=[kept])
+    outcome.raise_if_stopped()
+    wall = (clock.perf_counter() - began) / outcome.simulated
+    return Solve(by, np.array(kept.motion), outcome.steps, wall)
+
+
+class _Kept(Observer):
+    """Keeps the journals' motion at instants."""
+
+    def __init__(self, system: System, seats: Sequence[Attachment], times: np.ndarray, step: float) -> None:
+        self.motion: list[list[np.ndarray]] = []
+        self._read = [system.reader([a.motion(v) for v in SENSED]) for a in seats]
+        self._times, self._half = times, 0.5 * step
+
+    def stepped(self, now: Moment) -> None:
+        kept = len(self.motion)
+        if kept < len(self._times) and now.since_zero >= self._times[kept] - self._half:
+            self.motion.append([read().copy() for read in self._read])
+
 
 POSITION, VELOCITY = slice(0, 2), slice(2, 4)  # of a journal's motion
 MOST_IMPLICIT = 120  # states that an implicit solver takes: each Jacobian is as many evaluations

@@ -13,18 +13,17 @@ import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import replace_text, writing_to
-from touchdown.master.common.processes.cores import cores
-from touchdown.master.common.progress import UNSEEN, Progress
-from touchdown.master.coupling.simulation import opened
-from touchdown.master.results.folder import SUMMARY
-from touchdown.master.results.result import Result
-from touchdown.master.results.summary import SPREAD, touchdown_seats
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.journal import Member
-from touchdown.master.studies.sweep.sweep import Execution, Task, run_tasks
+from ...common.errors import Ended, TouchdownError
+from ...common.files import replace_text, writing_to
+from ...common.pool import cores
+from ...common.progress import UNSEEN, Progress
+from ...coupling.simulation import opened
+from ...results.folder import SUMMARY
+from ...results.result import Result
+from ...results.summary import SPREAD, touchdown_seats
+from ...scene.scene import Scene
+from ..sweep.members import Member
+from ..sweep.sweep import Execution, Task, run_tasks
 
 APART = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
 GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # rad from one sibling's direction to the next: none is alike

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from touchdown.bearings import catalogue
-from touchdown.bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
-from touchdown.master.common.errors import TouchdownError, one_of, with_remedy
+from ....bearings import catalogue
+from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
+from ...common.errors import TouchdownError, one_of, with_remedy
 
 SHOWN = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
 MICRO = ("play",)  # in um

@@ -10,14 +10,14 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from touchdown.bearings.catalogue import Bearing
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.scene.plausible import FAST, MOST_BORE_SPEED, RPM
-from touchdown.master.studies.rotor.report import pulling
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import Shaft
-from touchdown.rotor.modal.modes import RIGID, basis
-from touchdown.rotor.statics import at_rest
+from ....bearings.catalogue import Bearing
+from ....modelkit.model import ModelError
+from ....rotor.beams.shaft import Shaft
+from ....rotor.modal.modes import RIGID, basis
+from ....rotor.statics import at_rest
+from ...common.errors import TouchdownError, one_of
+from ...scene.plausible import FAST, MOST_BORE_SPEED, RPM
+from ..rotor.report import pulling
 
 GRAVITY = 9.81  # m/s2
 LEVITATION = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing

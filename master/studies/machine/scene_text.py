@@ -6,9 +6,9 @@ import json
 import math
 from collections.abc import Iterator
 
-from touchdown.bearings.catalogue import Bearing
-from touchdown.master.scene.plausible import MOST_BORE_SPEED, RPM
-from touchdown.master.studies.machine.design import (
+from ....bearings.catalogue import Bearing
+from ...scene.plausible import MOST_BORE_SPEED, RPM
+from .design import (
     BELOW_BENDING,
     CONTACT,
     FORCE,

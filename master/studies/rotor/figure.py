@@ -14,13 +14,14 @@ from matplotlib.figure import FigureBase
 from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
-from touchdown.master.results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
-from touchdown.master.studies.rotor.held_figure import held_campbell
-from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import PointMass, Shaft
-from touchdown.rotor.modal.campbell import Held
-from touchdown.rotor.modal.data import seats
-from touchdown.rotor.portrait import Portrait
+from ....rotor.beams.body import PointMass
+from ....rotor.beams.element import Element
+from ....rotor.beams.shaft import Shaft
+from ....rotor.modal.data import seats
+from ....rotor.modal.whirl_speeds import Held
+from ....rotor.properties import Portrait
+from ...results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
+from .supported import held_campbell
 
 RPM = 60.0 / (2.0 * math.pi)
 MM = 1e3

@@ -10,19 +10,19 @@ from pathlib import Path
 
 import numpy as np
 
-from touchdown.master.common.errors import TouchdownError, one_of
-from touchdown.master.results.run import make_writable
-from touchdown.master.scene.file import shipped as scenes
-from touchdown.master.scene.tables import is_of_ross, is_scene_file, mistake_in
-from touchdown.master.studies.rotor.held_table import held_lines
-from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import Shaft, Support
-from touchdown.rotor.file import find, shipped
-from touchdown.rotor.imports.reading import ARCHIVE, MODELS, TABLES
-from touchdown.rotor.modal.critical import CriticalMap
-from touchdown.rotor.modal.data import seats
-from touchdown.rotor.portrait import Portrait, portrait
-from touchdown.rotor.statics import Rest
+from ....modelkit.model import ModelError
+from ....rotor.beams.shaft import Shaft, Support
+from ....rotor.file import find, shipped
+from ....rotor.imports.formats import ARCHIVE, MODELS, TABLES
+from ....rotor.modal.data import seats
+from ....rotor.modal.whirl_speeds import CriticalMap
+from ....rotor.properties import Portrait, portrait
+from ....rotor.statics import Rest
+from ...common.errors import TouchdownError, one_of
+from ...results.run import make_writable
+from ...scene.file import shipped as scenes
+from ...scene.tables import is_of_ross, is_scene_file, mistake_in
+from .supported import held_lines
 
 RPM = 60.0 / (2.0 * math.pi)
 SPEED = 9000.0 / RPM  # rad/s, the default
@@ -65,7 +65,7 @@ def report(
     """
     portrait = described(supported(find_rotor(name), supports or {}), speed, modes)
     make_writable(folder)
-    from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
+    from .figure import draw_pictures  # matplotlib is slow to import
 
     held = {}
     if portrait.held is not None:

@@ -1,24 +1,76 @@
-"""A scene's rotor described: free, levitated, and resting on its touchdown bearings."""
+"""A scene's rotor described, and rotors of other programs imported."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from touchdown.master.results.run import make_writable
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.rotor.held_table import held_lines
-from touchdown.master.studies.rotor.linear import Answer
-from touchdown.master.studies.rotor.report import MODES, SPEED, Report, described, report_text
-from touchdown.master.studies.rotor.situations import Bearing, Seen, Situation, seen_in, situations
-from touchdown.rotor.beams.shaft import Shaft, Support
-from touchdown.rotor.modal.critical import CriticalMap, critical_map
-from touchdown.rotor.modal.modes import fullest
-from touchdown.rotor.modal.whirl import static_stiffness
-from touchdown.rotor.portrait import Portrait
+from ....modelkit.model import ModelError
+from ....rotor.beams.shaft import Shaft, Support
+from ....rotor.file import load, written
+from ....rotor.imports import from_ross, of_arrays, placed, read
+from ....rotor.imports.formats import Places
+from ....rotor.modal.modes import fullest
+from ....rotor.modal.supported import static_stiffness
+from ....rotor.modal.whirl_speeds import CriticalMap, critical_map
+from ....rotor.properties import Portrait
+from ...common.errors import TouchdownError
+from ...results.run import make_writable
+from ...scene.scene import Scene
+from .report import MODES, SPEED, Report, described, report_text
+from .rig import Answer
+from .supported import held_lines
+from .supports import Bearing, Seen, Situation, seen_in, situations
+
+
+def import_rotor(
+    source: Any,
+    at: Places | None = None,
+    amb: Places | None = None,
+    sensors: Places | None = None,
+    speed: float | None = None,
+) -> Shaft:
+    """The rotor in a file or folder (`rotor.imports.read`), of arrays by name, or of a `ross.Rotor`.
+
+    at: stations for touchdown bearings; amb: those that levitate it before it drops; sensors: where only
+    motion is asked for. Each is a node (from 1), or text such as "120 mm" from node 1, by name. speed:
+    rad/s, at which bearings whose coefficients hang on it are taken. Raises TouchdownError.
+    """
+    try:
+        shaft = placed(_found(source, speed), at, amb, sensors)
+        written(shaft, f"rotor {shaft.title}")  # what no rotor file can say is named here
+    except ModelError as error:
+        raise TouchdownError(_already(source) or str(error)) from None
+    return shaft
+
+
+def _already(source: Any) -> str:
+    """That a file is a rotor's of the project's own, where it is; "" of another."""
+    if not isinstance(source, (str, os.PathLike)) or not os.fspath(source).endswith(".toml"):
+        return ""
+    try:
+        load(os.fspath(source))
+    except ModelError:
+        return ""
+    return (
+        f"{os.fspath(source)} is a rotor's file already; `touchdown rotor` describes it, `touchdown new "
+        "FOLDER --rotor` makes a machine with it"
+    )
+
+
+def _found(source: Any, speed: float | None) -> Shaft:
+    """As it is, without places. Raises ImportedRotorError."""
+    if isinstance(source, (str, os.PathLike)):
+        return read(os.fspath(source), speed)
+    if isinstance(source, Mapping):
+        return of_arrays(source, "the arrays", "Rotor of matrices")
+    return from_ross(source, speed)
+
 
 MISFIT = 1e-2  # of a law; above, it is said
 ALIKE = 1e-6  # directions of a support that differ by less are the same
@@ -60,7 +112,7 @@ def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, lo
     """`described_in` as text and as pictures in `folder`."""
     found = described_in(scene, speed, modes, load)
     make_writable(folder)
-    from touchdown.master.studies.rotor.figure import draw_pictures  # matplotlib is slow to import
+    from .figure import draw_pictures  # matplotlib is slow to import
 
     held = {one.name: (one.held, title_of(found, one)) for one in found.situations}
     pictures = draw_pictures(found.portrait, folder, held)

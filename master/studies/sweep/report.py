@@ -9,11 +9,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 
-from touchdown.master.common.errors import one_of
-from touchdown.master.common.files import replacing
-from touchdown.master.results.whirl.told import verdict_class
-from touchdown.master.studies.sweep.journal import Member
-from touchdown.master.studies.sweep.variation import number_and_unit
+from ...common.errors import one_of
+from ...common.files import replacing
+from ...results.whirl.verdict import verdict_class
+from .definition import number_and_unit
+from .members import Member
 
 MOST_ROWS = 40  # shown; all are in the file
 MOST_REASONS = 5  # why members failed, or are warned of

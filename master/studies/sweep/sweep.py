@@ -9,25 +9,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import writing_to
-from touchdown.master.common.processes.pool import TaskOutcome, run_all
-from touchdown.master.coupling.steppers.carried import carrying
-from touchdown.master.results.folder import claimed
-from touchdown.master.results.result import RECORDING
-from touchdown.master.results.run import make_ready, run_scene
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep import definition, journal
-from touchdown.master.studies.sweep.definition import (
-    Definition,
-    define,
-    read_definition,
-    refuse_other,
-)
-from touchdown.master.studies.sweep.design import Design
-from touchdown.master.studies.sweep.journal import Journal, Member, cut_torn_line, read_journal
-from touchdown.master.studies.sweep.results import DATASET, TABLE, Sweep, write_results
+from ...common.errors import Ended, TouchdownError
+from ...common.files import writing_to
+from ...common.pool import TaskOutcome, run_all
+from ...coupling.steppers.carried import carrying
+from ...results.folder import claimed
+from ...results.result import RECORDING
+from ...results.run import make_ready, run_scene
+from ...scene.scene import Scene
+from . import definition
+from .definition import Definition, Design, define, read_definition, refuse_other
+from .members import MEMBERS_FILE, Journal, Member, cut_torn_line, read_journal
+from .results import DATASET, TABLE, Sweep, write_results
 
 MADE_OF_IT = (  # what an earlier sweep may have left, beside its journal
     *(DATASET, TABLE, "whirl-map.png", "force-map.png", "stress-map.png"),
@@ -88,7 +81,7 @@ def sweep(
     scene, folder = replace(scene, folder=scene.folder.absolute()), folder.absolute()
     asked = define(scene, design, running.in_process)
     if running.cluster:  # before there is anything of the sweep in its folder
-        from touchdown.master.common.processes.cluster import reach
+        from ...common.cluster import reach
 
         reach(running.cluster)
     with claimed(folder):
@@ -108,14 +101,14 @@ def sweep(
 
 def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
     """The journal of the sweep in `folder`, which is begun or goes on. Raises TouchdownError."""
-    path = folder / journal.FILE
+    path = folder / MEMBERS_FILE
     begun = (folder / definition.FILE).exists()
     if begun and not running.anew:
         refuse_other(folder, read_definition(folder), asked)
     with writing_to(folder):
         shutil.rmtree(folder / UNDER_WAY, ignore_errors=True)
         if not begun or running.anew:
-            for left in (journal.FILE, *MADE_OF_IT):
+            for left in (MEMBERS_FILE, *MADE_OF_IT):
                 (folder / left).unlink(missing_ok=True)
             asked.write(folder)
         cut_torn_line(path)
@@ -175,7 +168,7 @@ def _run(
 
     work = carrying(_run_task)
     if running.cluster:
-        from touchdown.master.common.processes.cluster import run_on_cluster
+        from ...common.cluster import run_on_cluster
 
         ended = run_on_cluster(work, tasks, running.cluster, done, heard)
     else:

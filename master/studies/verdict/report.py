@@ -1,4 +1,4 @@
-"""What a study of verdicts found: as lines, as tables, as a file for other programs."""
+"""What a study of verdicts found, as lines, tables and figure."""
 
 from __future__ import annotations
 
@@ -8,26 +8,66 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from touchdown.master.common.files import write_records, writing_to
-from touchdown.master.results.motion.trend import Trend
-from touchdown.master.results.whirl.share import CONFIDENCE, Share
-from touchdown.master.results.whirl.told import how_it_goes_on
-from touchdown.master.scene.run_spec import SETTLED
-from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.report import counted
-from touchdown.master.studies.verdict.circle import Circle, peak_force
-from touchdown.master.studies.verdict.phases import (
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.projections.polar import PolarAxes
+
+from ...common.files import write_records, writing_to
+from ...results.figures.style import BLACK, GREY, sheet
+from ...results.settling import Trend
+from ...results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind
+from ...scene.run_spec import SETTLED
+from ...scene.scene import Scene
+from ..sweep.maps import COLOURS
+from ..sweep.report import counted
+from .study import (
+    Circle,
     Edge,
+    Study,
     Verdicts,
     Window,
     distance,
     edges,
     furthest,
+    gaps,
+    peak_force,
     share,
     strays,
     windows,
 )
-from touchdown.master.studies.verdict.study import Study
+
+INNERMOST = 1.0  # radius, in rings
+
+
+def circles(study: Study) -> Figure:
+    """Each phase that was run is a dot; its ring has the colour of its verdict half the way to the next."""
+    figure = sheet(7.5, 7.5)
+    axes = figure.add_subplot(projection="polar")
+    assert isinstance(axes, PolarAxes)
+    for ring, circle in enumerate(study.circles):
+        _ring(axes, circle, INNERMOST + ring)
+    outermost = INNERMOST + len(study.circles)
+    axes.plot([np.radians(study.phase)] * 2, [0.0, outermost], color=GREY, ls="--", lw=1)
+    axes.set_ylim(0.0, outermost)
+    axes.set_yticks([])
+    axes.grid(visible=False)
+    patches = [Patch(color=colour, label=name.value) for name, colour in COLOURS.items()]
+    line = axes.plot([], [], color=GREY, ls="--", lw=1, label="the scene's own phase")
+    figure.legend(handles=[*patches, *line], loc="outside lower center", ncols=4)
+    inwards = " | ".join(circle.title for circle in study.circles)
+    title = f"{study.scene.title}\nphases of the unbalance, from the inmost ring: {inwards}"
+    figure.suptitle(title, wrap=True)
+    return figure
+
+
+def _ring(axes: PolarAxes, circle: Circle, inner: float) -> None:
+    for phase, before, after in gaps(circle.verdicts):
+        begin, width = np.radians(phase - 0.5 * before), np.radians(0.5 * (before + after))
+        colour = COLOURS[kind(circle.verdicts[phase])]
+        axes.bar(begin, 0.9, width=width, bottom=inner, align="edge", color=colour, lw=0)
+        axes.plot(np.radians(phase), inner + 0.45, ".", color=BLACK, ms=3)
+
 
 MOST_ROWS = 4  # of phases with equal verdicts in a window, to be told one by one
 SETTLES = "no whirl"  # in words, where a circle has ""
@@ -167,7 +207,7 @@ def _nearest(circle: Circle, phase: float, spacing: float) -> str:
 
 def write_report(study: Study, folder: Path) -> None:
     """phases.csv, a row per run with all its figures; verdict.json, the windows; verdict.png."""
-    from touchdown.master.studies.verdict.figure import circles  # matplotlib is slow to import
+    # matplotlib is slow to import
 
     with writing_to(folder):
         write_records(_records(study), folder / "phases.csv")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from ball_sets import problem_of, settled, stiffness_of
 
-from touchdown.bearings.catalogue.source import FROM_SOURCE
+from touchdown.bearings.catalogue.sizes import FROM_SOURCE
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load_scene

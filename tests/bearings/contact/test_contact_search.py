@@ -11,8 +11,18 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 
 from touchdown.bearings.contact.pair import INSIDE, OUTSIDE, Place, slip
-from touchdown.bearings.contact.profile import RaceProfile, curvature, problem, problems, sharpest
-from touchdown.bearings.contact.search import Disc, Outline, SearchReport, on_race, race_place
+from touchdown.bearings.contact.profile import (
+    Disc,
+    Outline,
+    RaceProfile,
+    SearchReport,
+    curvature,
+    on_race,
+    problem,
+    problems,
+    race_place,
+    sharpest,
+)
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, as_tuple, layout
 

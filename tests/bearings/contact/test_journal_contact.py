@@ -8,13 +8,7 @@ import numpy as np
 import pytest
 from friction_records import prepared
 
-from touchdown.bearings.contact.friction import (
-    COULOMB,
-    MAKKAR,
-    STRIBECK,
-    FrictionLaw,
-    coefficient,
-)
+from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient
 from touchdown.bearings.contact.journal import (
     FAR,
     ContactMemory,

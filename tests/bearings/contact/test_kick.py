@@ -17,7 +17,7 @@ from touchdown.bearings.contact.friction import (
     coefficient,
     curve,
 )
-from touchdown.bearings.contact.kick import damped_normal, force_on, friction_line
+from touchdown.bearings.contact.pair import damped_normal, force_on, friction_line
 from touchdown.modelkit.variables import as_record
 
 NORMAL = 250.0  # N

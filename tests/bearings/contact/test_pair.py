@@ -9,20 +9,14 @@ import numpy as np
 import pytest
 from friction_records import prepared, unwritten_lines
 
-from touchdown.bearings.contact.friction import (
-    COULOMB,
-    MAKKAR,
-    STRIBECK,
-    FrictionLaw,
-    coefficient,
-    curve,
-)
-from touchdown.bearings.contact.kick import STILL, Kick
+from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient, curve
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
 from touchdown.bearings.contact.pair import (
     INSIDE,
     OUTSIDE,
     PLENTY,
+    STILL,
+    Kick,
     Place,
     Press,
     heat,
@@ -31,9 +25,7 @@ from touchdown.bearings.contact.pair import (
     slip,
 )
 from touchdown.bearings.contact.passivity import Beat
-from touchdown.bearings.rolling.ball_state import rounded
-from touchdown.bearings.rolling.balls import MOST_BALLS, Total
-from touchdown.bearings.rolling.bodies.race import (
+from touchdown.bearings.rolling.ball_bodies import (
     Balls,
     Before,
     Contacts,
@@ -45,7 +37,10 @@ from touchdown.bearings.rolling.bodies.race import (
     pressing,
     with_friction,
 )
-from touchdown.bearings.rolling.rubbing import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
+from touchdown.bearings.rolling.ball_set import MOST_BALLS
+from touchdown.bearings.rolling.balls import Total
+from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
+from touchdown.bearings.rolling.ring import rounded
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 

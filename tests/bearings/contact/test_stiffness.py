@@ -14,7 +14,7 @@ from ball_sets import angles_of, problem_of, resting_place, settled, stiffness_o
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from touchdown.bearings.contact.stiffness import (
+from touchdown.bearings.contact.laws import (
     EXACT,
     PRINTED,
     damping_from_ratio,
@@ -23,7 +23,7 @@ from touchdown.bearings.contact.stiffness import (
     in_series,
     race_contact_stiffness,
 )
-from touchdown.bearings.rolling.balls import BallSet, FreeBallSet
+from touchdown.bearings.rolling.ball_set import BallSet, FreeBallSet
 
 SETS = {
     "6004": BallSet(),

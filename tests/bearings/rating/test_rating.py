@@ -10,7 +10,7 @@ import pytest
 
 from touchdown.bearings import rating
 from touchdown.bearings.rating import INNER, OUTER, RatedBearing
-from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.ball_set import BallSet
 
 BEARING = RatedBearing(9, 12.7e-3, 65e-3, 0.52, 0.52)
 

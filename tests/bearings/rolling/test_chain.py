@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from touchdown.bearings.contact.kick import damped_normal
 from touchdown.bearings.contact.laws import ContactLaw, elastic_and_damping
-from touchdown.bearings.contact.pair import Place
-from touchdown.bearings.rolling.sides.chain import Chain, link, part_ways, share
-from touchdown.bearings.rolling.sides.contact import SideContacts
+from touchdown.bearings.contact.pair import Place, damped_normal
+from touchdown.bearings.rolling.sides import Chain, SideContacts, link, part_ways, share
 from touchdown.modelkit.ports import Motion
 from touchdown.modelkit.variables import as_record, layout
 

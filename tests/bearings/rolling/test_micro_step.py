@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from touchdown.bearings.contact.kick import STILL
 from touchdown.bearings.contact.laws import ContactLaw
-from touchdown.bearings.contact.pair import Place
+from touchdown.bearings.contact.pair import STILL, Place
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from touchdown.bearings.rolling.sides.contact import SideContacts, lay
+from touchdown.bearings.rolling.sides import SideContacts, lay
 from touchdown.fmus.recipes import recipe
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.variables import as_record

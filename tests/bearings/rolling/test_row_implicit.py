@@ -6,8 +6,8 @@ import numpy as np
 from bearing_states import state_in_contact
 
 from touchdown.bearings.rolling import ring
-from touchdown.bearings.rolling.ball_state import BALLS
-from touchdown.bearings.rolling.row_implicit import linearise, solve
+from touchdown.bearings.rolling.ring import BALLS
+from touchdown.bearings.rolling.row import linearise, solve
 
 
 def test_the_arrow_solver_solves_what_finite_differences_give() -> None:

@@ -8,7 +8,7 @@ import pytest
 from ball_sets import resting_place, settled
 from systems import rotor_on
 
-from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.ball_set import BallSet
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.coupling.system import System
 

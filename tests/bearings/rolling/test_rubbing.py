@@ -13,13 +13,13 @@ from friction_records import prepared, unwritten_lines
 
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Curve, FrictionLaw, curve
-from touchdown.bearings.contact.kick import friction_line
+from touchdown.bearings.contact.pair import friction_line
+from touchdown.bearings.rolling import ball_bodies as bodies
 from touchdown.bearings.rolling import ring, row
-from touchdown.bearings.rolling.ball_state import BALLS, rounded
-from touchdown.bearings.rolling.balls import MOST_BALLS
-from touchdown.bearings.rolling.bodies import state as bodies
+from touchdown.bearings.rolling.ball_set import MOST_BALLS
+from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
 from touchdown.bearings.rolling.micro_step import RESOLUTION
-from touchdown.bearings.rolling.rubbing import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
+from touchdown.bearings.rolling.ring import BALLS, rounded
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.ports import Load
 

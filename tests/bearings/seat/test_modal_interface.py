@@ -12,8 +12,8 @@ from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import ComponentSpec, Scene
 from touchdown.master.studies.drop.monolithic import Monolith
+from touchdown.modelkit import numerics
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.numerics import oscillator
 
 JOURNALS = ["rotor.A.x", "rotor.A.y", "rotor.B.x", "rotor.B.y"]
 
@@ -225,7 +225,7 @@ def test_modes_end_the_macro_step_where_the_force_as_it_was_takes_them() -> None
     np.testing.assert_allclose(end[2:], exact.sum(axis=0)[2:], rtol=0.0, atol=1e-10)
     for n, (inv_m, w, ratio) in enumerate(MODES):
         handed = load["mode"][n]
-        found = oscillator.step(w * w, 2.0 * ratio * w, STEP)
+        found = numerics.step(w * w, 2.0 * ratio * w, STEP)
         for i, axis in enumerate("xy"):
             z, v = START[n][i], START[n][i + 2]
             mean, slope = inv_m * load[f"f{axis}"], inv_m * load[f"df{axis}"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.ball_set import BallSet
 from touchdown.bearings.simplified_cageless import MODEL
 from touchdown.modelkit.instance import Instance
 

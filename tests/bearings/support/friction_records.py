@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from touchdown.bearings.contact.friction import FrictionLaw, settle
-from touchdown.bearings.rolling.rubbing import FrictionLines
+from touchdown.bearings.rolling.friction import FrictionLines
 from touchdown.modelkit.variables import as_record, layout
 
 

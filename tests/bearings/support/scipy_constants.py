@@ -17,7 +17,7 @@ from scipy.special import ellipe, ellipkm1
 from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import MAKKAR, FrictionLaw
 from touchdown.bearings.contact.laws import ContactLaw
-from touchdown.bearings.rolling.balls import BallSet
+from touchdown.bearings.rolling.ball_set import BallSet
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, STEPS_A_HIT
 
 Values = dict[str, Any]

@@ -20,11 +20,11 @@ from fmpy.validation import validate_fmu
 from places import ROOT
 from systems import recorded
 
-from touchdown.fmus.description.arrays import arrays, element, time_reference
+from touchdown.fmus.description.variables import arrays, element, time_reference
 from touchdown.fmus.native.build import Native as Choice
 from touchdown.fmus.native.build import build
-from touchdown.fmus.native.faces import FMI_3
-from touchdown.fmus.native.targets import TARGETS, here, places_3
+from touchdown.fmus.native.compiler import TARGETS, here, places_3
+from touchdown.fmus.native.interfaces import FMI_3
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED

@@ -15,10 +15,10 @@ from xml.etree.ElementTree import fromstring
 import pytest
 from fmpy.validation import validate_fmu
 
-from touchdown.fmus.native import compiler, kernels, texts
+from touchdown.fmus.native import compiler, kernels, tables
 from touchdown.fmus.native.build import Native as Choice
 from touchdown.fmus.native.build import build
-from touchdown.fmus.native.targets import TARGETS, NativeError, here, places
+from touchdown.fmus.native.compiler import TARGETS, NativeError, here, places
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
@@ -115,19 +115,19 @@ def test_the_c_side_compiles_without_a_warning(monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_words_are_turned_into_formats():
-    assert texts.printf("at {time:.9g} s: {why}, {0:g}") == ("at %.9g s: %s, %g", ["time", "why", "0"])
+    assert tables.printf("at {time:.9g} s: {why}, {0:g}") == ("at %.9g s: %s, %g", ["time", "why", "0"])
     for impossible in ("{0:.3f}", "half a % of it", "{0!r:x}"):
         with pytest.raises(ValueError, match="C cannot print"):
-            texts.printf(impossible)
+            tables.printf(impossible)
 
 
 @pytest.mark.parametrize("fmu", names())
 def test_every_text_of_a_model_can_be_said_in_c(fmu: str):
     model = recipe(fmu).model
     for text in model.problems:
-        texts.quoted(texts.printf(text)[0])
+        tables.quoted(tables.printf(text)[0])
     for slot in slots(model):
-        texts.quoted(slot.variable.name)
+        tables.quoted(slot.variable.name)
 
 
 # -- what cannot be built ------------------------------------------------------------------------------
@@ -248,4 +248,4 @@ def test_what_lies_in_the_current_folder_is_not_imported(
 
 def test_a_unit_that_c_would_read_as_a_format_is_refused() -> None:
     with pytest.raises(NativeError, match="%"):
-        texts.word("100 %")
+        tables.word("100 %")

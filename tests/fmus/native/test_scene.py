@@ -10,7 +10,7 @@ import pytest
 from places import COMMAND, ROOT
 from systems import recorded
 
-from touchdown.fmus.native.targets import here
+from touchdown.fmus.native.compiler import here
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED
 

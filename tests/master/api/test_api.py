@@ -19,8 +19,8 @@ import touchdown
 from touchdown.master.coupling import steppers
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene import schemes
-from touchdown.master.studies.schemes import compare
-from touchdown.master.studies.schemes.compare import Asked
+from touchdown.master.studies.comparison import schemes as compare
+from touchdown.master.studies.comparison.schemes import Asked
 
 SCENE = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
 

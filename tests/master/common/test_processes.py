@@ -10,13 +10,13 @@ import sys
 import pytest
 from places import ROOT
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.processes import cluster, watched
-from touchdown.master.common.processes.pool import run_all
+from touchdown.master.common import cluster, watched
+from touchdown.master.common.errors import Ended
+from touchdown.master.common.pool import run_all
 
 PARENT = """
 import multiprocessing, os, sys, time
-from touchdown.master.common.processes.orphans import die_with_parent, watch_parent
+from touchdown.master.common.watched import die_with_parent, watch_parent
 
 def child(way):
     {"kernel": lambda: die_with_parent(os.getppid()), "thread": watch_parent}[way]()

@@ -14,7 +14,7 @@ import pytest
 from commands import SCENE, Command
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.screening.binary import refuse_damaged
+from touchdown.master.components.screening import refuse_damaged
 
 
 @pytest.fixture

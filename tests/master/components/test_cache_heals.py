@@ -17,7 +17,7 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common import archives
 from touchdown.master.components.unpack import unpack
-from touchdown.modelkit.kernel import shipped
+from touchdown.modelkit.kernel import machine_code
 from touchdown.modelkit.kernel.cache_folder import user_cache
 
 PARTS = ("modelDescription.xml", "binaries/linux64/Housing.so", "resources/slavemodule.txt")
@@ -83,7 +83,7 @@ def test_an_fmu_that_came_along(own_cache: Path, tmp_path: Path, monkeypatch: py
     """It is taken where it lies; damaged, one is built in its place, and left out of the installation."""
     housing = recipe("housing")
     brought = cached(housing).parents[1].rename(tmp_path / "fmus")
-    monkeypatch.setattr(shipped, "folder", lambda kind: tmp_path / kind)
+    monkeypatch.setattr(machine_code, "folder", lambda kind: tmp_path / kind)
     path = cached(housing)
     assert path == brought / housing.content / "housing.fmu"
     assert not (own_cache / "fmus").exists()

@@ -11,7 +11,7 @@ import pytest
 import touchdown
 from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.library import ahead
+from touchdown.master.components import compile_ahead
 from touchdown.master.results.run import make_ready
 
 
@@ -20,10 +20,10 @@ def handed_out(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     """Titles of the models that each process would be handed; nothing is compiled."""
     lists: list[list[str]] = []
 
-    def take(models: Iterable[ahead.NewModel]) -> None:
+    def take(models: Iterable[compile_ahead.NewModel]) -> None:
         lists.append([model.title for model in models])
 
-    monkeypatch.setattr(ahead, "_have_compiled", take)
+    monkeypatch.setattr(compile_ahead, "_have_compiled", take)
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 1})
     return lists
 
@@ -51,10 +51,12 @@ def test_one_processor_compiles_as_it_goes(
 
 def test_what_is_compiled_is_not_new(own_cache: Path) -> None:
     housing = recipe("housing")
-    assert not ahead._is_compiled(housing, in_process=True)
-    ahead._have_compiled(iter([ahead.NewModel("housing", "housing", Path(), in_process=True, size=0)]))
-    assert ahead._is_compiled(housing, in_process=True)
-    assert not ahead._is_compiled(housing, in_process=False)
+    assert not compile_ahead._is_compiled(housing, in_process=True)
+    compile_ahead._have_compiled(
+        iter([compile_ahead.NewModel("housing", "housing", Path(), in_process=True, size=0)])
+    )
+    assert compile_ahead._is_compiled(housing, in_process=True)
+    assert not compile_ahead._is_compiled(housing, in_process=False)
 
 
 def test_a_mistake_does_not_wait_for_the_compiler(own_cache: Path, handed_out: list[list[str]]) -> None:

@@ -22,8 +22,7 @@ from touchdown.master.interop.doctor import why_not
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
-from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.wires import Wire
+from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler")
 

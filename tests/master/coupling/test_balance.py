@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from touchdown.master.components.twin import TwinComponent
+from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
 

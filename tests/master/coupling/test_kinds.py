@@ -15,8 +15,8 @@ from systems import history, recorded
 
 import touchdown
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.interface import interface
-from touchdown.master.coupling.loop.steps import MacroSteps
+from touchdown.master.components.description import interface
+from touchdown.master.coupling.loop.compiled import MacroSteps
 from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import open_system, opened
 from touchdown.master.interop.container import write_container
@@ -24,8 +24,7 @@ from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene, parse
-from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.wires import Wire
+from touchdown.master.scene.scene import ComponentSpec, Scene, Wire
 
 STEP, STEPS = 1e-3, 12  # s
 GIVER = '''

@@ -9,11 +9,11 @@ import pytest
 from systems import DISK, GRAVITY, rotor_on
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.twin import TwinComponent
+from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.coupling.ledger import Ledger, Shortening
 from touchdown.master.coupling.ledger.account import SeatAccount
-from touchdown.master.coupling.ledger.followed import Path as Way
-from touchdown.master.coupling.ledger.judge import remedy
+from touchdown.master.coupling.ledger.alarms import remedy
+from touchdown.master.coupling.ledger.auditor import Path as Way
 from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import Outcome, fall_energy, opened, simulate
 from touchdown.master.coupling.steppers import stepper

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pythonfmu import FmuBuilder
 
-from touchdown.master.common.ended import Ended
+from touchdown.master.common.errors import Ended
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import parse
 

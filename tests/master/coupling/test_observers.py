@@ -11,9 +11,8 @@ import h5py
 import numpy as np
 import pytest
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components import contract
+from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.master.components import component
 from touchdown.master.coupling import simulation
 from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
@@ -128,16 +127,16 @@ def test_the_contract_names_what_docs_have() -> None:
     assert (
         *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "omega", "alpha_free", "inv_I"),
         *("k_over_m", "c_over_m", "static_fx", "static_fy"),
-    ) == contract.MOTION
-    assert contract.SENSED == ("x", "y", "vx", "vy")
-    assert (contract.LOAD, contract.SLOPE) == (("fx", "fy", "mz"), ("dfx", "dfy", "dmz"))
-    assert contract.SPIN == ("omega", "alpha_free", "inv_I", "mz", "dmz")
-    assert contract.MOUNT == ("k_over_m", "c_over_m")
-    assert (*contract.MOTION[:7], *contract.MOUNT) == contract.MODE_MOTION
-    assert contract.MODE_LOAD == ("qx", "qy", "px", "py")
-    assert (contract.WORK, contract.JUMP) == ("work", "jump")
-    assert {contract.UNITS[name] for name in contract.LOAD} == {"N", "N.m"}
-    assert set(contract.UNITS) == {*contract.MOTION, *contract.LOAD, *contract.SLOPE}
+    ) == component.MOTION
+    assert component.SENSED == ("x", "y", "vx", "vy")
+    assert (component.LOAD, component.SLOPE) == (("fx", "fy", "mz"), ("dfx", "dfy", "dmz"))
+    assert component.SPIN == ("omega", "alpha_free", "inv_I", "mz", "dmz")
+    assert component.MOUNT == ("k_over_m", "c_over_m")
+    assert (*component.MOTION[:7], *component.MOUNT) == component.MODE_MOTION
+    assert component.MODE_LOAD == ("qx", "qy", "px", "py")
+    assert (component.WORK, component.JUMP) == ("work", "jump")
+    assert {component.UNITS[name] for name in component.LOAD} == {"N", "N.m"}
+    assert set(component.UNITS) == {*component.MOTION, *component.LOAD, *component.SLOPE}
 
 
 def test_what_the_first_step_compiles_is_no_stepping(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,12 +15,10 @@ import pytest
 
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.components.component import Kind, Variable
-from touchdown.master.components.contract import reported
-from touchdown.master.components.twin import TwinComponent
-from touchdown.master.coupling.recorder.chosen import choose
-from touchdown.master.coupling.recorder.ordered import PAGE
-from touchdown.master.coupling.recorder.table import CHUNK, END, TIME, Column, Contents, Table
+from touchdown.master.components.component import Kind, Variable, reported
+from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.coupling.recorder import choose
+from touchdown.master.coupling.recording_file import CHUNK, END, PAGE, TIME, Column, Contents, Table
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.run_spec import RunSpec, with_changes
 from touchdown.modelkit.variables import Causality, Variability

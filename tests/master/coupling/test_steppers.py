@@ -9,7 +9,7 @@ from systems import rotor_on
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
 from touchdown.master.coupling.steppers import stepper
-from touchdown.master.coupling.steppers.checkpoint import Checkpoint
+from touchdown.master.coupling.steppers.stepper import Checkpoint
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.drop.monolithic import Monolith

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from touchdown.master.interop.ssp.names import NAMESPACES
+from touchdown.master.interop.ssp.xml import NAMESPACES
 
 ROTOR = """title = "Stub"
 damping_ratio = 0.01

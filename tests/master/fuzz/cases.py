@@ -26,7 +26,7 @@ from pool import Ran, inside, run_cases
 from touchdown.fmus.recipes import recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED
-from touchdown.master.interop.ssp.names import HEART
+from touchdown.master.interop.ssp.xml import HEART
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.run_spec import READERS
 from touchdown.master.verbs import ALL

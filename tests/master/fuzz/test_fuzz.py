@@ -13,7 +13,7 @@ from commands import Command
 from mutators import archive
 from pool import run_cases
 
-from touchdown.master.interop.ssp.names import HEART
+from touchdown.master.interop.ssp.xml import HEART
 
 CASES = 700
 PACKAGE = {

@@ -12,7 +12,7 @@ from systems import history, rotor_on
 from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import names, recipe
 from touchdown.master.components.component import Variable
-from touchdown.master.components.twin import TwinComponent
+from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.contract import ports
 

@@ -12,15 +12,9 @@ import pytest
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.components.library.loading import load_component
+from touchdown.master.components.loading import load_component
 from touchdown.master.interop.check import check_fmu
-from touchdown.master.interop.experiments import (
-    FOLDER,
-    Experiment,
-    Table,
-    experiments,
-    largest_deviation,
-)
+from touchdown.master.interop.experiments import FOLDER, Experiment, Table, experiments, largest_deviation
 
 RESULTS, EXPERIMENT = f"{FOLDER}/results.csv", f"{FOLDER}/smoke-test.exp"
 Change = Callable[[str], str]
@@ -189,6 +183,6 @@ def twin_at_rest(name: str) -> float:
 
 def twin():
     """A housing, in process."""
-    from touchdown.master.components.library.loading import Stepping
+    from touchdown.master.components.loading import Stepping
 
     return load_component("checked", "housing", stepping=Stepping(in_process=True))

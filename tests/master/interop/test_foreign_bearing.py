@@ -16,14 +16,14 @@ from systems import history
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.components.isolation.component import IsolatedFmu
-from touchdown.master.components.library.loading import load_component
+from touchdown.master.components.loading import load_component
 from touchdown.master.coupling.simulation import open_system, opened, simulate
 from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import read_names
-from touchdown.master.studies.schemes.compare import Asked, compare_schemes
+from touchdown.master.studies.comparison.schemes import Asked, compare_schemes
 
 EXAMPLES = ROOT / "examples"
 NAMES = EXAMPLES / "dry_bushing.toml"

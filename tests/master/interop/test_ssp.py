@@ -18,9 +18,8 @@ from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.names import HEART, NAMESPACES
 from touchdown.master.interop.ssp.write import write_package
-from touchdown.master.interop.ssp.xml import CHOICES
+from touchdown.master.interop.ssp.xml import CHOICES, HEART, NAMESPACES
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
 

@@ -11,9 +11,9 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.names import HEART
 from touchdown.master.interop.ssp.read import RUN_KEYS
 from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.xml import HEART
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import Scene

@@ -11,8 +11,8 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.names import HEART, NAMESPACES
 from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.xml import HEART, NAMESPACES
 from touchdown.master.scene.scene import Scene
 
 CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"}

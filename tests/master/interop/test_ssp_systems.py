@@ -14,7 +14,7 @@ from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.names import HEART, NAMESPACES
+from touchdown.master.interop.ssp.xml import HEART, NAMESPACES
 from touchdown.master.scene.scene import Scene
 
 ROOT = " ".join(f'xmlns:{prefix}="{uri}"' for prefix, uri in NAMESPACES.items())

@@ -19,11 +19,10 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.interop.packing import Making
+from touchdown.master.interop.container import Making
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.describe import identifiers
-from touchdown.master.interop.ssp.names import HEART, NAMESPACES
-from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.interop.ssp.write import identifiers, write_package
+from touchdown.master.interop.ssp.xml import HEART, NAMESPACES
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
 

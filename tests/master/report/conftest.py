@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import touchdown
-from touchdown.master.report.page.pdf import BROWSERS, QUIET, alone
+from touchdown.master.report.page import BROWSERS, QUIET, alone
 
 
 @pytest.fixture(scope="session")

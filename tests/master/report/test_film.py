@@ -10,9 +10,8 @@ import pytest
 from PIL import Image
 
 import touchdown
-from touchdown.master.report.animation.film import write_film
-from touchdown.master.report.animation.motion import Motion, motions
-from touchdown.master.report.facts.subject import Subject
+from touchdown.master.report.animation import Motion, motions, write_film
+from touchdown.master.report.subject import Subject
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from touchdown.master.report.contents import CHAPTERS
-from touchdown.master.report.page.pdf import print_page
+from touchdown.master.report.page import print_page
 
 
 @pytest.fixture

@@ -16,14 +16,13 @@ from places import ROOT
 
 import touchdown
 from touchdown.master.cli import main
+from touchdown.master.report.blocks import Folded, Remark, Table
 from touchdown.master.report.contents import CHAPTERS, section
-from touchdown.master.report.facts.labels import label
-from touchdown.master.report.facts.numbers import digits, listed, quantity
-from touchdown.master.report.facts.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
-from touchdown.master.report.facts.subject import Subject
-from touchdown.master.report.page.blocks import Folded, Remark, Table
+from touchdown.master.report.numbers import digits, label, listed, quantity
+from touchdown.master.report.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
+from touchdown.master.report.subject import Subject
 from touchdown.master.report.sweeps import _is_sample, _spread
-from touchdown.master.studies.sweep.journal import Member
+from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.results import Sweep
 
 

@@ -17,8 +17,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.results import run
 from touchdown.master.results.figures.plot import Plot

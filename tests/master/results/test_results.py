@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 
-from touchdown.master.coupling.recorder.table import CHUNK
+from touchdown.master.coupling.recording_file import CHUNK
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene

@@ -22,7 +22,7 @@ from touchdown.master.common.errors import FAILED, STOPPED
 from touchdown.master.common.interrupts import ended_as_by_ctrl_c, interrupts_noted
 from touchdown.master.coupling.observer import BEAT
 from touchdown.master.coupling.recorder import Recorder
-from touchdown.master.coupling.recorder.table import CHUNK
+from touchdown.master.coupling.recording_file import CHUNK
 from touchdown.master.coupling.simulation import Outcome
 from touchdown.master.results import run as results_run
 

@@ -22,8 +22,8 @@ from orbits import (
 from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Ending
 from touchdown.master.results.whirl.contacts import Orbit
-from touchdown.master.results.whirl.drive import force_phase
 from touchdown.master.results.whirl.evidence import evidence, hint
+from touchdown.master.results.whirl.verdict import force_phase
 
 SLIDING = math.atan(FRICTION)
 STANDS_OFF = replace(circle(-60.0, centre=0.4 - 0.2j), bore=0.4 - 0.2j)

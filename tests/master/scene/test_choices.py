@@ -11,8 +11,8 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError, one_of
 from touchdown.master.common.units import with_unit
 from touchdown.master.components.component import Component
-from touchdown.master.components.interface import interface
-from touchdown.master.components.library.loading import Stepping, load_component
+from touchdown.master.components.description import interface
+from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.coupling.assembly import checked
 from touchdown.modelkit.kernel.cache_folder import user_cache
 

@@ -15,7 +15,7 @@ from places import ROOT
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.common.units import to_si
-from touchdown.master.scene.restored import restored
+from touchdown.master.scene.file import restored
 
 PUMP = ROOT / "examples" / "pump_sections.csv"
 SPINDLE_MATRICES = ROOT / "examples" / "spindle_matrices"

@@ -12,7 +12,7 @@ from commands import SCENE, Command
 import touchdown
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.plausible import Seat, remarks
-from touchdown.master.studies.sweep.journal import Journal, Member, read_journal
+from touchdown.master.studies.sweep.members import Journal, Member, read_journal
 from touchdown.master.studies.sweep.report import warned
 
 VALUES = {

@@ -11,7 +11,7 @@ from commands import SCENE, Command
 import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.scene.titles import retitled
+from touchdown.master.scene.scene import retitled
 
 SHORT = touchdown.Element(length=0.05, outer_diameter=0.02, modulus=207e9, density=7830.0, poisson=0.3)
 SHAFT = touchdown.Rotor(

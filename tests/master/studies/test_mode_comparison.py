@@ -11,9 +11,9 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.scene.file import load_scene
+from touchdown.master.studies.comparison.modes import Comparison, compare_modes, parse_modes, runs
+from touchdown.master.studies.comparison.modes_report import report_lines, write_report
 from touchdown.master.studies.drop.first_impact import AVERAGE, Trace
-from touchdown.master.studies.modes.compare import Comparison, compare_modes, parse_modes, runs
-from touchdown.master.studies.modes.report import report_lines, write_report
 
 ROTOR_I = "rotor1-9000"
 SHORT = ("--set", "amb_A.shutdown_time=1 ms", "--set", "amb_B.shutdown_time=1 ms", "--macro-step", "5 us")

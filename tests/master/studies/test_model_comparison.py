@@ -12,11 +12,17 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
-from touchdown.master.scene.wires import BondSpec, Wire
-from touchdown.master.studies.drop.levitation import shortened
-from touchdown.master.studies.models.compare import Comparison, Row, compare_models
-from touchdown.master.studies.models.report import advice, report_lines
-from touchdown.master.studies.models.variants import Variant, tied, variants
+from touchdown.master.scene.scene import BondSpec, Wire
+from touchdown.master.studies.comparison.models import (
+    Comparison,
+    Row,
+    Variant,
+    compare_models,
+    tied,
+    variants,
+)
+from touchdown.master.studies.comparison.models_report import advice, report_lines
+from touchdown.master.studies.drop.first_impact import shortened
 
 DISK = "disk-caged-simplified"
 STEP = {"run.macro_step": "20 us"}  # within what forces on the journal are averaged over
@@ -172,7 +178,7 @@ def test_the_command(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first_two = lambda scene: variants(scene)[:2]  # noqa: E731
-    monkeypatch.setattr("touchdown.master.studies.models.variants.variants", first_two)
+    monkeypatch.setattr("touchdown.master.studies.comparison.models.variants", first_two)
     arguments = ("--models", "--repeat", "1", "--duration", "2 ms", "--quiet", "-o", str(tmp_path))
     assert main(["compare", DISK, "--set", "run.macro_step=20 us", *arguments]) == 0
     shown = capsys.readouterr().out

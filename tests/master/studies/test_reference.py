@@ -8,7 +8,7 @@ import pytest
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.drop.levitation import SHORT, shortened
+from touchdown.master.studies.drop.first_impact import SHORT, shortened
 from touchdown.master.studies.drop.reference import (
     FIRST,
     POSITION,

@@ -14,16 +14,13 @@ from typing import cast
 import pytest
 
 from touchdown.master.cli import main
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import FAILED, STOPPED
-from touchdown.master.common.processes.pool import INTERRUPTED, TaskOutcome
+from touchdown.master.common.errors import FAILED, STOPPED, Ended
+from touchdown.master.common.pool import INTERRUPTED, TaskOutcome
 from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
-from touchdown.master.studies.stability import study as stability_study
-from touchdown.master.studies.stability.cases import bounce, cases, chosen
-from touchdown.master.studies.stability.report import Study, report_lines
-from touchdown.master.studies.stability.trials import (
+from touchdown.master.studies.comparison import stability_report as stability_study
+from touchdown.master.studies.comparison.stability import (
     FIRST,
     GROWTH,
     STEPS,
@@ -33,9 +30,13 @@ from touchdown.master.studies.stability.trials import (
     Finding,
     Right,
     attempted,
+    bounce,
+    cases,
+    chosen,
     reference,
     search,
 )
+from touchdown.master.studies.comparison.stability_report import Study, report_lines
 
 
 def judged(right_up_to: float, stable_up_to: float, warned: bool = True) -> Callable[[float], Attempt]:

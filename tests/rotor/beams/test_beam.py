@@ -10,13 +10,12 @@ import pytest
 from numpy.polynomial import legendre
 from scipy import linalg
 
-from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import assemble
-from touchdown.rotor.beams.body import rigid_motion
+from touchdown.rotor.beams import element as beam
+from touchdown.rotor.beams.body import PointMass, disc, rigid_motion
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import PointMass, Shaft, disc
-from touchdown.rotor.modal.campbell import whirl_frequencies
+from touchdown.rotor.beams.shaft import Shaft, assemble
 from touchdown.rotor.modal.modes import basis
+from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 
 STEEL = {"modulus": 207e9, "density": 7830.0, "poisson": 0.3}
 LENGTH = 0.8
@@ -48,7 +47,7 @@ SECTIONS = pytest.mark.parametrize(
 def test_cantilever_under_a_force_and_a_moment(element: Element):
     """One element is exact: F L^3/3EI + F L/kGA and F L^2/2EI; M L^2/2EI and M L/EI."""
     L, EI, kGA = element.length, element.EI, element.kGA
-    free = beam.matrices(element).stiffness[2:, 2:]
+    free = beam.element_matrices(element).stiffness[2:, 2:]
     assert np.linalg.solve(free, [1.0, 0.0]) == pytest.approx([L**3 / (3 * EI) + L / kGA, L**2 / (2 * EI)])
     assert np.linalg.solve(free, [0.0, 1.0]) == pytest.approx([L**2 / (2 * EI), L / EI])
 

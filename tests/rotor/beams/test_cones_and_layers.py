@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from touchdown.rotor.beams import beam
-from touchdown.rotor.beams.assembly import assemble
+from touchdown.rotor.beams import element
 from touchdown.rotor.beams.body import rigid_motion
 from touchdown.rotor.beams.element import Element, split
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.shaft import Shaft, assemble
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.stresses import stress_rows
 from touchdown.rotor.statics import at_rest
@@ -33,7 +32,7 @@ STEEL = Element(length=0.02, outer_diameter=0.02, modulus=207e9, density=7830.0,
 
 def test_the_matrices_of_ross() -> None:
     """As ROSS 2.3.0 prints them."""
-    m = beam.matrices(ROSS_CONE)
+    m = element.element_matrices(ROSS_CONE)
     assert m.mass[:2, :2].round(6).tolist() == [[11.369864, 0.861976], [0.861976, 0.086675]]
     assert (1e-6 * m.stiffness[:2, :2]).round(4).tolist() == [[219.9614, 41.2975], [41.2975, 12.2353]]
     assert m.polar[:2, :2].round(6).tolist() == [[0.309408, 0.010859], [0.010859, 0.006721]]

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.shaft import MOST_NODES, PointMass, Shaft, Station, Unbalance
+from touchdown.rotor.beams.body import PointMass
+from touchdown.rotor.beams.shaft import MOST_NODES, Shaft, Station, Unbalance
 from touchdown.rotor.file import RotorFileError, load, shipped
 
 GOOD = """

@@ -11,7 +11,7 @@ from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import RotorFileError, find, parse, written
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.portrait import portrait
+from touchdown.rotor.properties import portrait
 from touchdown.rotor.statics import at_rest
 
 SPINDLE = find("rotor_I")

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from touchdown.rotor.beams.body import PointMass, disc
 from touchdown.rotor.beams.element import Element, split
-from touchdown.rotor.beams.shaft import PointMass, Shaft, Station, Support, Unbalance, disc
+from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance
 from touchdown.rotor.file import RotorFileError, load, parse, save, shipped, written
 
 STEEL = Element(length=0.02, outer_diameter=0.03, modulus=207e9, density=7830.0, poisson=0.3)

@@ -17,8 +17,8 @@ import touchdown
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import find
 from touchdown.rotor.imports import ImportedRotorError, of_arrays, placed, read
-from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis, flexibility
+from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 from touchdown.rotor.statics import at_rest
 
 SAVED = Path(__file__).parent / "saved"

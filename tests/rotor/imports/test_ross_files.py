@@ -19,10 +19,9 @@ from touchdown.rotor.beams.shaft import Shaft, Station, Support
 from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import ImportedRotorError, from_ross, read
 from touchdown.rotor.imports.ross import of_elements
-from touchdown.rotor.modal.campbell import whirl_frequencies
-from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
+from touchdown.rotor.modal.supported import HeldRotor, LinearBearing
+from touchdown.rotor.modal.whirl_speeds import critical_speeds, whirl_frequencies
 
 SAVED = Path(__file__).parent / "saved"
 THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.nodes import with_node
-from touchdown.rotor.beams.shaft import Shaft, Station, Unbalance
+from touchdown.rotor.beams.shaft import Shaft, Station, Unbalance, with_node
 from touchdown.rotor.imports import ImportedRotorError, placed
 from touchdown.rotor.imports.sections import of_sections
 

@@ -8,13 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from touchdown.rotor.beams.body import disc
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance, disc
+from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.campbell import whirl_frequencies
-from touchdown.rotor.modal.critical import DECADES, LINES, critical_map, critical_speeds
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.whirl import HeldRotor, LinearBearing
+from touchdown.rotor.modal.supported import HeldRotor, LinearBearing
+from touchdown.rotor.modal.whirl_speeds import (
+    DECADES,
+    LINES,
+    critical_map,
+    critical_speeds,
+    whirl_frequencies,
+)
 
 K = 1e6
 LENGTH = 0.6

@@ -10,10 +10,10 @@ import pytest
 from touchdown.rotor.beams.element import split
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.data import MOST_ENDS, MOST_MODES, tabulate
 from touchdown.rotor.modal.modes import MOST_SOLVED, basis, flexibility, fullest
-from touchdown.rotor.modal.watched import MOST_WATCHED, watched
+from touchdown.rotor.modal.stresses import MOST_WATCHED, watched
+from touchdown.rotor.modal.whirl_speeds import critical_speeds
 
 
 def finer(name: str, count: int) -> Shaft:

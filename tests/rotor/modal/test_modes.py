@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.assembly import assemble, unit_forces
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.shaft import Shaft, assemble, unit_forces
 from touchdown.rotor.file import load, shipped
-from touchdown.rotor.modal.campbell import whirl_frequencies
 from touchdown.rotor.modal.modes import basis, flexibility, residual_flexibility
+from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 
 
 @pytest.fixture(params=sorted(shipped()), scope="module")

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.assembly import assemble, unit_forces
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import Shaft
+from touchdown.rotor.beams.shaft import Shaft, assemble, unit_forces
 from touchdown.rotor.file import load, shipped
 from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.stresses import bending_per_moment, recovery, shear_per_force, stress_rows

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from touchdown.modelkit.model import ModelError
+from touchdown.rotor.beams.body import PointMass, disc
 from touchdown.rotor.beams.element import Element
-from touchdown.rotor.beams.shaft import PointMass, Shaft, Support, disc
+from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.campbell import _crossing, followed
-from touchdown.rotor.modal.critical import critical_speeds
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.whirl import (
+from touchdown.rotor.modal.supported import (
     Foundation,
     HeldRotor,
     LinearBearing,
@@ -24,6 +23,7 @@ from touchdown.rotor.modal.whirl import (
     log_decrements,
     static_stiffness,
 )
+from touchdown.rotor.modal.whirl_speeds import _crossing, critical_speeds, followed
 
 LENGTH, K, C = 0.6, 1e6, 300.0
 ONE = np.eye(2)

@@ -21,8 +21,7 @@ from rotor_alone import (
 )
 
 from touchdown.modelkit.instance import Instance
-from touchdown.rotor.motion.equations import energies
-from touchdown.rotor.motion.state import ANGLE, LOSS, SPIN
+from touchdown.rotor.motion.equations import ANGLE, LOSS, SPIN, energies
 
 
 def total(rotor: Instance) -> float:

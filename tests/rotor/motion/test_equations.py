@@ -24,7 +24,7 @@ from scipy.integrate import solve_ivp
 
 from touchdown.modelkit.instance import Instance
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.beams.assembly import assemble, unit_forces
+from touchdown.rotor.beams.shaft import assemble, unit_forces
 from touchdown.rotor.file import parse
 from touchdown.rotor.flexible import flexible_rotor
 

@@ -19,7 +19,7 @@ from rotor_alone import (
     started,
 )
 
-from touchdown.rotor.motion.state import ANGLE, LOSS, SPIN
+from touchdown.rotor.motion.equations import ANGLE, LOSS, SPIN
 
 
 def test_two_modes_fall_freely() -> None:

@@ -19,7 +19,7 @@ from rotor_alone import (
 )
 
 from touchdown.modelkit.instance import Instance
-from touchdown.rotor.beams.assembly import assemble, solve, unit_forces
+from touchdown.rotor.beams.shaft import assemble, solve, unit_forces
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.stresses import end_nodes, recovery, stress_rows
 

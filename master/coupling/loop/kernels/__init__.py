@@ -5,7 +5,7 @@ Components stand in tables, by their addresses, so each kernel is compiled once 
 
 from __future__ import annotations
 
-from touchdown.modelkit.kernel import kernel_of
+from .....modelkit.kernel import kernel_of
 
 FOLDERS = "modelkit/kernel", "master/coupling/loop/kernels"
 

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from touchdown.master.coupling.loop.kernels import kernel, kernel_without_gil
-from touchdown.master.coupling.loop.kernels.component import step
-from touchdown.modelkit.kernel.address import call_plain
-from touchdown.modelkit.kernel.atomic import add, load, pause, store, swap
+from .....modelkit.kernel.memory import add, call_plain, load, pause, store, swap
+from . import kernel, kernel_without_gil
+from .exchange import step
 
 LINE = 64  # bytes that processors hand each other at a time: words apart do not get in each other's way
 OPEN, LEFT, TAKEN, HELPED, YIELD = 0, LINE, 2 * LINE, 3 * LINE, 4 * LINE

@@ -6,13 +6,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from touchdown.master.coupling.loop.kernels import kernel, kernel_without_gil
-from touchdown.master.coupling.loop.kernels.board import share
-from touchdown.master.coupling.loop.kernels.books import book, worst_of
-from touchdown.master.coupling.loop.kernels.component import answer, pull, push, step
-from touchdown.master.coupling.loop.kernels.impacts import met
-from touchdown.master.coupling.loop.kernels.tables import FETCH, GET, INT, LONG, SET, STEP, TRUTH
-from touchdown.modelkit.kernel.address import call_exchange, float64_at, int32_at, int64_at
+from .....modelkit.kernel.memory import call_exchange, float64_at, int32_at, int64_at
+from . import kernel, kernel_without_gil
+from .accounts import book, worst_of
+from .board import share
+from .exchange import answer, met, pull, push, step
+from .tables import FETCH, GET, INT, LONG, SET, STEP, TRUTH
 
 
 @kernel

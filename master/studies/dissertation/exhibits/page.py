@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from touchdown.master.common.errors import TouchdownError
-from touchdown.master.common.files import replace_text, replacing, write_records, writing_to
-from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row, percent, shown
-from touchdown.master.studies.dissertation.exhibits.registry import ABSENT, ENTRIES, Entry, heading
+from ....common.errors import TouchdownError
+from ....common.files import replace_text, replacing, write_records, writing_to
+from .exhibit import Exhibit, Row, percent, shown
+from .registry import ABSENT, ENTRIES, Entry, heading
 
 PAGE = "reproduction.md"
 PICTURES = Path("pictures", "reproduction")  # beside the page

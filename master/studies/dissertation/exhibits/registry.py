@@ -1,17 +1,19 @@
-"""Which figures and tables of the source there are here, and why the others are not."""
+"""Which figures and tables of the source there are, made one by one or all."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, cast
+from pathlib import Path
+from typing import cast
 
-from touchdown.master.common.errors import TouchdownError, one_of
-
-if TYPE_CHECKING:
-    from touchdown.master.studies.dissertation.exhibits.drops import Drops
-    from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit
+from ....common.errors import TouchdownError, one_of
+from ....common.progress import UNSEEN, Progress
+from ....results.figures.style import darkened, styled
+from .exhibit import Drops, Exhibit
 
 
 @dataclass(frozen=True)
@@ -39,33 +41,33 @@ class Entry:
 
 
 ENTRIES = (
-    Entry("12", "rotor I, its masses and where it is held", "rotor1.fig_12"),
-    Entry("13", "orbits of rotor I on the bearings of the measured rig, at both speeds", "rotor1.fig_13"),
-    Entry("14", "orbits of rotor I, bearings out of line by 0 to 450 um", "rotor1.fig_14"),
-    Entry("15", "spectra of rotor I running down for 16 s", "rotor1.fig_15"),
-    Entry("17", "orbits of rotor II, bearings out of line by 0 to 200 um", "rotor2.fig_17"),
-    Entry("18", "rotor II, its nodes and masses", "rotor2.fig_18"),
-    Entry("19", "rotor II lying on its touchdown bearings", "rotor2.fig_19"),
-    Entry("20", "stresses along rotor II in the drop", "rotor2.fig_20"),
-    Entry("22", "friction coefficients over sliding speed", "disk.fig_22"),
-    Entry("23", "orbits of rotor and rings, bearing without a cage", "disk.fig_23_24"),
-    Entry("24", "orbits of rotor, rings and cage, caged bearing", "disk.fig_23_24"),
-    Entry("25", "circumferential speeds, bearing without a cage", "disk.fig_25_26"),
-    Entry("26", "circumferential speeds, caged bearing", "disk.fig_25_26"),
-    Entry("27", "which balls are pressed after 5 s", "disk.fig_27"),
-    Entry("28", "spectrum of the inner ring's velocity, bearing without a cage", "disk.fig_28_29"),
-    Entry("29", "the same at three rotor speeds", "disk.fig_28_29"),
-    Entry("30", "contact forces, simplified caged bearing", "disk.fig_30_33"),
-    Entry("31", "contact forces, detailed caged bearing", "disk.fig_30_33"),
-    Entry("32", "contact forces, simplified bearing without a cage", "disk.fig_30_33"),
-    Entry("33", "contact forces, detailed bearing without a cage", "disk.fig_30_33"),
-    Entry("table1", "dimensions of the 6004 and the 6904", "rotor1.table_1"),
-    Entry("table2", "bending frequencies of rotor II", "rotor2.table_2"),
-    Entry("table3", "dimensions of rotor II's bearings and housings", "rotor2.table_3"),
-    Entry("table4", "largest stresses in rotor II", "rotor2.table_4"),
-    Entry("table5", "degrees of freedom of the bearing models", "disk.table_5_6"),
-    Entry("table6", "elastic contacts of the bearing models", "disk.table_5_6"),
-    Entry("table7", "greatest indentations in the four bearing models", "disk.table_7"),
+    Entry("12", "rotor I, its masses and where it is held", "rotor1"),
+    Entry("13", "orbits of rotor I on the bearings of the measured rig, at both speeds", "rotor1"),
+    Entry("14", "orbits of rotor I, bearings out of line by 0 to 450 um", "rotor1"),
+    Entry("15", "spectra of rotor I running down for 16 s", "rotor1"),
+    Entry("17", "orbits of rotor II, bearings out of line by 0 to 200 um", "rotor2"),
+    Entry("18", "rotor II, its nodes and masses", "rotor2"),
+    Entry("19", "rotor II lying on its touchdown bearings", "rotor2"),
+    Entry("20", "stresses along rotor II in the drop", "rotor2"),
+    Entry("22", "friction coefficients over sliding speed", "disk_motion"),
+    Entry("23", "orbits of rotor and rings, bearing without a cage", "disk_motion"),
+    Entry("24", "orbits of rotor, rings and cage, caged bearing", "disk_motion"),
+    Entry("25", "circumferential speeds, bearing without a cage", "disk_motion"),
+    Entry("26", "circumferential speeds, caged bearing", "disk_motion"),
+    Entry("27", "which balls are pressed after 5 s", "disk_forces"),
+    Entry("28", "spectrum of the inner ring's velocity, bearing without a cage", "disk_forces"),
+    Entry("29", "the same at three rotor speeds", "disk_forces"),
+    Entry("30", "contact forces, simplified caged bearing", "disk_forces"),
+    Entry("31", "contact forces, detailed caged bearing", "disk_forces"),
+    Entry("32", "contact forces, simplified bearing without a cage", "disk_forces"),
+    Entry("33", "contact forces, detailed bearing without a cage", "disk_forces"),
+    Entry("table1", "dimensions of the 6004 and the 6904", "rotor1"),
+    Entry("table2", "bending frequencies of rotor II", "rotor2"),
+    Entry("table3", "dimensions of rotor II's bearings and housings", "rotor2"),
+    Entry("table4", "largest stresses in rotor II", "rotor2"),
+    Entry("table5", "degrees of freedom of the bearing models", "disk_forces"),
+    Entry("table6", "elastic contacts of the bearing models", "disk_forces"),
+    Entry("table7", "greatest indentations in the four bearing models", "disk_forces"),
 )
 
 ILLUSTRATION, SKETCH = "an illustration of the machine", "a sketch that explains the method"
@@ -106,3 +108,32 @@ def entry(name: str) -> Entry:
     if short in ABSENT:
         raise TouchdownError(f"figure {short} is {ABSENT[short]}; `touchdown figure` lists those there are")
     raise TouchdownError(f"the source has no figure {name}; {one_of(short, entries)}")
+
+
+@contextmanager
+def dropping(jobs: int, progress: Progress = UNSEEN) -> Iterator[Drops]:
+    """Drops whose recordings are gone at the end."""
+    with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
+        yield Drops(Path(folder), jobs, progress)
+
+
+def make(entry: Entry, drops: Drops, dark: bool = False) -> Exhibit:
+    """One exhibit. Raises TouchdownError where a run stops."""
+    with styled():
+        exhibit = entry.make(drops)
+    if dark and exhibit.figure is not None:
+        darkened(exhibit.figure)
+    return exhibit
+
+
+def make_all(
+    entries: Iterable[Entry], drops: Drops, dark: bool = False
+) -> dict[Entry, Exhibit | TouchdownError]:
+    """All of them, each with what it is or why it failed; drops are run once."""
+    made: dict[Entry, Exhibit | TouchdownError] = {}
+    for entry in entries:
+        try:
+            made[entry] = make(entry, drops, dark)
+        except TouchdownError as error:
+            made[entry] = error
+    return made

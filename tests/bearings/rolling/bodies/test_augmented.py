@@ -7,7 +7,7 @@ import pytest
 from bearing_states import pressed
 from scipy.integrate import solve_ivp
 
-from touchdown.bearings.rolling.bodies.augmented import AugmentedBearing, accelerations
+from touchdown.bearings.rolling.augmented import AugmentedBearing, accelerations
 
 MODELS = ["detailed_cageless", "detailed_caged"]
 

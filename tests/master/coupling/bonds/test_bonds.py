@@ -14,8 +14,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.observer import EveryStep
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.scene.file import load_scene
-from touchdown.master.scene.scene import ComponentSpec, Scene
-from touchdown.master.scene.wires import BondSpec, Wire
+from touchdown.master.scene.scene import BondSpec, ComponentSpec, Scene, Wire
 
 MOTION = ("s1.x", "s1.v", "s2.x", "s2.v")
 POSITION_ONLY, VELOCITY_ONLY = bodies.TWO[:2], bodies.TWO[::2]

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 from systems import UNLIKE, bits, rotor_on
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.processes import cores
+from touchdown.master.common import pool
+from touchdown.master.common.errors import Ended
 from touchdown.master.coupling.loop import helpers
 from touchdown.master.coupling.loop.helpers import Helpers
 from touchdown.master.coupling.loop.kernels import kernel_without_gil
@@ -42,7 +42,7 @@ class Threads:
         self.called = self.helped = 0
 
     def run(self, scene: Scene, count: int, in_process: bool = True) -> tuple[Outcome, dict[str, object]]:
-        self._patch.setenv(cores.LIMIT, str(count))
+        self._patch.setenv(pool.LIMIT, str(count))
         call, close, self.called, self.helped = Helpers.call, Helpers.close, 0, 0
 
         def counting(one: Helpers) -> int:
@@ -271,7 +271,7 @@ def test_helpers_that_do_not_have_their_processor_are_left_out(monkeypatch: pyte
 
 def test_each_bearing_but_one_is_worth_a_helper(monkeypatch: pytest.MonkeyPatch) -> None:
     """Magnetic bearings are not, nor is the rotor where all step at once."""
-    monkeypatch.setenv(cores.LIMIT, "16")
+    monkeypatch.setenv(pool.LIMIT, "16")
     made: list[int] = []
     begin = Helpers.__init__
 
@@ -291,8 +291,8 @@ def test_each_bearing_but_one_is_worth_a_helper(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.parametrize(("given", "allowed"), [("3", 3), ("2,4", 2), ("1", 1)])
 def test_the_environment_says_how_many(given: str, allowed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(cores.LIMIT, given)
-    assert cores.threads() == allowed
+    monkeypatch.setenv(pool.LIMIT, given)
+    assert pool.threads() == allowed
 
 
 @pytest.mark.parametrize("given", ["", "0", "many", "-1"])
@@ -303,9 +303,9 @@ def test_else_the_machine_does(
     given: str, quota: str | None, allowed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its processors, or what a container is given of them."""
-    monkeypatch.setenv(cores.LIMIT, given)
+    monkeypatch.setenv(pool.LIMIT, given)
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(8)))
-    monkeypatch.setattr(cores, "QUOTA", tmp_path / "cpu.max")
+    monkeypatch.setattr(pool, "QUOTA", tmp_path / "cpu.max")
     if quota is not None:
         (tmp_path / "cpu.max").write_text(quota + "\n", "utf-8")
-    assert cores.threads() == allowed
+    assert pool.threads() == allowed

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.loop.impacts import LONG_AGO, Impacts
-from touchdown.master.coupling.loop.kernels.impacts import LASTS, SEAT, met
+from touchdown.master.coupling.loop.division import LONG_AGO, Impacts
+from touchdown.master.coupling.loop.kernels.exchange import LASTS, SEAT, met
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.scene.file import load_scene

@@ -14,11 +14,11 @@ import pytest
 from misbehaving import COMPILER, compiled, misbehaving, scene_with
 from systems import UNLIKE, bits, rotor_on
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.components.twin import TwinComponent
-from touchdown.master.coupling.ledger import shortening
-from touchdown.master.coupling.loop import stretches
-from touchdown.master.coupling.loop.steps import MacroSteps
+from touchdown.master.common.errors import Ended
+from touchdown.master.components.in_process import TwinComponent
+from touchdown.master.coupling.loop import compiled as stretches
+from touchdown.master.coupling.loop import division
+from touchdown.master.coupling.loop.compiled import MacroSteps
 from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
@@ -128,7 +128,7 @@ def test_seven_components_of_which_two_retire(both: Both) -> None:
 def test_macro_steps_that_are_halved(scheme: str, both: Both, monkeypatch: pytest.MonkeyPatch) -> None:
     """As in a whirl, by thresholds that a landing passes."""
     for name, value in (("WINDOW", 1e-3), ("WHIRL", 1e-3), ("OVER", 0.0), ("GOAL", 1e-12)):
-        monkeypatch.setattr(shortening, name, value)
+        monkeypatch.setattr(division, name, value)
     assert both.compared(disk(run__scheme=scheme)).shorter_steps
 
 

@@ -13,7 +13,7 @@ import pytest
 from drops import FALLS, FREE, Error, Fall
 from environments import INSTALLED, REQUIREMENTS, Found, UnavailableError, interpreter, run
 
-from touchdown.master.interop.packing import Making
+from touchdown.master.interop.container import Making
 
 pytestmark = pytest.mark.peers
 

@@ -9,14 +9,16 @@ import h5py
 import numpy as np
 import pytest
 
-from touchdown.master.coupling.system import Attachment
+from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Ending, Finished, LastValues
 from touchdown.master.results.figures.energy import STYLES, energy
 from touchdown.master.results.figures.forces import forces
 from touchdown.master.results.figures.motion import speeds
+from touchdown.master.results.figures.spectra import has_waterfall, motion_waterfall
 from touchdown.master.results.figures.style import LAST, sheet, zooms
-from touchdown.master.results.figures.waterfall import has_waterfall, motion_waterfall
-from touchdown.master.results.motion.spectra import (
+from touchdown.master.results.recording import Recording
+from touchdown.master.results.run import run_scene
+from touchdown.master.results.spectra import (
     BEGIN,
     LENGTH,
     POINTS,
@@ -26,8 +28,6 @@ from touchdown.master.results.motion.spectra import (
     waterfall,
     windows,
 )
-from touchdown.master.results.recording import Recording
-from touchdown.master.results.run import run_scene
 from touchdown.master.results.summary import touchdown_seats
 from touchdown.master.scene.file import load_scene
 

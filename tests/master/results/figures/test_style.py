@@ -16,16 +16,17 @@ from touchdown.master.results.figures.style import (
     BLACK,
     BLUE,
     COLOURS,
+    DARK,
     GREEN,
     GREY,
     ON_DARK,
     ORANGE,
     PURPLE,
+    WHITE,
     darkened,
     sheet,
     styled,
 )
-from touchdown.master.results.figures.style.palette import DARK, WHITE
 
 TOLD_APART = 12.0  # CIE 1976 distance; about 2 can just be seen beside each other
 LEGIBLE = 3.0  # contrast of graphics, WCAG 2.1; of text 4.5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from touchdown.master.results.motion.impact import latest, over_after
+from touchdown.master.results.first_impact import latest, over_after
 
 
 def force(*impacts: tuple[float, float], apart: float = 1e-4, end: float = 0.03) -> tuple[np.ndarray, ...]:

@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.master.results.motion.settling import BEAT, REST, Settling, period, settling
-from touchdown.master.results.motion.trend import Trend
+from touchdown.master.results.settling import BEAT, REST, Settling, Trend, period, settling
 from touchdown.master.results.whirl.contacts import Orbit
 
 CLEARANCE = 3e-4  # m

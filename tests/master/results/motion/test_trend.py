@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.master.results.motion.course import Course, course
-from touchdown.master.results.motion.trend import LEAST, Trend, change, together, trend
+from touchdown.master.results.settling import LEAST, Course, Trend, change, course, together, trend
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.verdict import classify
 

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import TouchdownError
+from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.results.result import Result
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.file import load_scene

@@ -12,15 +12,13 @@ from matplotlib.colors import to_hex
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
-from touchdown.master.results.figures.style import sheet
-from touchdown.master.results.figures.style.palette import DARK
+from touchdown.master.results.figures.style import DARK, sheet
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.dissertation.exhibits import make, page, registry
-from touchdown.master.studies.dissertation.exhibits.drops import Drops, at_phases
-from touchdown.master.studies.dissertation.exhibits.exhibit import Exhibit, Row
+from touchdown.master.studies.dissertation.exhibits import page, registry
+from touchdown.master.studies.dissertation.exhibits import registry as make
+from touchdown.master.studies.dissertation.exhibits.exhibit import Drops, Exhibit, Row, at_phases
 from touchdown.master.studies.dissertation.exhibits.registry import ABSENT, ENTRIES, Entry, entry
-from touchdown.master.studies.dissertation.exhibits.rotor1.fig_15 import beside
-from touchdown.master.studies.dissertation.exhibits.whirls import SETTLES, WHIRLS, verdict_row
+from touchdown.master.studies.dissertation.exhibits.rotor1 import SETTLES, WHIRLS, beside, verdict_row
 
 FIGURES, TABLES = 33, 7  # of the source
 QUICK = ("12", "18", "19", "22", "table1", "table2", "table3", "table5", "table6")  # run nothing

@@ -16,26 +16,26 @@ from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.dissertation import table_4
-from touchdown.master.studies.dissertation.first_peak import WAIT, FirstPeak, figures_at_first_peak
-from touchdown.master.studies.dissertation.readings import (
+from touchdown.master.studies.dissertation.table_4 import (
     ASSUMPTIONS,
     AT_FIRST_PEAK,
     AT_LARGEST,
+    COLUMNS,
     OTHER_ROTOR,
     READINGS,
     SOURCE,
+    WAIT,
     Change,
+    FirstPeak,
     Reading,
-)
-from touchdown.master.studies.dissertation.table_4 import (
-    COLUMNS,
+    figures_at_first_peak,
     instants,
     medians,
     resultants,
     rms_of_logarithms,
     whirls,
 )
-from touchdown.master.studies.drop.levitation import shortened
+from touchdown.master.studies.drop.first_impact import shortened
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
 

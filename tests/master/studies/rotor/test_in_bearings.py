@@ -15,18 +15,16 @@ import pytest
 import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
-from touchdown.master.components.library.loading import Stepping, load_component
+from touchdown.master.components.loading import Stepping, load_component
 from touchdown.master.results.figures.style import sheet
-from touchdown.master.studies.rotor import situations
-from touchdown.master.studies.rotor.held_figure import held_campbell
-from touchdown.master.studies.rotor.held_table import held_lines
-from touchdown.master.studies.rotor.linear import Response, answers, fitted
-from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Rig
+from touchdown.master.studies.rotor import supports
+from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Response, Rig, answers, fitted
 from touchdown.master.studies.rotor.scene_report import SceneRotor, described_in, scene_text
-from touchdown.master.studies.rotor.situations import Situation
+from touchdown.master.studies.rotor.supported import held_campbell, held_lines
+from touchdown.master.studies.rotor.supports import Situation
 from touchdown.modelkit.model import ModelError
-from touchdown.rotor.modal.campbell import Lines
-from touchdown.rotor.modal.whirl import LinearBearing, Whirl
+from touchdown.rotor.modal.supported import LinearBearing, Whirl
+from touchdown.rotor.modal.whirl_speeds import Lines
 
 RPM = 30.0 / math.pi
 MIDDLE = np.zeros(2)
@@ -282,7 +280,7 @@ def test_the_sign_of_the_speed_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         spins.append(rig.spin)
         return ()
 
-    monkeypatch.setattr(situations, "answers", no_force)
+    monkeypatch.setattr(supports, "answers", no_force)
     monkeypatch.setattr(Rig, "pressed", lambda rig, load: None)
     with pytest.raises(TouchdownError, match="no bearing holds its rotor"):
         described_in(SCENE, -942.0)
@@ -294,18 +292,16 @@ def test_a_damper_carries_no_weight(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = SimpleNamespace(shaft=shaft, gravity=9.81, scene=SCENE)
     pressing = [SimpleNamespace(bearing=name, body_port=name) for name in ("A", "B")]
     node = shaft.node("amb_A")
-    damper = situations.Bearing(
-        "damper", "amb_A", node, (LinearBearing(node, np.zeros((2, 2)), np.eye(2)),)
-    )
-    shares = situations._shares(seen, pressing, [damper])  # type: ignore[arg-type]
+    damper = supports.Bearing("damper", "amb_A", node, (LinearBearing(node, np.zeros((2, 2)), np.eye(2)),))
+    shares = supports._shares(seen, pressing, [damper])  # type: ignore[arg-type]
     assert shares["A"] == pytest.approx(shaft_share(shaft), rel=1e-6)
 
     def refuses(*_: object) -> None:
         raise ModelError("too few modes")
 
-    monkeypatch.setattr(situations, "at_rest", refuses)
+    monkeypatch.setattr(supports, "at_rest", refuses)
     with pytest.raises(TouchdownError, match="how its rotor lies is not known: too few modes"):
-        situations._shares(seen, pressing, [])  # type: ignore[arg-type]
+        supports._shares(seen, pressing, [])  # type: ignore[arg-type]
 
 
 def test_the_diagram_is_labelled(found: SceneRotor) -> None:

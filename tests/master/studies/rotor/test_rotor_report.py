@@ -17,9 +17,9 @@ from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor.figure import DISC, campbell, critical, drawing, modes, rest
 from touchdown.master.studies.rotor.report import TO_REST, report, report_text
-from touchdown.rotor.beams.shaft import PointMass
+from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.file import find, shipped
-from touchdown.rotor.portrait import Portrait, portrait
+from touchdown.rotor.properties import Portrait, portrait
 
 SPEED = math.pi * 600.0  # rad/s, 18000 rpm
 PLAIN = """

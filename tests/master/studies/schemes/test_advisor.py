@@ -11,9 +11,9 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.run_spec import tidy
 from touchdown.master.scene.schemes import SCHEMES
-from touchdown.master.scene.step_sizes import tidy
-from touchdown.master.studies.schemes.advisor import LONGEST, advise
+from touchdown.master.studies.comparison.schemes import LONGEST_MACRO_STEP, advise
 
 
 def test_the_contact_states_the_swing_of_its_journal() -> None:
@@ -29,7 +29,7 @@ def test_elastic_modes_make_the_swing_faster() -> None:
         advise(load_scene("rotor1-9000").set({"rotor.modes": modes}))["interface"].macro_step
         for modes in (2, 5, 20)
     ]
-    assert LONGEST >= steps[0] > steps[1] > steps[2] > 1e-6
+    assert LONGEST_MACRO_STEP >= steps[0] > steps[1] > steps[2] > 1e-6
 
 
 @pytest.mark.parametrize(

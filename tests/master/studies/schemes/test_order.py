@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from touchdown.master.studies.schemes.order import fitted_order
+from touchdown.master.studies.comparison.schemes import fitted_order
 
 STEPS = (1e-6, 2e-6, 5e-6, 1e-5, 2e-5, 5e-5)
 

@@ -9,18 +9,24 @@ from typing import Any
 import pytest
 
 from touchdown.master.cli import main
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.errors import FAILED, Ended, TouchdownError
 from touchdown.master.coupling.simulation import Outcome, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.drop.levitation import shortened
+from touchdown.master.studies.comparison import schemes as work_precision
+from touchdown.master.studies.comparison.schemes import (
+    Alarm,
+    Asked,
+    Comparison,
+    Order,
+    Row,
+    compare_schemes,
+    pieces,
+)
+from touchdown.master.studies.comparison.schemes_report import advice, report_lines
+from touchdown.master.studies.drop.first_impact import shortened
 from touchdown.master.studies.drop.reference import POSITION
-from touchdown.master.studies.schemes import compare as work_precision
-from touchdown.master.studies.schemes.compare import Alarm, Asked, Comparison, Row, compare_schemes, pieces
-from touchdown.master.studies.schemes.order import Order
-from touchdown.master.studies.schemes.report import advice, report_lines
 
 SCENE = "disk-caged-simplified"
 STEPS = (1e-5, 2e-5, 4e-5, 8e-5)

@@ -16,7 +16,7 @@ from places import ROOT
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.design import Design
+from touchdown.master.studies.sweep.definition import Design
 from touchdown.master.studies.sweep.sweep import Running, sweep
 
 pytest.importorskip("distributed")
@@ -77,7 +77,7 @@ def test_rows_are_those_of_this_machine_though_a_worker_is_killed(
 
 
 def test_a_scheduler_that_is_not_there_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from touchdown.master.common.processes import cluster
+    from touchdown.master.common import cluster
 
     monkeypatch.setattr(cluster, "PATIENCE", 0.5)
     design = Design.grid({"rotor.mass": [1.0]})

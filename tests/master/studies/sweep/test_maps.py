@@ -11,14 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.whirl.share import clopper_pearson
+from touchdown.master.results.whirl.verdict import Kind, clopper_pearson
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import Definition, define
-from touchdown.master.studies.sweep.design import Design
-from touchdown.master.studies.sweep.journal import Member
-from touchdown.master.studies.sweep.maps.field import field
-from touchdown.master.studies.sweep.maps.plot import MapPlot
-from touchdown.master.studies.sweep.maps.whirl import COLOURS, Kind
+from touchdown.master.studies.sweep.definition import Definition, Design, define
+from touchdown.master.studies.sweep.maps import COLOURS, MapPlot, field
+from touchdown.master.studies.sweep.members import Member
 
 SPEEDS = {"rotor.speed": ["6000 rpm", "9000 rpm", "12000 rpm"]}
 CLEARANCES = {"bearing_*.clearance": ["0.2 mm", "0.3 mm"]}

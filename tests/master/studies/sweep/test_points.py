@@ -11,11 +11,17 @@ import pytest
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.sweep.definition import define, differences, read_definition
-from touchdown.master.studies.sweep.design import Design, designed
-from touchdown.master.studies.sweep.listing import read_points
+from touchdown.master.studies.sweep.definition import (
+    Design,
+    define,
+    designed,
+    differences,
+    parse,
+    parse_all,
+    read_definition,
+    read_points,
+)
 from touchdown.master.studies.sweep.sweep import Running, sweep
-from touchdown.master.studies.sweep.variation import parse, parse_all
 
 ANGLE = "bearing.balls.first_angle"
 SCENE = "disk-caged-simplified"

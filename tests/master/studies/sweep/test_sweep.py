@@ -17,13 +17,11 @@ import xarray
 from places import COMMAND, ROOT
 
 from touchdown.master.cli import main
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import FAILED, STOPPED, TouchdownError
+from touchdown.master.common.errors import FAILED, STOPPED, Ended, TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.sweep.definition import define, differences
-from touchdown.master.studies.sweep.design import Design
-from touchdown.master.studies.sweep.journal import Member
+from touchdown.master.studies.sweep.definition import Design, define, differences
+from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.report import failures, picked, table, verdict_lines
 from touchdown.master.studies.sweep.results import Sweep, merge, read
 from touchdown.master.studies.sweep.sweep import Running, sweep

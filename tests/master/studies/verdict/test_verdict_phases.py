@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pytest
 
-from touchdown.master.studies.verdict.phases import (
+from touchdown.master.studies.verdict.study import (
     Edge,
     distance,
     edges,

@@ -10,20 +10,27 @@ from pathlib import Path
 import pytest
 
 from touchdown.master.cli import main
-from touchdown.master.common.ended import Ended
-from touchdown.master.common.errors import FAILED, TouchdownError
+from touchdown.master.common.errors import FAILED, Ended, TouchdownError
 from touchdown.master.common.progress import Progress
+from touchdown.master.results.whirl.verdict import whirling
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation import fig_14
-from touchdown.master.studies.rotor.balance import balanced
-from touchdown.master.studies.sweep.report import Member
+from touchdown.master.studies.rotor.supports import balanced
+from touchdown.master.studies.sweep.members import Member
 from touchdown.master.studies.sweep.sweep import Task
 from touchdown.master.studies.verdict import study as verdict_study
-from touchdown.master.studies.verdict.circle import Circle, peak_force, whirling
-from touchdown.master.studies.verdict.phases import Window, edges, windows
 from touchdown.master.studies.verdict.report import report_lines, ways, write_report
-from touchdown.master.studies.verdict.study import Plan, Study, study_verdict
+from touchdown.master.studies.verdict.study import (
+    Circle,
+    Plan,
+    Study,
+    Window,
+    edges,
+    peak_force,
+    study_verdict,
+    windows,
+)
 
 DISK = "disk-caged-simplified"
 ECCENTRIC = {"rotor.eccentricity": "5 um", "run.duration": "10 ms"}

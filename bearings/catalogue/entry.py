@@ -1,0 +1,103 @@
+"""What a catalogue knows of a bearing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..rating import Capacity, RatedBearing, capacity
+from ..rolling.ball_set import BallSet
+from ..rolling.ring import Ring
+
+NUMBERS = {  # name: unit and meaning
+    "bore": ("m", "bore diameter"),
+    "outside": ("m", "outside diameter"),
+    "width": ("m", "width"),
+    "balls": ("1", "balls in a row"),
+    "rows": ("1", "rows of balls that share the load alike"),
+    "ball_diameter": ("m", "ball diameter"),
+    "pitch_diameter": ("m", "pitch diameter"),
+    "inner_groove": ("1", "groove radius of the inner race over the ball's diameter"),
+    "outer_groove": ("1", "groove radius of the outer race over the ball's diameter"),
+    "contact_angle": ("rad", "nominal contact angle; ratings only, the models are plane"),
+    "play": ("m", "radial play between balls and races; negative: preload"),
+    "ring_mass": ("kg", "mass of the inner ring"),
+    "ring_inertia": ("kg.m2", "moment of inertia of the inner ring"),
+    "outer_ring_mass": ("kg", "mass of the outer ring"),
+    "cage_mass": ("kg", "mass of the cage"),
+    "static_rating": ("N", "basic static load rating of a row"),
+    "dynamic_rating": ("N", "basic dynamic load rating of a row"),
+    "damping": ("N.s/m", "damping between the rings (2.7)"),
+}
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """A rolling bearing: geometry, masses, ratings. Lengths in m, masses in kg."""
+
+    designation: str
+    bore: float
+    outside: float
+    width: float
+    balls: BallSet
+    ring: Ring
+    caged: bool
+    outer_ring: float  # mass
+    cage: float  # mass
+    static_rating: float  # N, of a row
+    dynamic_rating: float  # N, of a row
+    contact_angle: float = 0.0  # rad
+    damping: float = 0.0  # N s/m, between the rings (2.7)
+    origins: Mapping[str, str] = field(default_factory=dict)  # where numbers are from, by their names
+
+    def settings(self) -> dict[str, float]:
+        """Values by parameter name; a model takes those it has."""
+        b = self.balls
+        return {
+            "balls.count": b.count,
+            "balls.rows": b.rows,
+            "balls.diameter": b.diameter,
+            "balls.pitch_diameter": b.pitch_diameter,
+            "balls.play": b.play,
+            "balls.conformity": b.conformity,
+            "balls.outer_conformity": b.outer_conformity,
+            "balls.hertz": b.hertz,
+            "ring.mass": self.ring.mass,
+            "ring.inertia": self.ring.inertia,
+            "cage.mass": self.cage,
+            "rolling.static_rating": self.static_rating,
+            "damping": self.damping,
+        }
+
+    def numbers(self) -> dict[str, float]:
+        """All its numbers by the names of `NUMBERS`, SI."""
+        b = self.balls
+        return {
+            "bore": self.bore,
+            "outside": self.outside,
+            "width": self.width,
+            "balls": b.count,
+            "rows": b.rows,
+            "ball_diameter": b.diameter,
+            "pitch_diameter": b.pitch_diameter,
+            "inner_groove": 0.5 * b.conformity,
+            "outer_groove": 0.5 * (b.outer_conformity or b.conformity),
+            "contact_angle": self.contact_angle,
+            "play": b.play,
+            "ring_mass": self.ring.mass,
+            "ring_inertia": self.ring.inertia,
+            "outer_ring_mass": self.outer_ring,
+            "cage_mass": self.cage,
+            "static_rating": self.static_rating,
+            "dynamic_rating": self.dynamic_rating,
+            "damping": self.damping,
+        }
+
+    def rated(self) -> RatedBearing:
+        """As `bearings.rating` sees it."""
+        values = {f"balls.{name}": getattr(self.balls, name) for name in ("modulus", "poisson")}
+        return RatedBearing.of(self.settings() | values, self.contact_angle)
+
+    def capacity(self) -> Capacity:
+        """Load ratings of the whole bearing, all its rows (N)."""
+        return capacity(self.rated(), self.static_rating, self.dynamic_rating)

@@ -1,0 +1,465 @@
+"""Balls as bodies between both races: their state, and the forces of the races.
+
+Balls as bodies: where each one's three coordinates lie in the state, and how they move.
+
+Each ball's state is its centre, velocity, rotation and spin, in the common frame; they lie in the state
+vector component by component, so that loops over the balls become vector code. A cage follows the balls
+with the same six components.
+
+All balls of a bearing against one race.
+
+The same contact as `bearings.contact.pair.press`, for all balls at once: the loops below, and those of
+`bearings.rolling.rubbing` for friction, are vector code (`bearings.rolling.ball_state`) and make up most of
+a detailed bearing's cost. Where a race is no circle, the contact is searched for.
+
+Balls as bodies between both races, which press and rub them (2.39, 2.45).
+
+A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
+each with its own stiffness and with friction. Races are circles, or curves where a profile says so.
+
+What acts on the balls is found in two rounds: the races press (`press_races`), then, when all else is
+known, they rub (`rub_races`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from ...modelkit.kernel import kernel, woven
+from ...modelkit.ports import Motion
+from ...modelkit.variables import array
+from .. import seat
+from ..contact.laws import elastic_energy, hertz
+from ..contact.pair import INSIDE, OUTSIDE, Place, damped_normal, slip
+from ..contact.passivity import Beat, middle_of, passive, settled
+from ..contact.profile import Disc, Outline, active, race_place
+from . import ring
+from .ball_set import MOST_BALLS, inner_radius
+from .balls import Total
+from .friction import Answers, Inner, RubbedRace
+from .micro_step import beat_of, missed, withhold
+from .ring import BALLS, part, rounded
+from .sides import fill_sides, settle_sides
+
+X, Y, VX, VY, ANGLE, SPIN = range(6)  # components of a ball, in this order
+SIZE = 6
+
+
+@kernel
+def ball_motion(q, b, m):
+    """`Motion` of ball number `b` (m, m/s, rad/s) in the state q."""
+    i, n = BALLS + b, m.p.balls.count
+    return Motion(q[i + X * n], q[i + Y * n], q[i + VX * n], q[i + VY * n], q[i + SPIN * n])
+
+
+@woven
+def balls_of(q, m):
+    """`Balls` (m, m/s, rad/s): views of all balls in the state q."""
+    at, velocity = (part(q, X, m), part(q, Y, m)), (part(q, VX, m), part(q, VY, m))
+    return Balls(at[0], at[1], velocity[0], velocity[1], part(q, SPIN, m), m.d.ball_radius)
+
+
+@kernel
+def push(b, fx, fy, moment, m):
+    """Add a force (N) and a moment (N m) on ball `b` to its accelerations in m.s.faster."""
+    m.s.faster.x[b] += fx / m.d.mass
+    m.s.faster.y[b] += fy / m.d.mass
+    m.s.faster.spin[b] += moment / m.d.inertia
+
+
+@kernel
+def place(q, m):
+    """Put the balls in the state q at rest where they start, m.d.x and m.d.y from the middle (m)."""
+    d, n = m.d, m.p.balls.count
+    for b in range(n):
+        i = BALLS + b
+        q[i + X * n], q[i + Y * n] = q[seat.HX] + d.x[b], q[seat.HY] + d.y[b]
+        q[i + VX * n], q[i + VY * n] = q[seat.HVX], q[seat.HVY]
+        q[i + ANGLE * n], q[i + SPIN * n] = 0.0, 0.0
+    m.s.inner_starts[:] = math.nan
+    m.s.outer_starts[:] = math.nan
+
+
+@woven
+def drift(trial, q, mid, h, m):
+    """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
+    seat.drift(trial, q, mid, h, m)
+    ring.drift(trial, q, mid, h)
+    n = m.p.balls.count
+    ring.drift_balls(trial, q, mid, h, BALLS + X * n, BALLS + VX * n, 2 * n)  # and y, which follows
+    ring.drift_balls(trial, q, mid, h, BALLS + ANGLE * n, BALLS + SPIN * n, n)
+    for i in range(BALLS + SIZE * n, m.s.seat.inside, SIZE):  # the cage
+        trial[i + X] = q[i + X] + h * mid[i + VX]
+        trial[i + Y] = q[i + Y] + h * mid[i + VY]
+        trial[i + ANGLE] = q[i + ANGLE] + h * mid[i + SPIN]
+
+
+@woven
+def fastest(m):
+    """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
+    d, s = m.d, m.s
+    stiffest, below, side, sides = 0.0, 0.0, 0.0, 0.0
+    for b in range(m.p.balls.count):
+        below += s.inner.stiffness[b]
+        stiffest = max(stiffest, s.inner.stiffness[b] + s.outer.stiffness[b])
+        side = max(side, s.side.stiffness[b])
+        sides += s.side.stiffness[b]
+    below += ring.bore_stiffness(m)
+    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
+    return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
+
+
+@kernel
+def kicked(q, dq, kick, m):
+    """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
+    s, n, off = m.s, m.p.balls.count, missed(dq, kick, m)
+    withheld = settle_race(s.inner, OUTSIDE, n, kick, off.part, 0.0, 0.0)
+    withheld += settle_race(s.outer, INSIDE, n, kick, off.part, off.hx, off.hy)
+    withheld += settle_sides(s.side, n, kick, off.part)
+    withhold(q, withheld + ring.settle_bore(kick, off.part, off.jx, off.jy, m), m)
+
+
+@kernel
+def fill_accounts(m, side):
+    """Have the contacts that press at the last evaluation hold what their laws have stored.
+
+    side: law of the balls' contacts with each other or the cage, a record.
+    """
+    s = m.s
+    fill_sides(s.side, side, m.p.balls.count)
+    for b in range(m.p.balls.count):
+        s.inner.stored[b] = elastic_energy(s.inner.indentation[b], m.d.inner)
+        s.outer.stored[b] = elastic_energy(s.outer.indentation[b], m.d.outer)
+    s.ring.stored = elastic_energy(s.ring.indentation, m.d.contact)
+
+
+@kernel
+def set_weights(m):
+    """Set the error weights up to the balls', and m.n to what is in use without a cage.
+
+    The ring's angle matters where its race is no circle; that of a ball does not.
+    """
+    p, w, n = m.p, m.weight, m.p.balls.count
+    length, speed, spin = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE, 1.0 / seat.SPIN_SCALE
+    seat.set_weights(w)
+    ring.set_weights(w)
+    if active(p.inner_profile):
+        w[ring.RANGLE] = inner_radius(p.balls) / seat.POSITION_SCALE
+    for i in range(BALLS, BALLS + n):
+        w[i + X * n] = w[i + Y * n] = length
+        w[i + VX * n] = w[i + VY * n] = speed
+        w[i + SPIN * n] = spin
+    m.n = BALLS + SIZE * n
+
+
+@dataclass(frozen=True)
+class Contacts(RubbedRace):
+    """One contact of each ball, at the last evaluation; places as in `bearings.contact.pair.Place`."""
+
+    nx: tuple = array(MOST_BALLS)
+    ny: tuple = array(MOST_BALLS)
+    indentation: tuple = array(MOST_BALLS)
+    second: tuple = array(MOST_BALLS)
+    across: tuple = array(MOST_BALLS)
+    stiffness: tuple = array(MOST_BALLS)
+    rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
+    middle: tuple = array(MOST_BALLS)  # m/s, in the middle of the kick
+    damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
+    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
+
+
+class Balls(NamedTuple):
+    """States of all balls, an array each, and their radius."""
+
+    x: object  # m
+    y: object
+    vx: object  # m/s
+    vy: object
+    spin: object  # rad/s
+    radius: float  # m
+
+
+class Race(NamedTuple):
+    """What a race is for its balls: on which side of it they lie, its radius and law."""
+
+    side: float
+    radius: float  # m
+    stiffness: float  # N/m^1.5
+    damping: float  # N s/m2
+
+
+class Places(NamedTuple):
+    """Where all balls touch a race, an array each; a ball's own distance is its radius."""
+
+    nx: object
+    ny: object
+    indentation: object  # m
+    second: object  # m
+    across: object  # m
+
+
+class Before(NamedTuple):
+    """Changes of velocity over the kick before: of all balls, an array each, and of their race's centre."""
+
+    beat: Beat
+    ax: object  # m/s2, of the balls
+    ay: object
+    race_x: float  # m/s
+    race_y: float
+    answer: float  # s/kg, of a ball's speed to a force over the kick
+
+
+class Forces(NamedTuple):
+    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before."""
+
+    normal: object  # N
+    stiffness: object  # N/m, at this load
+    damped: object  # N, what of it is damping
+    sliding: object  # m/s, before the kick
+    rate: object  # m/s, of the indentation, before the kick
+    stored: object  # J, in their accounts
+
+
+@kernel
+def places_of(contacts, n):
+    """`Places` (n,) as views of `contacts` (Contacts)."""
+    c = contacts
+    return Places(c.nx[:n], c.ny[:n], c.indentation[:n], c.second[:n], c.across[:n])
+
+
+@kernel
+def forces_of(contacts, n):
+    """`Forces` (n,) as views of `contacts` (Contacts)."""
+    c = contacts
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], c.sliding[:n], c.rate[:n], c.stored[:n])
+
+
+@kernel
+def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
+    """Set the places (m) of all `balls` on a race with a profile, turned by `angle` (rad), in `contacts`.
+
+    starts, search: as `bearings.contact.search.race_place` keeps them.
+    """
+    outline, c = Outline(ring.x, ring.y, angle, race.radius), contacts
+    for b in range(len(balls.x)):
+        ball = Disc(balls.x[b], balls.y[b], balls.radius)
+        at = race_place(b, race.side, ball, outline, profile, starts, search)
+        c.nx[b], c.ny[b], c.indentation[b] = at.nx, at.ny, at.indentation
+        c.second[b], c.across[b] = at.second, at.across
+
+
+class Squeezed(NamedTuple):
+    """A ball pressed against a race, before friction."""
+
+    normal: float  # N
+    stiffness: float  # N/m
+    damped: float  # N
+    sliding: float  # m/s
+    rate: float  # m/s
+
+
+@woven
+def _squeeze(b, balls, ring, place, race, before, last, stored):
+    """Ball `b` at its `Place` on a race, `Squeezed`.
+
+    last: its normal force (N) in the kick before; stored: energy in its account (J).
+    """
+    ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
+    sliding, rate = slip(ball, ring, place, race.side)
+    elastic, damping, stiffness = hertz(place.indentation, race.stiffness, race.damping)
+    faster_x = before.beat.kick * before.ax[b] - before.race_x
+    faster_y = before.beat.kick * before.ay[b] - before.race_y
+    others = race.side * (faster_x * place.nx + faster_y * place.ny) + before.answer * last
+    elastic = passive(elastic, 0.4 * place.indentation, stored, rate, others, before.answer, before.beat)
+    normal = damped_normal(elastic, damping, rate, before.answer, others)
+    return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
+
+
+@woven
+def press_circle(balls, ring, race, before, places, forces):
+    """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
+
+    before: `Before`. Forces (n,) (N, N/m, m/s) are those of pressing, friction comes later.
+    """
+    reach = race.side * balls.radius
+    for b in range(len(places.nx)):
+        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        inverse = 1.0 / distance
+        second = distance + reach
+        place = Place(dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0)
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b], forces.stored[b])
+        places.nx[b], places.ny[b] = place.nx, place.ny
+        places.indentation[b], places.second[b], places.across[b] = place.indentation, second, 0.0
+        forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
+        forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
+
+
+@woven
+def press_curve(balls, ring, race, before, places, forces):
+    """Set the `forces` (n,) of all `balls` on any race, whose `places` were found (`find_on_curve`).
+
+    The rest as for `press_circle`.
+    """
+    reach, p = race.side * balls.radius, places
+    for b in range(len(p.nx)):
+        place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
+        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b], forces.stored[b])
+        forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
+        forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
+
+
+@woven
+def pressing(contacts, side, count):
+    """The `Total` (N, N m) of normal forces that `count` balls on that `side` of a race exert on it."""
+    fx, fy, moment = 0.0, 0.0, 0.0
+    for b in range(count):
+        along = side * contacts.normal[b]
+        fx += along * contacts.nx[b]
+        fy += along * contacts.ny[b]
+        moment -= along * contacts.across[b]
+    return Total(fx, fy, moment, 0.0)
+
+
+@woven
+def with_friction(pressed, contacts, count):
+    """`Total` (N, N m, W) on a race that is `pressed` (Total) and rubbed by `count` balls."""
+    fx, fy, moment, loss = pressed.fx, pressed.fy, pressed.moment, 0.0
+    for b in range(count):
+        fx += contacts.tangential[b] * contacts.ny[b]
+        fy -= contacts.tangential[b] * contacts.nx[b]
+        moment -= contacts.tangential[b] * contacts.second[b]
+        loss += contacts.loss[b]
+    return Total(fx, fy, moment, loss)
+
+
+@woven
+def settle_race(contacts, side, count, kick, part, vx, vy):
+    """Settle the accounts of `count` balls on that `side` of a race after a `kick` (s).
+
+    part: of the kick in which the forces were found; vx, vy: by how much the race was faster in its middle
+    than it was taken to be (m/s). Returns what the contacts withheld (J).
+    """
+    withheld, c = 0.0, contacts
+    for b in range(count):
+        if c.indentation[b] <= 0.0 and c.stored[b] <= 0.0:  # apart for longer
+            continue
+        closing = middle_of(c.rate[b], c.middle[b], part) - side * (vx * c.nx[b] + vy * c.ny[b])
+        taken = kick * (c.normal[b] - c.damped[b]) * closing
+        c.stored[b], lost = settled(c.stored[b], c.indentation[b], taken)
+        withheld += lost
+    return withheld
+
+
+@woven
+def press_races(q, m):
+    """Both races press all balls in the state q; sets their accelerations in m.s.faster, with gravity."""
+    p, d, s = m.p, m.d, m.s
+    balls, moved = balls_of(q, m), ring.moved_before(m)
+    inner_ring, at = ring.ring_motion(q), seat.housing_motion(q)
+    housing = Motion(at.x, at.y, at.vx, at.vy, s.outer_spin)
+    ax, ay = part(s.before, VX, m), part(s.before, VY, m)
+    beat = beat_of(m)
+    over_outer = Before(beat, ax, ay, 0.0, 0.0, s.kick / d.mass)
+    over_inner = Before(beat, ax, ay, moved.x, moved.y, s.kick / d.mass)
+    at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping)
+    at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping)
+    angle = q[ring.RANGLE]
+    _one_race(balls, housing, 0.0, at_outer, over_outer, p.outer_profile, s.outer_starts, s.outer, m)
+    _one_race(balls, inner_ring, angle, at_inner, over_inner, p.inner_profile, s.inner_starts, s.inner, m)
+    _accelerate(m)
+
+
+@woven
+def _one_race(balls, body, angle, race, before, profile, starts, contacts, m):
+    """All balls press the race of `body` (Motion), turned by `angle` (rad)."""
+    n = rounded(m.p.balls.count)
+    places, forces = places_of(contacts, n), forces_of(contacts, n)
+    if m.d.searched == 1:
+        find_on_curve(balls, body, angle, race, profile, starts, m.s.search, contacts)
+        press_curve(balls, body, race, before, places, forces)
+    else:
+        press_circle(balls, body, race, before, places, forces)
+
+
+@woven
+def _accelerate(m):
+    """Accelerations in m.s.faster of the balls that both races press, and under gravity."""
+    gravity, inner, outer, faster, by_mass = m.p.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
+    for b in range(rounded(m.p.balls.count)):
+        faster.x[b] = (inner.normal[b] * inner.nx[b] - outer.normal[b] * outer.nx[b]) * by_mass
+        faster.y[b] = (inner.normal[b] * inner.ny[b] - outer.normal[b] * outer.ny[b]) * by_mass - gravity
+        faster.spin[b] = 0.0
+
+
+@woven
+def rub_races(q, dq, m):
+    """Friction at both races and in the bore, when all else on the balls is in m.s.faster; sets them in dq.
+
+    Returns the journal's `Touch` and the `Total` (N, N m, W) on the inner and on the outer race.
+    """
+    d, s, h, count = m.d, m.s, m.s.kick, m.p.balls.count
+    n = rounded(count)
+    _drive(m)
+    pressed = pressing(s.inner, OUTSIDE, count)
+    answers = Answers(h / d.mass, h / d.mass, h * d.ball_radius * d.ball_radius / d.inertia)
+    inner = Inner(s.inner.nx[:n], s.inner.ny[:n], s.inner.second[:n], s.cross[:n])
+    journal, moved = ring.rub_races(q, pressed, answers, inner, m)
+    _rub(moved, m)
+    _hand_over(q, dq, m)
+    on_inner = with_friction(pressed, s.inner, count)
+    pressed_out = pressing(s.outer, INSIDE, count)
+    on_outer = with_friction(pressed_out, s.outer, count)
+    s.outer_moment = on_outer.moment
+    s.brake.hx, s.brake.hy = on_outer.fx - pressed_out.fx, on_outer.fy - pressed_out.fy
+    return journal, on_inner, on_outer
+
+
+@woven
+def _drive(m):
+    """How all but friction at races changes the sliding speeds over the kick."""
+    s, inner, outer, rb, h, faster = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick, m.s.faster
+    for b in range(rounded(m.p.balls.count)):
+        along_outer = faster.y[b] * outer.nx[b] - faster.x[b] * outer.ny[b]
+        along_inner = faster.y[b] * inner.nx[b] - faster.x[b] * inner.ny[b]
+        outer.driven[b] = h * (along_outer + rb * faster.spin[b])
+        inner.driven[b] = h * (along_inner - rb * faster.spin[b])
+        s.cross[b] = outer.nx[b] * inner.nx[b] + outer.ny[b] * inner.ny[b]
+
+
+@woven
+def _rub(moved, m):
+    """Add friction at both races to the balls' accelerations, and the heat of damping to that of friction.
+
+    moved: what the kick does to the ring (`Moved`).
+    """
+    inner, outer, h, faster = m.s.inner, m.s.outer, m.s.kick, m.s.faster
+    by_mass, by_inertia = 1.0 / m.d.mass, m.d.ball_radius / m.d.inertia
+    for b in range(rounded(m.p.balls.count)):
+        f_o, f_i = outer.tangential[b], inner.tangential[b]
+        ax = faster.x[b] - (f_o * outer.ny[b] + f_i * inner.ny[b]) * by_mass
+        ay = faster.y[b] + (f_o * outer.nx[b] + f_i * inner.nx[b]) * by_mass
+        faster.x[b], faster.y[b] = ax, ay
+        faster.spin[b] += (f_o - f_i) * by_inertia
+        dx, dy = h * ax, h * ay
+        into_outer = dx * outer.nx[b] + dy * outer.ny[b]
+        into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
+        into_inner -= moved.spin * inner.across[b]
+        outer.middle[b] = outer.rate[b] + 0.5 * into_outer
+        inner.middle[b] = inner.rate[b] + 0.5 * into_inner
+        outer.loss[b] += outer.damped[b] * outer.middle[b]
+        inner.loss[b] += inner.damped[b] * inner.middle[b]
+
+
+@woven
+def _hand_over(q, dq, m):
+    """Set the balls' derivatives in dq (m.n,), component by component: each loop is vector code."""
+    n, faster = m.p.balls.count, m.s.faster
+    ring.copy(part(q, VX, m), part(dq, X, m))
+    ring.copy(part(q, VY, m), part(dq, Y, m))
+    ring.copy(part(q, SPIN, m), part(dq, ANGLE, m))
+    ring.copy(faster.x[:n], part(dq, VX, m))
+    ring.copy(faster.y[:n], part(dq, VY, m))
+    ring.copy(faster.spin[:n], part(dq, SPIN, m))

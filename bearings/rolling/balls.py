@@ -1,0 +1,187 @@
+"""The balls as a set: where they and the ring rest at the start, and the largest of their loads.
+
+Where the ring rests on the balls at the start, and the balls between the races.
+
+The ring's weight and the springs at the balls have a potential that is convex in the ring's place: it rests
+where that is least. Newton's method finds it from anywhere: where nothing holds the ring along a line it
+goes far down that, and a step that overshoots is halved.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ...modelkit.kernel import kernel
+from ..contact.peaks import Largest, watch_peaks
+from .ball_set import outer_share, start_angle
+
+MOST_STEPS = 100  # of Newton's method; ten are enough where balls hold the ring
+MOST_HALVINGS = 40
+FLAT = 1e-12  # determinant over squared trace below which the springs hold the ring along one line only
+ROUNDING = 2e-16  # of all lengths
+AT_BOTTOM = 1e-9  # rad, how near to the bottom a ball is exactly below
+
+
+class Springs(NamedTuple):
+    """The balls as springs between the rings."""
+
+    count: int
+    first: float  # attitude angle of the first (rad)
+    spread: float  # their spacing over even spacing
+    play: float  # m
+    stiffness: float  # N/m^1.5, of those side by side
+
+
+class Balance(NamedTuple):
+    """Potential, its gradient and its second derivatives at a place of the ring."""
+
+    potential: float  # J
+    x: float  # N
+    y: float
+    xx: float  # N/m
+    xy: float
+    yy: float
+
+
+@kernel
+def _balance(x, y, springs, weight):
+    """`Balance` of a ring of `weight` (N) at (x, y) (m) on `Springs`."""
+    potential, fx, fy, xx, xy, yy = weight * y, 0.0, weight, 0.0, 0.0, 0.0
+    for i in range(springs.count):
+        angle = start_angle(springs.first, springs.count, springs.spread, i)
+        c, s = math.cos(angle), math.sin(angle)
+        depth = x * c + y * s - springs.play
+        if depth > 0.0:
+            slope = 1.5 * springs.stiffness * math.sqrt(depth)
+            force = slope * depth / 1.5
+            potential += 0.4 * force * depth
+            fx, fy = fx + force * c, fy + force * s
+            xx, xy, yy = xx + slope * c * c, xy + slope * c * s, yy + slope * s * s
+    return Balance(potential, fx, fy, xx, xy, yy)
+
+
+@kernel
+def _step_from(at, weight, far):
+    """Step (m, m) to where the gradient of a `Balance` vanishes; `far` (m) where no spring holds the ring.
+
+    Within `AT_BOTTOM` of the direction of the weight (N) it does not slide off.
+    """
+    trace, det = at.xx + at.yy, at.xx * at.yy - at.xy * at.xy
+    if det > FLAT * trace * trace:
+        return (at.xy * at.y - at.yy * at.x) / det, (at.xy * at.x - at.xx * at.y) / det
+    if trace == 0.0:
+        return 0.0, -far
+    dx, dy = -(at.xx * at.x + at.xy * at.y) / trace, -(at.xy * at.x + at.yy * at.y) / trace
+    x, y = at.x + dx, at.y + dy  # of the gradient, what is across the springs
+    across = math.sqrt(x * x + y * y)
+    slide = far / across if across > AT_BOTTOM * weight else 0.0
+    return dx / trace - slide * x, dy / trace - slide * y
+
+
+@kernel
+def _is_lower(tried, at):
+    """Whether a `Balance` is nearer to rest than another; at rest potentials differ by rounding only."""
+    return tried.potential < at.potential or tried.x**2 + tried.y**2 < at.x**2 + at.y**2
+
+
+@kernel
+def _first_guess(springs, sunk):
+    """A place (m, m) by the play and how deep the ring is `sunk` (m) on one ball, for even spacing."""
+    half_gap = math.pi / springs.count
+    gaps = (-0.5 * math.pi - springs.first) / (2.0 * half_gap)  # to the bottom, from the first ball
+    off = (gaps - math.floor(gaps) - 0.5) * 2.0 * half_gap  # of the bottom from the middle of its gap
+    # a ball exactly below: in the middle, on that ball
+    direction, reach = -0.5 * math.pi, max(springs.play, 0.0) + sunk
+    if abs(abs(off) - half_gap) >= AT_BOTTOM:  # in the corner of the play between the two lowest balls
+        direction, reach = direction - off, reach / math.cos(half_gap)
+    return reach * math.cos(direction), reach * math.sin(direction)
+
+
+@kernel
+def resting_place(springs, weight, out):
+    """Where a ring of `weight` (N, downwards) rests on the balls, from the centre (m, m).
+
+    springs: `Springs`; out: how far off (m) no ball holds it any more. With a ball exactly below it is held
+    sideways by nothing within the play, and rests in the middle; without weight it floats there, and where
+    no balls hold it, it falls from there.
+    """
+    if weight == 0.0:
+        return 0.0, 0.0
+    sunk = (weight / springs.stiffness) ** (1.0 / 1.5)
+    x, y = _first_guess(springs, sunk)
+    at = _balance(x, y, springs, weight)
+    for _ in range(MOST_STEPS):
+        dx, dy = _step_from(at, weight, out)
+        if not abs(dx) + abs(dy) > ROUNDING * (abs(x) + abs(y) + abs(springs.play)):
+            break
+        tried = _balance(x + dx, y + dy, springs, weight)
+        for _ in range(MOST_HALVINGS):
+            if _is_lower(tried, at):
+                break
+            dx, dy = 0.5 * dx, 0.5 * dy
+            tried = _balance(x + dx, y + dy, springs, weight)
+        if not _is_lower(tried, at):
+            break
+        x, y, at = x + dx, y + dy, tried
+        if abs(x) + abs(y) >= out:
+            return 0.0, 0.0
+    return x, y
+
+
+@kernel
+def place_balls(d, b, spread, reach):
+    """Set d.x and d.y, the centres of the balls at the start (m), with the ring at (d.rest_x, d.rest_y).
+
+    A ball that both rings press sits where their forces balance; any other lies on the outer race in the
+    lower half, on the inner one in the upper half, or on the edge of a pocket that keeps it from there.
+    reach: how far (m) a pocket lets it off the pitch circle.
+    """
+    share, pitch = outer_share(d.stiffness), 0.5 * b.pitch_diameter
+    for i in range(b.count):
+        angle = start_angle(b.first_angle, b.count, spread, i)
+        nx, ny = math.cos(angle), math.sin(angle)
+        approach = d.rest_x * nx + d.rest_y * ny - b.play
+        radius = pitch + 0.5 * b.play
+        if approach > 0.0:
+            radius += approach * share
+        elif ny > 0.0:
+            radius = max(radius + approach, min(pitch - reach, radius))
+        else:
+            radius = min(radius, max(pitch + reach, radius + approach))
+        d.x[i], d.y[i] = radius * nx, radius * ny
+
+
+class Total(NamedTuple):
+    """What all balls do to a race."""
+
+    fx: float  # N
+    fy: float
+    moment: float  # N m, about its centre
+    loss: float  # W, heat
+
+
+@kernel
+def largest(force, indentation, count, rows):
+    """`Largest` (N on one of those side by side, m) of the contacts of `count` balls in `rows`.
+
+    force, indentation: of each ball, or of those side by side (N, m).
+    """
+    most, depth, loaded, deepest = 0.0, 0.0, 0, 0
+    for b in range(count):
+        if force[b] > most:
+            most, loaded = force[b], b
+        if indentation[b] > depth:
+            depth, deepest = indentation[b], b
+    return Largest(most / rows, depth, loaded, deepest)
+
+
+@kernel
+def watch_balls(time, now, m):
+    """Keep the peaks of the balls' forces (N) and of the rings' approach (m), after a micro-step.
+
+    now: `Largest`, at `time` (s).
+    """
+    force = watch_peaks(time, now, m.o.balls, m.s.ball_peaks)
+    if force > m.o.balls.first_impact_force and m.o.contact.first_time >= 0.0 and m.s.contact.over == 0.0:
+        m.o.balls.first_impact_force = force

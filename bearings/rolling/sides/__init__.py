@@ -1,1 +1,0 @@
-"""What touches a ball beside: its neighbours in the row, or its pocket in the cage."""

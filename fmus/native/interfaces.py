@@ -1,0 +1,82 @@
+"""What makes a native FMU one of FMI 2.0 or of FMI 3.0: its side in C, its description, its places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from xml.etree.ElementTree import Element
+
+from pythonfmu import Fmi2Slave
+
+from ...modelkit.model import Model, Slot, slots
+from ..description import fmi2, fmi3
+from ..description.variables import Making, arrays, scalars, time_reference
+from .compiler import NativeError, Target, places, places_3
+from .tables import access, by_word, hidden
+
+
+@dataclass(frozen=True)
+class Face:
+    """A version of FMI."""
+
+    version: int
+    source: str  # its side, of the files in C
+    categories: Mapping[str, str]  # of what goes to the host's log
+    variables: Callable[[Model], Mapping[str, Slot]]  # by name; the first element stands for an array
+    documented: Callable[[Model], Sequence[Slot]]  # as its pages list them
+    described: Callable[[Model, str, Mapping[str, str], Making], Element]
+    places: Callable[[tuple[Target, ...]], dict[str, Target]]  # in binaries/, and whose library lies there
+    tables: Callable[[Model], dict[str, str]]  # in C, by members of MODEL: what references stand for
+
+    def describe(self, model: Model, identifier: str, making: Making) -> Element:
+        """modelDescription.xml."""
+        return self.described(model, identifier, self.categories, making)
+
+
+def _scalars(model: Model) -> dict[str, str]:
+    allowed = {slot.index: access(slot) for slot in scalars(model).values()}
+    return {"access": by_word("uint8_t", "ACCESS", hidden(model), allowed)}
+
+
+def _first_elements(model: Model) -> dict[str, Slot]:
+    return {array.name: array.first for array in arrays(model)}
+
+
+def _with_sizes(model: Model) -> list[Slot]:
+    """One for each array, whose name ends with its size."""
+    named: list[Slot] = []
+    for array in arrays(model):
+        size = "" if array.dimension is None else f"[{array.dimension}]"
+        variable = replace(array.first.variable, name=f"{array.name}{size}")
+        named.append(replace(array.first, variable=variable))
+    return named
+
+
+def _arrays(model: Model) -> dict[str, str]:
+    time = time_reference(model)
+    if "time" in scalars(model):
+        raise NativeError(f"{model.name} has a variable called time, as FMI 3.0 has; choose another name")
+    allowed, extents = {time: "REAL | INDEPENDENT"}, {time: "{1, 0}"}
+    for array in arrays(model):
+        place = array.first.index
+        allowed[place] = access(array.first)
+        extents[place] = f"{{{len(array.elements)}, {array.stride}}}"
+    end = hidden(model)
+    return {
+        "access": by_word("uint8_t", "ACCESS", end, allowed),
+        "extents": by_word("Extent", "EXTENTS", end, extents),
+    }
+
+
+FMI_2 = Face(2, "fmi2.c", Fmi2Slave.log_categories, scalars, slots, fmi2.describe, places, _scalars)
+FMI_3 = Face(
+    3,
+    "fmi3.c",
+    {"logStatusDiscard": "A smaller step may be possible.", "logStatusError": "What went wrong."},
+    _first_elements,
+    _with_sizes,
+    fmi3.describe,
+    places_3,
+    _arrays,
+)
+FACES = {face.version: face for face in (FMI_2, FMI_3)}

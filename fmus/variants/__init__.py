@@ -1,1 +1,0 @@
-"""Models made from another: that start from other values, or have connectors for fewer modes."""

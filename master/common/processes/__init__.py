@@ -1,1 +1,0 @@
-"""Processes that the master starts: side by side, none outliving its parent, code of others watched."""

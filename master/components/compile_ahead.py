@@ -1,0 +1,127 @@
+"""What a scene has to compile, compiled before it runs, in processes beside each other.
+
+The models of a scene are compiled one after the other where they are stepped: numba compiles nothing beside
+something else in one process. Here each of several processes takes one model after the other, the largest
+first, and what it compiles is in the cache for this one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import parent_process
+from pathlib import Path
+from threading import Thread
+from typing import Any
+
+from ...fmus.python.sources import package_name
+from ...fmus.recipes import Recipe
+from ...modelkit.kernel.machine_code import is_kept
+from ..common.errors import TouchdownError
+from ..common.pool import cores
+from ..common.watched import die_with_parent, search_path
+from ..scene.scene import Scene
+from .loading import Stepping, load_component, locate
+
+_HOST = (
+    "import json, sys; sys.path[:] = json.loads(sys.argv[1]); "
+    f"from {__name__} import compile_asked; compile_asked(int(sys.argv[2]))"
+)
+_STEP = 1e-6  # s
+
+
+@dataclass(frozen=True)
+class NewModel:
+    """A model that was not compiled yet."""
+
+    title: str
+    fmu: str
+    folder: Path  # absolute, in which the fmu's path begins
+    in_process: bool
+    size: int  # bytes of its memory
+
+
+def new_models(scene: Scene, in_process: bool) -> list[NewModel]:
+    """The scene's models without code in the cache, one of each kind, the largest first.
+
+    None in a process that runs beside others: the one that starts them compiles for all.
+    """
+    if parent_process() is not None:
+        return []
+    return sorted(_new(scene, in_process), key=lambda model: -model.size)
+
+
+def compile_beside(models: Sequence[NewModel], say: Callable[[str], object]) -> None:
+    """Compile models, as many at a time as there are processors; what fails here fails where it is run.
+
+    say(what is being done, and why) is called once where that is worth it: for two models and processors.
+    """
+    workers = min(cores(), len(models))
+    if workers < 2:
+        return
+    say(f"compiling {', '.join(model.title for model in models)}: new here, and kept for later runs")
+    left = iter(models)
+    threads = [Thread(target=_have_compiled, args=(left,), daemon=True) for _ in range(workers)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
+def _new(scene: Scene, in_process: bool) -> Iterable[NewModel]:
+    kinds: set[str] = set()
+    for spec in scene.components.values():
+        with suppress(TouchdownError):  # said where it is loaded
+            source = locate(spec.fmu, scene.folder)
+            if isinstance(source, Recipe) and not spec.native and _kind(source) not in kinds:
+                kinds.add(_kind(source))
+                if not _is_compiled(source, in_process):
+                    folder, size = scene.folder.absolute(), source.model.memory.itemsize
+                    yield NewModel(source.name, spec.fmu, folder, in_process, size)
+
+
+def _kind(recipe: Recipe) -> str:
+    advance: Any = recipe.model.advance
+    return advance.py_func.__module__
+
+
+def _is_compiled(recipe: Recipe, in_process: bool) -> bool:
+    own = _kind(recipe)
+    return is_kept(recipe.model.advance, own if in_process else own.replace("touchdown", package_name(), 1))
+
+
+def _have_compiled(models: Iterable[NewModel]) -> None:
+    """Hand models to a process of its own, one after the other, until none is left or it is gone."""
+    command = [sys.executable, "-c", _HOST, json.dumps(search_path()), str(os.getpid())]
+    pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
+    running = subprocess.Popen(command, text=True, stdin=pipe, stdout=pipe, stderr=nowhere)
+    with running as process, suppress(OSError):
+        assert process.stdin is not None
+        assert process.stdout is not None
+        for model in models:
+            print(
+                json.dumps([model.fmu, str(model.folder), model.in_process]), file=process.stdin, flush=True
+            )
+            if not process.stdout.readline():
+                return
+
+
+def compile_asked(parent: int) -> None:
+    """In such a process: compile what each line of standard input names, and answer with a line."""
+    die_with_parent(parent)
+    for line in sys.stdin:
+        fmu, folder, in_process = json.loads(line)
+        with suppress(TouchdownError):
+            component = load_component(fmu, fmu, Path(folder), Stepping(in_process))
+            try:
+                component.enter(0.0)
+                component.exit()
+                component.step(0.0, _STEP)
+            finally:
+                component.close()
+        print("done", flush=True)

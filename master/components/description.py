@@ -1,0 +1,183 @@
+"""What an FMU says of itself: whether it can be co-simulated here, its variables and units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from importlib.metadata import version
+from itertools import product
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import ParseError, iterparse
+from xml.parsers.expat import ExpatError
+
+from fmpy import platform as fmi_platform
+from fmpy import platform_tuple, read_model_description, sharedLibraryExtension
+
+from ...fmus.description.variables import element
+from ...modelkit.variables import Causality, Variability
+from ..common.errors import TouchdownError
+from ..common.units import BASE, Unit
+from .component import Kind, Variable
+from .screening import KINDS_3, STRUCTURAL, refuse_damaged, refuse_definitions, refuse_lies
+from .unpack import unpack
+
+SHOWN = 5  # files named where one is missing
+PYTHONFMU = "PythonFMU"  # as it names itself where an FMU says who made it
+
+
+def describe(path: Path, folder: Path) -> Any:
+    """fmpy's model description of an unpacked FMU that can be co-simulated here."""
+    try:
+        refuse_definitions(folder / "modelDescription.xml")
+        description = read_model_description(str(folder), validate=False)
+    except Exception as error:
+        first = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+        raise TouchdownError(f"{path}: cannot read its modelDescription.xml ({first})") from None
+    third = description.fmiVersion.startswith("3.")
+    if not (third or description.fmiVersion == "2.0") or description.coSimulation is None:
+        raise TouchdownError(
+            f"{path} is FMI {description.fmiVersion}, {_purpose(description)}; FMI 2.0 or 3.0 for "
+            "co-simulation is needed"
+        )
+    identifier = description.coSimulation.modelIdentifier
+    refuse_lies(path, description)
+    place = platform_tuple if third else fmi_platform
+    library = folder / "binaries" / place / f"{identifier}{sharedLibraryExtension}"
+    if not library.is_file():
+        raise TouchdownError(
+            f"{path} has no binary for this platform ({place}): it lacks {_held(library, folder)}"
+        )
+    refuse_damaged(path, library)
+    if by_pythonfmu(description):
+        _check_script(path, folder)
+    return description
+
+
+def _purpose(description: Any) -> str:
+    """What an FMU is for."""
+    if description.coSimulation is not None:
+        return "co-simulation"
+    scheduled = getattr(description, "scheduledExecution", None) is not None
+    return "scheduled execution only" if scheduled else "model exchange only"
+
+
+def _held(library: Path, folder: Path) -> str:
+    """Where the `library` of an FMU that is unpacked in `folder` should be, and which it has instead."""
+    held = sorted(str(p.relative_to(folder)) for p in (folder / "binaries").rglob("*") if p.is_file())
+    first = ", ".join(held[:SHOWN]) + (f" and {len(held) - SHOWN} more" if len(held) > SHOWN else "")
+    return f"{library.relative_to(folder)}, and has {first or 'none'}"
+
+
+def fmi_version(path: Path, cache: Path) -> str:
+    """The version of FMI that an FMU states; "" where its description cannot be read.
+
+    Raises TouchdownError where it cannot be unpacked.
+    """
+    return _stated(path, cache, "fmiVersion")
+
+
+def by_other_pythonfmu(path: Path, cache: Path) -> bool:
+    """Whether an FMU was made by a pythonfmu of another version than the one that is imported here.
+
+    It brings its own, which Python does not import where there is one already: its calls would then meet
+    functions of the other version.
+    """
+    maker = _stated(path, cache, "generationTool")
+    return PYTHONFMU in maker and maker.split()[-1] != version("pythonfmu")
+
+
+def _stated(path: Path, cache: Path, attribute: str) -> str:
+    """An attribute of the description's root; "" where it cannot be read."""
+    described = unpack(path, cache) / "modelDescription.xml"
+    with suppress(OSError, ParseError, ExpatError, ValueError, LookupError):
+        refuse_definitions(described)
+        _, root = next(iterparse(described, ("start",)))
+        return root.get(attribute, "")
+    return ""
+
+
+def by_pythonfmu(description: Any) -> bool:
+    """Whether an FMU was made by pythonfmu."""
+    return PYTHONFMU in (description.generationTool or "")
+
+
+def _check_script(path: Path, folder: Path) -> None:
+    """pythonfmu's library ends the process where the script it is to run is missing."""
+    name = folder / "resources" / "slavemodule.txt"
+    module = name.read_bytes().decode("utf-8", "replace").strip() if name.is_file() else ""
+    if not module.isidentifier() or not (name.parent / f"{module}.py").is_file():
+        raise TouchdownError(f"{path} is damaged: it lacks the script that resources/slavemodule.txt names")
+
+
+def variables_of(description: Any) -> dict[str, Variable]:
+    """Variables by name. An array of FMI 3.0 is one scalar for each element (`element`)."""
+    third = description.fmiVersion.startswith("3.")
+    return {
+        scalar.name: scalar
+        for v in description.modelVariables
+        for scalar in _scalars(v, KINDS_3[v.type] if third else Kind(v.type))
+    }
+
+
+def _scalars(v: Any, kind: Kind) -> Iterator[Variable]:
+    """What fmpy read of one variable of the description, as scalars."""
+    known = v.causality if v.causality != STRUCTURAL else None  # it is set in a mode that is not entered
+    starts = str(v.start).split() if v.shape and v.start is not None else [v.start]
+    for number, index in enumerate(product(*(range(1, size + 1) for size in v.shape or ()))):
+        yield Variable(
+            name=element(v.name, index),
+            reference=v.valueReference,
+            kind=kind,
+            causality=Causality(known or Causality.LOCAL),
+            variability=Variability(v.variability or Variability.CONTINUOUS),
+            unit=_unit(v) if kind is Kind.REAL else "1",
+            minimum=_number(v.min),
+            maximum=_number(v.max),
+            start=_start(starts[number] if number < len(starts) else starts[-1], kind),
+            description=v.description or "",
+            element=number,
+            choices=_choices(v) if kind is Kind.ENUMERATION else {},
+        )
+
+
+def _unit(v: Any) -> str | None:
+    return v.unit or (v.declaredType.unit if v.declaredType else None)
+
+
+def _choices(v: Any) -> dict[str, int]:
+    """Words of an enumeration, and the numbers they stand for."""
+    items = v.declaredType.items if v.declaredType else ()
+    numbers = {item.name: _number(item.value) for item in items if item.name}
+    return {word: int(n) for word, n in numbers.items() if n is not None and math.isfinite(n)}
+
+
+def _start(text: object, kind: Kind) -> float | None:
+    """A start value as a number; None where it is none, as words are that begin a String."""
+    words = {"true": 1.0, "false": 0.0} if kind is Kind.BOOLEAN else {}
+    return words.get(str(text), _number(text))
+
+
+def _number(text: object) -> float | None:
+    try:
+        return None if text is None else float(str(text))
+    except ValueError:
+        return None
+
+
+def units_of(description: Any) -> dict[str, Unit]:
+    """Units that the description defines by SI base units, by name."""
+    units: dict[str, Unit] = {}
+    for unit in description.unitDefinitions:
+        base = unit.baseUnit
+        if base is not None:
+            exponents = {symbol: getattr(base, symbol) for symbol in BASE if getattr(base, symbol)}
+            units[unit.name] = Unit(exponents, float(base.factor), float(base.offset))
+    return units
+
+
+def interface(path: Path, cache: Path) -> tuple[dict[str, Variable], dict[str, Unit]]:
+    """Variables and units of an FMU, which is not loaded."""
+    description = describe(path, unpack(path, cache))
+    return variables_of(description), units_of(description)

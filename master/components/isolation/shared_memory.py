@@ -1,0 +1,149 @@
+"""Memory that the master and the process of an FMU share, and how they take turns.
+
+Memory that the master and the process of an FMU share: requests, replies and values.
+
+Words that the two sides write lie on cache lines of their own. Values follow them; one request at a time is
+under way, and each side reads them only when the other has posted.
+
+How two processes hand the turn to each other: by numbers in shared memory, and by a wake-up call.
+
+To wake a process that sleeps takes tens of microseconds, to be seen by one that looks takes less than one.
+So who waits looks for a while before it sleeps, where there are cores for it.
+"""
+
+from __future__ import annotations
+
+import mmap
+import platform
+import select
+import socket
+import time
+from contextlib import suppress
+from enum import IntEnum
+
+import numpy as np
+
+LINE = 8  # words of a cache line
+
+
+class Word(IntEnum):
+    """Where the words are."""
+
+    REQUEST = 0  # number of the last request
+    REPLY = LINE  # number of the last reply
+    MASTER_SLEEPS = 2 * LINE  # and must be woken
+    HOST_SLEEPS = 3 * LINE
+    WHAT = 4 * LINE  # is asked for: an `Ask`
+    ARGUMENT = WHAT + 1  # a number
+    PUSHED = WHAT + 2  # whether the inputs are to be handed over before
+    SPIN = WHAT + 3  # us that the host spins before it sleeps
+    TIME = WHAT + 4  # s, of the step, a float
+    STEP = WHAT + 5  # s, its length, a float
+    AT = 5 * LINE  # what the FMU is at: an index into `touchdown.master.components.fmu.CALLS`
+    FAILED = AT + 1  # whether the request did
+    VALUES = 6 * LINE  # behind the words
+
+
+class Ask(IntEnum):
+    """What the host can be asked for."""
+
+    CALL = 0  # a method of its own by name, with arguments: slow
+    PULL = 1
+    STEP = 2  # and fetch the outputs
+    FETCH = 3  # what the reader of that number reads
+    SAVE = 4  # the state, under a number
+    RESTORE = 5
+    RELEASE = 6
+
+
+class Board:
+    """The shared memory of an FMU with so many variables."""
+
+    def __init__(self, handle: int, variables: int) -> None:
+        memory = mmap.mmap(handle, board_size(variables))
+        self.words = memoryview(memory).cast("q")
+        self.floats = memoryview(memory).cast("d")
+        values = np.frombuffer(memory, dtype="f8")[Word.VALUES :].reshape(3, -1)
+        self.inputs, self.outputs, self.read = values
+
+
+def board_size(variables: int) -> int:
+    """Bytes of a board."""
+    return 8 * (Word.VALUES + 3 * max(variables, 1))
+
+
+SPIN = 3e-4  # s to look before sleeping
+LONGEST = 512  # waits that are not begun by looking, after looking was in vain again and again
+CUT_OFF = 120  # exit status of a process that finds its side of the crossing closed
+LOOK_AGAIN = 0.05  # s; a wake-up call that crossed with falling asleep is lost
+ORDERED = platform.machine() in ("x86_64", "AMD64")  # other processors may show numbers before values
+
+
+class GoneError(Exception):
+    """The other side is no more."""
+
+
+class Side:
+    """One side of a crossing: it posts, and waits until the other side has."""
+
+    def __init__(self, board: Board, calls: socket.socket, master: bool) -> None:
+        self._words, self._calls = board.words, calls
+        mine, theirs = (Word.REQUEST, Word.REPLY), (Word.MASTER_SLEEPS, Word.HOST_SLEEPS)
+        self._posts, self._awaits = mine if master else mine[::-1]
+        self._sleep, self._they_sleep = theirs if master else theirs[::-1]
+        self._words[self._sleep] = 1
+        self._awaited = 1
+        self._pass_over = 0  # waits before it looks again
+        self._passed_over = 1  # the last time that looking was in vain
+        self._poll = select.poll()
+        self._poll.register(calls, select.POLLIN)
+
+    def post(self) -> None:
+        """Hand the turn to the other side."""
+        self._words[self._posts] += 1
+        if self._words[self._they_sleep]:
+            with suppress(OSError):  # whoever is gone is missed by `wait`
+                self._calls.send(b"\0")
+
+    def wait(self, spin: float, limit: float) -> None:
+        """Wait for the turn, looking for `spin` and for `limit` (s) in all.
+
+        Raises GoneError where the other side is gone, TimeoutError where it does not post.
+        """
+        if not (ORDERED and spin > 0.0 and self._worth_looking() and self._look(spin)):
+            self._doze(limit)
+        self._awaited += 1
+
+    def _worth_looking(self) -> bool:
+        self._pass_over = max(self._pass_over - 1, 0)
+        return not self._pass_over
+
+    def _look(self, spin: float) -> bool:
+        words, place, awaited = self._words, self._awaits, self._awaited
+        deadline = time.perf_counter() + spin
+        while words[place] != awaited and time.perf_counter() < deadline:
+            pass
+        if time.perf_counter() < deadline:
+            self._passed_over = 1
+        else:  # the other side is slow, or the processors are busy: then looking only takes time from it
+            self._passed_over = self._pass_over = min(2 * self._passed_over, LONGEST)
+        return words[place] == awaited
+
+    def _doze(self, limit: float) -> None:
+        words, place, awaited = self._words, self._awaits, self._awaited
+        deadline = time.monotonic() + limit
+        words[self._sleep] = 1
+        while words[place] != awaited:
+            left = deadline - time.monotonic()
+            if left <= 0.0:
+                raise TimeoutError
+            called = self._poll.poll(1e3 * min(left, LOOK_AGAIN))
+            if called and not self._called() and words[place] != awaited:
+                raise GoneError
+        words[self._sleep] = int(not ORDERED)
+
+    def _called(self) -> bytes:
+        try:
+            return self._calls.recv(64)
+        except ConnectionResetError:
+            return b""

@@ -1,1 +1,0 @@
-"""Where components come from, and how they are loaded and made ready."""

@@ -1,0 +1,104 @@
+"""Where a component comes from, and how it is loaded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...fmus.build import cached
+from ...fmus.recipes import Recipe, names, presets, recipe
+from ...modelkit.kernel.cache_folder import user_cache
+from ...modelkit.model import ModelError
+from ..common.cache import tidy
+from ..common.errors import TouchdownError, one_of
+from ..common.watched import watch
+from ..scene.run_spec import CALL_TIMEOUT
+from ..scene.scene import is_file
+from ..scene.tables import mistake_in
+from .component import Component
+from .description import by_other_pythonfmu
+from .fmu import FmuComponent
+from .foreign import foreign_fmu
+from .in_process import TwinComponent
+from .isolation.component import IsolatedFmu
+
+
+def locate(fmu: str, folder: Path = Path()) -> Path | Recipe:
+    """The path of an .fmu, or the recipe of one of the project's own or of a rotor file (.toml).
+
+    Relative paths start in `folder`. Raises TouchdownError where there is none, or it has a mistake.
+    """
+    if "\0" in fmu:
+        raise TouchdownError(f"no FMU can be called {fmu!r}")
+    if fmu.endswith(".toml"):
+        try:
+            return recipe(str(folder / fmu))
+        except ModelError as error:
+            raise TouchdownError(mistake_in(folder / fmu, error)) from None
+    if foreign(fmu):
+        return folder / fmu
+    known = names()
+    if fmu not in known and fmu in presets():
+        raise TouchdownError(
+            f"{fmu} is a bearing of the catalogue, no FMU; take it by --set COMPONENT.preset={fmu}"
+        )
+    if fmu not in known:
+        raise TouchdownError(
+            f"there is no FMU called {fmu}; {one_of(fmu, known)}, or give the path of an .fmu or of a "
+            "rotor's .toml"
+        )
+    return recipe(fmu)
+
+
+def foreign(fmu: str) -> bool:
+    """Whether `fmu` is a file that brings code of its own, and none of the project's."""
+    return is_file(fmu) and not fmu.endswith(".toml")
+
+
+def built(recipe: Recipe, native: bool = False) -> Path:
+    """The FMU of a recipe, built if it is not there; native: the one that needs no Python.
+
+    Raises TouchdownError where it cannot be written or, native, cannot be built here.
+    """
+    try:
+        path = _native(recipe) if native else cached(recipe)
+    except OSError as error:
+        raise TouchdownError(f"cannot build {recipe.name}.fmu: {error.strerror or error}") from None
+    tidy()
+    return path
+
+
+def _native(recipe: Recipe) -> Path:
+    from ...fmus.native.build import cached as cached_native  # what compiles is for those who ask
+    from ...fmus.native.compiler import NativeError
+
+    try:
+        return cached_native(recipe)
+    except NativeError as error:
+        raise TouchdownError(str(error)) from None
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """Where a component is stepped."""
+
+    in_process: bool = False  # the project's own: the model, without its FMU
+    isolate: bool = False  # an FMU: in a process of its own
+    call_timeout: float = CALL_TIMEOUT  # s that a call of an isolated FMU may take
+    native: bool = False  # the project's own: its FMU that needs no Python
+
+
+def load_component(
+    name: str, fmu: str, folder: Path = Path(), stepping: Stepping = Stepping()
+) -> Component:
+    """A component: an FMU, or, where asked for and possible, its model stepped in process."""
+    source = locate(fmu, folder)
+    if isinstance(source, Recipe) and stepping.in_process:
+        return TwinComponent(name, source.model)
+    path, origin = (source, "") if isinstance(source, Path) else (built(source, stepping.native), fmu)
+    if stepping.isolate or (not origin and by_other_pythonfmu(path, user_cache())):
+        return IsolatedFmu(name, path, user_cache(), origin, stepping.call_timeout)
+    if origin:
+        return FmuComponent(name, path, user_cache(), origin)
+    watch(f"code of others ran in it, such as that of {path}; isolate it to see where it ends")
+    return foreign_fmu(name, path, user_cache())

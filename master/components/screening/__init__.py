@@ -1,1 +1,0 @@
-"""What is looked at before an FMU is loaded: its description, and its library."""

@@ -1,0 +1,360 @@
+"""Macro steps one by one, or many of them in compiled code.
+
+Many macro steps in compiled code, up to the next one that somebody in Python must see.
+
+Where a component cannot be stepped by its address, a scheme has a sequence of its own, a bearing is
+listened to by a second instance, or an observer looks at every step, macro steps are taken one by one.
+What comes out is the same to the last bit.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+import numpy as np
+
+from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, InMemory, Kind, Variable
+from ..layout import Scaling
+from ..ledger import Judge, Ledger, Shortening
+from ..observer import BEAT, Moment, Observer
+from ..recorder import Recorder
+from ..steppers.gauss_seidel import GaussSeidel, Turn
+from ..steppers.jacobi import Jacobi
+from ..steppers.rates import Part
+from ..steppers.stepper import Stepper
+from .division import Impacts
+from .helpers import Helpers, helpers
+from .kernels.stretch import run, run_beside
+from .kernels.tables import COLUMN, FETCH, GET, INT, LONG, PART, PLAN, READ, REAL, SET, STEP, TRUTH, TURN
+
+
+class MacroSteps:
+    """Macro steps, whole or divided, each part of them booked."""
+
+    def __init__(self, coupling: Stepper, ledger: Ledger, shortening: Shortening) -> None:
+        self.coupling, self.ledger = coupling, ledger
+        self.length = coupling.run.macro_step  # s
+        self.booked = 0  # steps, with the parts of those divided
+        self.impacts = Impacts(coupling)
+        self._shortening = shortening
+
+    @property
+    def parts(self) -> int:
+        """Into how many the next macro step is divided, impacts apart."""
+        return 2**self._shortening.halvings
+
+    def take(self, now: Moment) -> None:
+        """Take one, and move on to its end. Raises TouchdownError where a component cannot go on."""
+        number, begin = now.done, now.start + now.done * self.length
+        parts = max(self.parts, self.impacts.parts_of(begin, self.length))
+        part = self.length / parts
+        for k in range(parts):
+            self.coupling.step(number * parts + k, begin + k * part, part)
+            self.booked += 1
+            self.ledger.book(self.booked, part)
+        now.move(number + 1, self.length)
+
+
+Entry = InMemory | ByFunctions
+
+
+@dataclass
+class Tables:
+    """Tables of one system, as it is laid out now; `kept` are the arrays whose addresses they hold."""
+
+    signals: np.ndarray
+    components: list[Component]  # by turn
+    turns: np.ndarray = field(default_factory=lambda: np.zeros(0, TURN))
+    parts: np.ndarray = field(default_factory=lambda: np.zeros(0, PART))
+    reads: np.ndarray = field(default_factory=lambda: np.zeros(0, READ))
+    columns: np.ndarray = field(default_factory=lambda: np.zeros(0, COLUMN))
+    kept: list[object] = field(default_factory=list[object])
+
+
+def tables(stepper: GaussSeidel, at_once: bool, recorder: Recorder | None) -> Tables | None:
+    """The tables of a stepper's system; None where a component cannot be stepped by address.
+
+    at_once: whether all components take their inputs before any steps.
+    """
+    entries: list[Entry] = []
+    for turn in stepper.turns:
+        entry = turn.component.by_address() if _as_written(turn.component) else None
+        if entry is None:
+            return None
+        entries.append(entry)
+    made = Tables(stepper.system.signals, [turn.component for turn in stepper.turns])
+    _add_turns(made, stepper.turns, entries)
+    _group(made, stepper.turns, at_once, shared=all(map(_any_thread, entries)))
+    if recorder is not None:
+        _add_columns(made, entries, recorder)
+    return made
+
+
+def _as_written(component: Component) -> bool:
+    """Whether `by_address` speaks of the component's own methods, and not of some that were replaced."""
+
+    def depth(method: str) -> int:
+        if method in vars(component):
+            return -1
+        return next(i for i, kind in enumerate(type(component).__mro__) if method in vars(kind))
+
+    return min(map(depth, ("push", "step", "pull", "reader"))) >= depth("by_address")
+
+
+def _address(array: np.ndarray) -> int:
+    assert array.flags.c_contiguous
+    return array.ctypes.data
+
+
+# -- steps ---------------------------------------------------------------------------------------------
+
+
+def _add_turns(made: Tables, turns: Sequence[Turn], entries: Sequence[Entry]) -> None:
+    parts: list[Part] = []
+    made.turns = np.zeros(len(turns), TURN)
+    for turn, entry, row in zip(turns, entries, made.turns, strict=True):
+        own = [cut for cut in turn.cuts if isinstance(cut, Part)]
+        fields = _exchanged(turn, entry) | _called(entry)
+        fields |= {"first_part": len(parts), "end_part": len(parts) + len(own)}
+        for name, value in fields.items():
+            row[name] = value
+        parts += own
+    made.parts = np.array([_part(part) for part in parts], PART)
+    made.kept += [turns, entries, parts]
+
+
+def _group(made: Tables, turns: Sequence[Turn], at_once: bool, shared: bool) -> None:
+    """Put together what steps beside each other: all at once, or, where threads may share the steps, those
+    who take nothing that others of their group give in the same step.
+
+    Touchdown bearings are worth it, two and more: others' steps take less than handing them over.
+    """
+    first, given = 0, set[int]()
+    for i, turn in enumerate(turns):
+        alone = not shared or given.intersection(turn.places.tolist())
+        if alone and not at_once:
+            first, given = i, set[int]()
+        outputs = turn.component.outputs
+        start = (_address(outputs) - _address(made.signals)) // outputs.dtype.itemsize
+        given.update(range(start, start + len(outputs)))
+        made.turns["end"][first] = i + 1
+        if shared and REACH in turn.component.variables:
+            made.turns["shared"][first] += 1
+
+
+def _any_thread(entry: Entry) -> bool:
+    """Whether a component may be stepped by any thread."""
+    return isinstance(entry, InMemory) or entry.any_thread
+
+
+def _exchanged(turn: Turn, entry: Entry) -> dict[str, int]:
+    """Fields of what a component takes and gives."""
+    component = turn.component
+    fields = {
+        "every": turn.every,
+        "inputs": _address(component.inputs),
+        "takes": len(component.inputs),
+        "places": _address(turn.places),
+        "taken": _address(entry.taken),
+        "outputs": _address(component.outputs),
+        "gives": len(component.outputs),
+        "given": _address(entry.given),
+    }
+    for cut in turn.cuts:
+        if isinstance(cut, Scaling):
+            fields |= {"factors": _address(cut.factors), "offsets": _address(cut.offsets)}
+    return fields
+
+
+def _called(entry: Entry) -> dict[str, int]:
+    """Fields of what is called."""
+    if isinstance(entry, InMemory):
+        rows, columns = entry.work.shape
+        return {
+            "of": _address(entry.words),
+            "words": len(entry.words),
+            "work": _address(entry.work),
+            "rows": rows,
+            "columns": columns,
+            "step": entry.advance,
+        }
+    return {
+        "functions": 1,
+        "of": entry.component,
+        "step": entry.do_step,
+        "set_real": entry.set_real,
+        "get_real": entry.get_real,
+        "finite": entry.checked,
+    }
+
+
+def _part(part: Part) -> tuple[float, ...]:
+    means, slopes, last = map(_address, (part.means, part.slopes, part.last))
+    return part.bearing, part.body, means, slopes, len(part.slopes), last, len(part.last), part.step
+
+
+# -- recorded rows -------------------------------------------------------------------------------------
+
+
+def _add_columns(made: Tables, entries: Sequence[Entry], recorder: Recorder) -> None:
+    reads: list[tuple[int, ...]] = []
+    columns: list[tuple[int, int]] = []
+    by_name = {component.name: turn for turn, component in enumerate(made.components)}
+    for name, variables in recorder.recorded.items():
+        resting = recorder.resting(name)
+        if resting is not None:
+            columns += [(_address(resting) + 8 * i, REAL) for i in range(len(resting))]
+            made.kept.append(resting)
+            continue
+        turn = by_name[name]
+        entry, chosen = entries[turn], [made.components[turn].variable(v) for v in variables]
+        if isinstance(entry, InMemory):
+            words = _address(entry.words)
+            columns += [(words + 8 * v.reference, REAL if v.kind is Kind.REAL else LONG) for v in chosen]
+        else:
+            columns += _fetched(made, reads, turn, entry, chosen)
+    made.reads = np.array(reads, READ)
+    made.columns = np.array(columns, COLUMN)
+
+
+def _fetched(
+    made: Tables,
+    reads: list[tuple[int, ...]],
+    turn: int,
+    entry: ByFunctions,
+    chosen: Sequence[Variable],
+) -> list[tuple[int, int]]:
+    """Columns of values that are fetched by calls, which are added to `reads`."""
+    columns = [(0, 0)] * len(chosen)
+    for call, wanted, dtype, kind in (
+        (entry.get_real, (Kind.REAL,), "f8", REAL),
+        (entry.get_integer, WHOLE, "i4", INT),
+        (entry.get_boolean, (Kind.BOOLEAN,), "i4", TRUTH),
+    ):
+        at = [i for i, v in enumerate(chosen) if v.kind in wanted]
+        if at:
+            of, into = np.array([chosen[i].reference for i in at], np.uint32), np.zeros(len(at), dtype)
+            made.kept += [of, into]
+            reads.append((turn, call, entry.component, _address(of), len(at), _address(into)))
+            for k, i in enumerate(at):
+                columns[i] = (_address(into) + into.itemsize * k, kind)
+    return columns
+
+
+AT_ONCE: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
+"""Sequences that compiled code knows: whether all components take their inputs before any steps."""
+CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
+NO_ROWS = np.zeros((0, 0))
+PATIENCE = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
+MOST = BEAT  # macro steps of a stretch: a contact may make the next ones a hundred times slower
+
+
+class Stretches:
+    """Takes macro steps of a run, as many at once as nobody needs to see."""
+
+    def __init__(
+        self, steps: MacroSteps, judge: Judge, recorder: Recorder | None, observers: Sequence[Observer]
+    ) -> None:
+        self._steps, self._judge, self._recorder = steps, judge, recorder
+        self._observers = observers
+        self._every = steps.coupling.run.record_every if recorder is not None else 0
+        self._at_once = AT_ONCE.get(type(steps.coupling).step)
+        seen = any(type(o).due is Observer.due and not o.at_beats_only for o in observers)
+        self._able = self._at_once is not None and not seen and not steps.ledger.listens
+        self._signals: np.ndarray | None = None  # those that the tables are of
+        self._tables: Tables | None = None
+        self._helpers: Helpers | None = None
+        self._plan = np.zeros(1, PLAN)
+        self._longest = 1  # macro steps that a stretch may take
+
+    def take(self, now: Moment) -> None:
+        """Take macro steps, and move on to their end. Raises TouchdownError where they cannot be taken."""
+        found = self._found() if self._able and now.done > 0 else None
+        if found is None:
+            self._steps.take(now)
+            if self._able and now.done == 1:
+                self._get_ready(now)
+            return
+        began, done = clock.perf_counter(), now.done
+        self._stretch(found, now)
+        took = clock.perf_counter() - began
+        if took > 0.5 * PATIENCE:
+            self._longest = max(1, self._longest // 2)
+        elif now.done - done == self._longest:
+            self._longest = min(2 * self._longest, MOST)
+
+    def close(self) -> None:
+        """Send the helpers away."""
+        if self._helpers is not None:
+            self._helpers.close()
+            self._helpers = None
+
+    def _get_ready(self, now: Moment) -> None:
+        """Compile what stretches need with all that the first macro step compiles: by one of no length."""
+        found = self._found()
+        if found is not None:
+            self._planned(now, now.done)
+            self._run(found, NO_ROWS)
+
+    def _found(self) -> Tables | None:
+        """Tables of the system as it is laid out now."""
+        coupling = cast(GaussSeidel, self._steps.coupling)
+        if self._signals is not coupling.system.signals:
+            self.close()
+            self._signals = coupling.system.signals
+            self._tables = tables(coupling, bool(self._at_once), self._recorder)
+            self._steps.impacts.follow()
+            self._helpers = None if self._tables is None else helpers(self._tables.turns)
+        return self._tables
+
+    def _stretch(self, found: Tables, now: Moment) -> None:
+        steps, recorder = self._steps, self._recorder
+        steps.coupling.expect(steps.length / steps.parts)
+        rows = NO_ROWS if recorder is None else recorder.room
+        plan = self._planned(now, self._ends(now, len(rows)))
+        failed = self._run(found, rows)
+        steps.booked = int(plan["booked"])
+        steps.impacts.divided += int(plan["hit"])
+        now.move(int(plan["done"]), steps.length)
+        if recorder is not None and plan["row"]:
+            recorder.took(int(plan["row"]))
+        if failed:
+            self._refuse(found, plan)
+
+    def _run(self, found: Tables, rows: np.ndarray) -> bool:
+        steps, f = self._steps, found
+        seats, books = steps.impacts.seats, steps.ledger.books
+        given = self._plan, f.turns, f.parts, seats, books, f.signals, f.reads, f.columns, rows
+        if self._helpers is None:
+            return run(*given)
+        self._plan["board"] = self._helpers.call()
+        failed = run_beside(*given)
+        self._helpers.look()
+        return failed
+
+    def _refuse(self, found: Tables, plan: Any) -> None:
+        """Raise what the component that failed has to say."""
+        failed = int(plan["failed"])
+        turn, call = found.turns[failed], CALLS[int(plan["call"])]
+        found.components[failed].refuse(call, int(plan["status"]), float(turn["time"]), float(turn["span"]))
+        raise AssertionError(f"{found.components[failed].name} has nothing to say of {call}")
+
+    def _ends(self, now: Moment, rows: int) -> int:
+        """The macro step at which somebody in Python must look, or so many recorded rows are full."""
+        ends = [now.done + self._longest, *(observer.due(now) for observer in self._observers)]
+        if rows:
+            ends.append((now.done // self._every + rows + 1) * self._every)
+        return max(now.done + 1, min(ends))
+
+    def _planned(self, now: Moment, until: int) -> Any:
+        """The plan of a stretch from now to the end of macro step `until`."""
+        steps = self._steps
+        self._plan[0] = (
+            self._at_once, 0, now.start, steps.length, steps.parts, steps.impacts.parts, 0, now.done,
+            until, 0.0, steps.booked, steps.ledger.fall, self._judge.limit, self._every, 0, now.zero,
+            0, 0, 0,
+        )  # fmt: skip
+        return self._plan[0]

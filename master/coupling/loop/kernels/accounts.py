@@ -1,0 +1,104 @@
+"""The arithmetic of the energy ledger, on one record per connection."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import kernel
+
+# pyright: basic
+
+
+TRIFLE = 1e-4  # of the energy lost by falling; what turns over less is not judged by its own measure
+MINOR = 0.1  # of what all connections turn over; likewise
+
+BOOK = np.dtype(
+    [
+        ("every", "i8"),  # macro steps after which both sides have taken the same time
+        ("total", "f8"),  # sum of |r_n|, J
+        ("made", "f8"),  # minus the sum of r_n, J
+        ("turned", "f8"),  # sum of |mean force times displacement|, J
+        ("kinetic", "f8"),  # largest along the force, J; 0 where the body states no velocity
+        ("stating", "i8"),  # whether both sides state their work
+        ("statements", "i8", (3,)),  # places in the signals: by the bearing, its jumps, by the body
+        ("by_bearing", "f8"),  # J, as last stated
+        ("jumps", "f8"),
+        ("by_body", "f8"),
+        ("pending", "f8"),  # J, work difference of the last step, its jump not yet known
+        ("flowing", "i8"),  # whether motion and load are exchanged
+        ("flow", "i8", (6,)),  # places in the signals: x, y, fx, fy, vx, vy
+        ("mass", "f8"),  # kg, that moves with the port
+        ("x", "f8"),  # m, at the end of the last step; not a number before the first
+        ("y", "f8"),
+        ("vx", "f8"),  # m/s
+        ("vy", "f8"),
+    ]
+)
+
+
+@kernel
+def book(books: np.ndarray, signals: np.ndarray, done: int) -> None:
+    """Book a step that was just taken, the number `done` (from 1), in all `books`."""
+    for i in range(len(books)):
+        b = books[i]
+        if b.stating and done % b.every == 0:
+            _compare(b, signals)
+        if b.flowing:
+            _flow(b, signals)
+
+
+@kernel
+def _compare(b, signals):
+    """Compare what both sides of a connection have stated (J) up to the end of a step."""
+    at = b.statements
+    by_bearing, jumps, by_body = signals[at[0]], signals[at[1]], signals[at[2]]
+    residual = b.pending + (jumps - b.jumps)
+    b.total += abs(residual)
+    b.made -= residual
+    b.pending = (by_bearing - b.by_bearing) - (by_body - b.by_body)
+    b.by_bearing, b.jumps, b.by_body = by_bearing, jumps, by_body
+
+
+@kernel
+def _flow(b, signals):
+    """Add what a step to (x, y) (m) under the mean load (N), with the velocity at its end, turned over.
+
+    Kinetic energy counts along the force only: a journal that slides past a contact brings nothing of its
+    motion along into it.
+    """
+    at = b.flow
+    x, y, fx, fy, vx, vy = (
+        signals[at[0]], signals[at[1]], signals[at[2]], signals[at[3]], signals[at[4]], signals[at[5]]
+    )  # fmt: skip
+    squared = fx * fx + fy * fy
+    if squared > 0.0 and b.x == b.x:  # from the second step on
+        b.turned += abs(fx * (x - b.x) + fy * (y - b.y))
+        along = max(abs(fx * vx + fy * vy), abs(fx * b.vx + fy * b.vy))
+        kinetic = 0.5 * b.mass * along * along / squared
+        if kinetic > b.kinetic:
+            b.kinetic = kinetic
+    b.x, b.y, b.vx, b.vy = x, y, vx, vy
+
+
+@kernel
+def share_of(books, i, fall):
+    """The residual of connection i over what it turned over; 0 where nothing was. fall: J, or 0."""
+    turnover = 0.0
+    for k in range(len(books)):
+        turnover += books[k].turned + books[k].kinetic
+    over = max(books[i].turned + books[i].kinetic, MINOR * turnover) + TRIFLE * fall
+    return books[i].total / over if over != 0.0 else 0.0
+
+
+@kernel
+def worst_of(books: np.ndarray, fall: float) -> tuple[int, float]:
+    """The connection with the largest share of residual, and that share; -1 and 0 where there is none.
+
+    A share that is no number is the worst.
+    """
+    worst, largest = -1, 0.0
+    for i in range(len(books)):
+        share = share_of(books, i, fall)
+        if worst < 0 or share > largest or (share != share and largest == largest):
+            worst, largest = i, share
+    return worst, largest

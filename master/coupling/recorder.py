@@ -1,0 +1,244 @@
+"""The recorder: rows of a run, from its components into its file."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...fmus.version import VERSION
+from ...modelkit.variables import Causality
+from ..common.errors import TouchdownError, one_of
+from ..common.files import NO_ROOM, replacing
+from ..components.component import READABLE, REPORTED, Variable, reported
+from ..scene.run_spec import RunSpec
+from ..scene.scene import Scene
+from .connections import full
+from .recording_file import END, TIME, Column, Contents, Table
+from .system import System
+
+
+class Chosen(NamedTuple):
+    """Variables of a component."""
+
+    recorded: list[str]
+    at_end: list[str]  # kept of the end only
+
+
+def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
+    """By component. Raises TouchdownError for what `run` names and nothing is called."""
+    components = system.components
+    _refuse_taken(components)
+    every = [full(name, v) for name, component in components.items() for v in component.variables]
+    for key, beginnings in (("record", run.record), ("record_also", run.record_also)):
+        _refuse_unused(f"run.{key}", beginnings, every)
+    connected = {c.source_name for c in system.connections}
+    found: dict[str, Chosen] = {}
+    for name, component in components.items():
+        given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in READABLE]
+        chosen = [v.name for v in given if _chosen(full(name, v.name), v, run, connected)]
+        known = set(chosen)
+        found[name] = Chosen(chosen, [v.name for v in given if v.name not in known])
+    return found
+
+
+def _chosen(name: str, variable: Variable, run: RunSpec, connected: Collection[str]) -> bool:
+    """Whether COMPONENT.VARIABLE is recorded."""
+    if _begins(name, run.record_also):
+        return True
+    if "[" in name and not run.record_arrays:
+        return False
+    if run.record:
+        return _begins(name, run.record)
+    return variable.causality is Causality.OUTPUT or name in connected or reported(variable.name)
+
+
+def _begins(name: str, beginnings: Sequence[str]) -> bool:
+    """Whether COMPONENT.VARIABLE is one of those, or in the component or group of one."""
+    return any(f"{name}.".startswith(f"{b}.") for b in beginnings)
+
+
+def _refuse_unused(key: str, beginnings: Sequence[str], every: Sequence[str]) -> None:
+    for b in beginnings:
+        if not any(_begins(name, [b]) for name in every):
+            raise TouchdownError(f"{key}: there is nothing called {b}; {one_of(b, every)}")
+
+
+def _refuse_taken(components: Iterable[str]) -> None:
+    """Raise TouchdownError where a component's group would have a name that the file has already."""
+    for name in components:
+        if name in (TIME, END):
+            raise TouchdownError(f"a component cannot be called {name} and be recorded; rename it")
+
+
+HELD = 2**20  # numbers held before they are written, at most: 8 MiB
+LOSS = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
+SHARE = 0.05  # of the time that writing takes, at most: with very many columns more is lost instead
+
+
+class Recorder:
+    """Records what a scene asks for of a system, `most` rows at the most, into a file at `path`.
+
+    After begin() the file takes the place of one that was there; it may be read at any time. Raises
+    TouchdownError where it cannot be written, or where the scene names what is not there.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        scene: Scene,
+        system: System,
+        most: int,
+        begin: Callable[[], object] = lambda: None,
+    ) -> None:
+        self.path = path
+        self._components = system.components
+        self._chosen = choose(scene.run, system)
+        columns = [
+            Column(f"{name}/{v.name}", v.unit or "1", v.description)
+            for name, chosen in self._chosen.items()
+            for v in map(self._components[name].variable, chosen.recorded)
+        ]
+        keeping = [name for name, chosen in self._chosen.items() if chosen.at_end]
+        self._contents = Contents(_heading(scene), columns, keeping)
+        self._readers = {
+            name: self._components[name].reader(chosen.recorded) for name, chosen in self._chosen.items()
+        }
+        self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
+        width = 1 + len(columns)
+        self._block = np.zeros((max(1, HELD // width), width))
+        self._filled = 0
+        self._appended = self._written = -np.inf  # s of wall time: the last row, the last time on the disk
+        self._patience = LOSS
+        self._failed = False
+        begin()
+        try:
+            self._table = self._new(most)
+        except OSError as error:
+            raise TouchdownError(self._problem(error)) from None
+
+    def _new(self, most: int) -> Table:
+        """The file, whole and without rows, in its place."""
+        with replacing(self.path) as part:
+            table = Table.created(part, self._contents, most)
+            try:
+                table.commit()
+            except BaseException:
+                table.close()
+                raise
+        return table
+
+    def append(self, time: float) -> None:
+        """Record all variables at `time` (s). Raises TouchdownError where the file cannot grow."""
+        row = self._block[self._filled]
+        row[0] = time
+        column = 1
+        for name, fetch in self._readers.items():
+            values = self._resting[name] if name in self._resting else fetch()
+            row[column : column + len(values)] = values
+            column += len(values)
+        self.took(1)
+
+    @property
+    def room(self) -> np.ndarray:
+        """Rows to be filled next, at least one: the time (s), then what is recorded, by component."""
+        return self._block[self._filled :]
+
+    @property
+    def recorded(self) -> dict[str, list[str]]:
+        """Variables that are recorded, by component, in the order of the columns."""
+        return {name: chosen.recorded for name, chosen in self._chosen.items()}
+
+    def resting(self, name: str) -> np.ndarray | None:
+        """What is recorded of a component that changes no more; None while it does."""
+        return self._resting.get(name)
+
+    def took(self, count: int) -> None:
+        """As many rows of `room` were filled. Raises TouchdownError where the file cannot grow."""
+        self._filled += count
+        now = clock.monotonic()
+        next_one = now + (now - self._appended)  # when it is to be expected
+        self._appended = now
+        if self._filled == len(self._block) or next_one - self._written > self._patience:
+            self.flush()
+
+    def flush(self) -> None:
+        """Bring all rows to the disk now. Raises TouchdownError where the file cannot grow."""
+        if self._filled:
+            try:
+                self._write()
+            except OSError as error:
+                raise TouchdownError(self._problem(error)) from None
+
+    def rest(self, names: Iterable[str]) -> None:
+        """The values of these components change no more."""
+        for name in names:
+            self._resting[name] = np.array(self._readers[name]())
+
+    def _write(self) -> None:
+        """Bring the rows held to the disk. Where that raises OSError, as many as there is room for."""
+        count, self._filled = self._filled, 0
+        began = clock.thread_time()  # what it costs, not how long others keep it waiting
+        try:
+            self._table.append(self._block[:count])
+        except OSError:
+            self._failed = True
+            self._table.close()
+            self._squeeze(self._block[:count])
+            raise
+        self._patience = max(LOSS, (clock.thread_time() - began) / SHARE)
+        self._written = clock.monotonic()
+
+    def _squeeze(self, rows: np.ndarray) -> None:
+        """Bring as many of `rows` to the disk as there is room for."""
+        count = len(rows)
+        while count := count // 2:
+            with suppress(OSError):
+                table = Table.reopened(self.path, self._contents)
+                try:
+                    table.append(rows[:count])
+                    rows = rows[count:]
+                finally:
+                    table.close()
+
+    def _problem(self, error: OSError) -> str:
+        remedy = "make room for it" if error.errno in NO_ROOM else "choose another folder with -o"
+        return f"cannot write {self.path}: {error.strerror}; {remedy}"
+
+    def _keep_end(self) -> None:
+        for name in self._contents.keeping:
+            kept = self._chosen[name].at_end
+            with suppress(TouchdownError):  # one that failed may answer no more
+                values = map(float, self._components[name].read(kept))
+                self._table.keep(name, dict(zip(kept, values, strict=True)))
+
+    def close(self) -> str:
+        """Write what is left, and values of the end; returns what went wrong, or ""."""
+        if self._failed:
+            return ""
+        try:
+            if self._filled:
+                self._write()
+            try:
+                self._keep_end()
+                self._table.commit()
+            finally:
+                self._table.close()
+        except OSError as error:
+            return self._problem(error)
+        return ""
+
+
+def _heading(scene: Scene) -> dict[str, object]:
+    """What was run: attributes of the root."""
+    return {
+        "title": scene.title,
+        "scene": scene.name,
+        "version": VERSION,
+        "scheme": scene.run.scheme.name,
+        "macro_step_s": scene.run.macro_step,
+    }

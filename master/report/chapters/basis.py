@@ -1,0 +1,289 @@
+"""Chapters on what the figures rest on: model, accuracy, settings, how to repeat the run."""
+
+from __future__ import annotations
+
+import base64
+import json
+import platform
+import shlex
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
+from functools import partial
+from importlib import metadata
+from pathlib import Path
+
+from ....fmus.recipes import names, recipe
+from ....fmus.version import VERSION
+from ....modelkit.model import ModelError
+from ....modelkit.variables import Causality
+from ...common.errors import TouchdownError
+from ...common.units import spoken
+from ...components.component import Variable
+from ...results.figures.energy import energy
+from ...results.summary import energy_total
+from ...scene.file import SCENE_FILE, shipped
+from ...scene.run_spec import UNITS
+from ...scene.scene import ComponentSpec, Scene
+from ..blocks import Block, Code, Download, Folded, Heading, Lacking, Picture, Points, Table, Text
+from ..charts import inline
+from ..numbers import digits, quantity, share
+from ..subject import Origin, Subject, number, run_origin, setting_origin
+
+FOREIGN = "an FMU of another's; its own documentation says what is in it"
+ALWAYS_LEFT_OUT = (
+    "Axial motion and axial loads: all is in the radial planes of the bearings.",
+    "Temperature: friction's heat is counted in the energy ledger, but nothing warms up or expands.",
+    "Lubricant, wear and damage: the laws of friction and contact stay the same, drop after drop.",
+    "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
+    "an FMU of the scene states.",
+    "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs.",
+)
+LEFT_OUT = {  # model: what it has not
+    "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
+    "simplified_caged": (
+        "Balls and cage of {name} as bodies: they follow the ring, unless slip = 1; and what a ball's "
+        "inertia does across the race.",
+    ),
+    "simplified_cageless": ("Inertia and weight of the balls of {name} across the race.",),
+    "bushing": ("Anything that rolls in {name}: the bore is fixed in the housing.",),
+}
+SCHEME = "How the parts were coupled: {title}; macro step {step}."
+
+
+def model(subject: Subject) -> list[Block]:
+    """Of each part what it is, then what is in none."""
+    scene = subject.result.scene
+    about = " ".join(scene.about.split())
+    rows = [[name, spec.fmu, _about(subject, spec)] for name, spec in scene.components.items()]
+    blocks: list[Block] = [Text(about)] if about else []
+    run = scene.run
+    return [
+        *blocks,
+        Table("What each part is modelled as", ["Part", "Model", "What is in it"], rows),
+        Text(SCHEME.format(title=run.scheme.title, step=quantity(run.macro_step, "s"))),
+        Heading("Left out"),
+        Points(list(_left_out(subject))),
+    ]
+
+
+def _about(subject: Subject, spec: ComponentSpec) -> str:
+    """What a model says of itself."""
+    path = subject.result.scene.folder / spec.fmu
+    name = str(path) if spec.fmu.endswith(".toml") and path.is_file() else spec.fmu
+    if name not in names() and not name.endswith(".toml"):
+        return FOREIGN
+    try:
+        return recipe(name).model.about
+    except (LookupError, ModelError, OSError, TouchdownError):
+        return "a rotor's file that is not there any more, or not as it was"
+
+
+def _left_out(subject: Subject) -> Iterator[str]:
+    said: dict[str, list[str]] = {}
+    for name, spec in subject.result.scene.components.items():
+        for text in LEFT_OUT.get(spec.fmu, ()):
+            said.setdefault(text, []).append(name)
+    yield from (text.format(name=" and ".join(names)) for text, names in said.items())
+    yield from ALWAYS_LEFT_OUT
+
+
+FINE = 1e-3  # of the turnover: what the coupling makes or loses says nothing against the figures
+MADE_INSIDE = 0.02  # of the turnover, inside a bearing; beyond it the run has warned
+NAMES = {
+    "energy_turnover_J": ("Energy that crossed between the parts", "J"),
+    "energy_made_J": ("of it made by the coupling", "J"),
+    "energy_residual_of_turnover": ("Ledger's residual, worst connection", "share"),
+    "energy_made_of_turnover": ("Energy made, share of what crossed", "share"),
+    "energy_made_inside_of_turnover": ("Energy made inside a bearing, worst", "share"),
+    "energy_balance_relative": ("Sum of all energies, drift over m g c", "share"),
+    "macro_step_s": ("Macro step", "s"),
+    "macro_steps": ("Macro steps", "1"),
+    "wall_time_s": ("Wall time", "s"),
+}
+
+
+def accuracy(subject: Subject) -> list[Block]:
+    """Ledger, steps, energies."""
+    rows = []
+    for key, (name, unit) in NAMES.items():
+        value = number(subject.summary.get(key))
+        if value is not None:
+            rows.append([name, share(value) if unit == "share" else quantity(value, unit)])
+    worst = subject.summary.get("energy_residual_worst_connection")
+    if isinstance(worst, str):
+        rows.append(["Worst connection", worst])
+    rows.append(["Coupling scheme", str(subject.summary.get("scheme", ""))])
+    blocks: list[Block] = [
+        *_judged(subject),
+        Table("What the ledger and the steps say", ["Figure", "Value"], rows, 1),
+    ]
+    unaudited = subject.summary.get("not_audited")
+    if isinstance(unaudited, str):
+        blocks.append(Lacking("The account of", f"{unaudited}."))
+    return [*blocks, _energies(subject)]
+
+
+def _judged(subject: Subject) -> list[Block]:
+    made = number(subject.summary.get("energy_made_of_turnover"))
+    if made is None:
+        return [Lacking("A judgement by energy", "no energy crossed between parts that account for it.")]
+    verb = "made" if made > 0.0 else "lost"
+    said = f"The coupling {verb} {share(abs(made))} of the energy that crossed it"
+    worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
+    if worst > abs(made):
+        said += f", and at one connection {share(worst)} of what crossed there"
+    inside = number(subject.summary.get("energy_made_inside_of_turnover")) or 0.0
+    if inside > MADE_INSIDE:
+        said += f"; inside the worst bearing {share(inside)} of what was turned over was made or lost"
+    if max(abs(made), worst) <= FINE and inside <= MADE_INSIDE:
+        return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
+    return [
+        Text(
+            f"{said}: forces and times may be off by as much and more. A run with half the macro step "
+            "shows what hangs on it, and `touchdown compare` gives the error by macro step."
+        )
+    ]
+
+
+def _energies(subject: Subject) -> Block:
+    if energy_total(subject.run.system, subject.run.recording) is None:
+        return Lacking("Where the energy is", "not all parts state and record their energies.")
+    alt = "Energies of all parts over time, and their sum, which should stay"
+    svg = inline(partial(energy, run=subject.run), "energy", alt, wide=True)
+    return Picture(svg, "Where the energy is, and the balance of all: zero where nothing is lost or made.")
+
+
+HEAD = ["Setting", "Value", "Origin", "Meaning"]
+
+
+def settings(subject: Subject) -> list[Block]:
+    """Tables by part: what is not the default first, the defaults folded."""
+    blocks: list[Block] = [
+        Text(
+            "Values as they were in force. The origin is the last that had a say: the default of the "
+            "model, the catalogue of bearings, the scene, or what was set for this run "
+            "(--set, --swap, or from Python)."
+        ),
+        _run(subject),
+    ]
+    for name, component in subject.run.system.components.items():
+        blocks += _component(subject, name, component.variables)
+    return blocks
+
+
+def _run(subject: Subject) -> Table:
+    scene = subject.result.scene
+    rows = [
+        [f"run.{key}", _run_value(key, value), run_origin(scene, key).value]
+        for key, value in asdict(scene.run).items()
+    ]
+    return Table("How it was run", HEAD[:3], rows)
+
+
+def _run_value(key: str, value: object) -> str:
+    if isinstance(value, dict):  # the scheme
+        return str(value["name"])
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, (int, float)):
+        return quantity(float(value), UNITS.get(key, "1"), 6)
+    if isinstance(value, (tuple, list)):
+        return ", ".join(str(part) for part in value) or "–"
+    return str(value)
+
+
+def _component(subject: Subject, name: str, variables: Mapping[str, Variable]) -> Iterator[Block]:
+    rows: dict[bool, list[list[str]]] = {True: [], False: []}
+    for variable in variables.values():
+        if variable.causality is Causality.PARAMETER:
+            origin = setting_origin(subject.result.scene.components[name], variable.name)
+            value = subject.run.system.value(f"{name}.{variable.name}")
+            row = [f"{name}.{variable.name}", shown(variable, value), origin.value, variable.description]
+            rows[origin is Origin.DEFAULT].append(row)
+    spec = subject.result.scene.components[name]
+    made = f"{name}: {spec.fmu}" + (f", catalogue {spec.preset}" if spec.preset else "")
+    if rows[False]:
+        yield Table(made, HEAD, rows[False])
+    if rows[True]:
+        table = Table(f"{made}, defaults", HEAD, rows[True])
+        title = f"{made}: {len(rows[True])} settings at their defaults"
+        yield Folded(title, [table])
+
+
+def shown(variable: Variable, value: float) -> str:
+    """A setting's value with its unit."""
+    text = quantity(float(value), variable.unit or "1", 6)
+    turns, per = spoken(variable.name, value)
+    return f"{text} ({digits(turns, 6)} {per})" if variable.unit == "rad/s" and value else text
+
+
+LIBRARIES = ("numba", "numpy", "scipy", "fmpy", "matplotlib")
+
+
+def repeat(subject: Subject) -> list[Block]:
+    """Command, scene, versions."""
+    scene = subject.result.scene
+    blocks: list[Block] = []
+    command = command_of(scene)
+    if command is None:
+        blocks.append(
+            Lacking("The command with the scene's own file", "the scene was made in Python, or renamed.")
+        )
+    else:
+        blocks += [Text("From the scene's file, with what was set for this run:"), Code(command)]
+    text = json.dumps(scene.resolved(), indent=2, default=str) + "\n"
+    blocks += [
+        Text("Or from the scene as it was run, whatever becomes of that file:"),
+        Code(f"touchdown run {shlex.quote(f'{scene.name}.scene.json')} -o runs/again"),
+        Download(
+            f"{scene.name}.scene.json",
+            "The scene as it was run",
+            "application/json",
+            base64.b64encode(text.encode()).decode("ascii"),
+        ),
+        _versions(subject),
+    ]
+    return blocks
+
+
+def command_of(scene: Scene) -> str | None:
+    """The `touchdown run` that runs the scene again; None where it is of no file."""
+    name = _source(scene)
+    if name is None:
+        return None
+    words = ["touchdown", "run", name]
+    for component, spec in scene.components.items():
+        if spec.instead_of:
+            words += ["--swap", f"{component}={spec.fmu}"]
+    for key in scene.own:
+        words += ["--set", f"run.{key}={_value(scene.resolved()['run'], key)}"]
+    for component, spec in scene.components.items():
+        for key, value in (("every", spec.every), ("isolate", spec.isolate), ("native", spec.native)):
+            if value != getattr(ComponentSpec, key):  # said again where the scene's file says it, too
+                words += ["--set", f"{component}.{key}={str(value).lower()}"]
+        for variable, value in spec.set_beside.items():
+            words += ["--set", f"{component}.{variable}={value}"]
+    return shlex.join(words)
+
+
+def _value(run: object, key: str) -> object:
+    assert isinstance(run, dict)
+    value = run[key]
+    return ",".join(value) if isinstance(value, (tuple, list)) else value
+
+
+def _source(scene: Scene) -> str | None:
+    """What names the scene in a command."""
+    own = scene.folder / f"{scene.name}.toml"
+    if own.is_file():
+        return scene.name if own.resolve() == shipped().get(scene.name, Path()).resolve() else str(own)
+    is_machine = scene.folder.resolve().name == scene.name and (scene.folder / SCENE_FILE).is_file()
+    return str(scene.folder) if is_machine else None
+
+
+def _versions(subject: Subject) -> Table:
+    ran = str(subject.run.recording.about().get("version", "not recorded"))
+    rows = [["touchdown-cosim, of the run", ran], ["touchdown-cosim, of this report", VERSION]]
+    rows.append(["Python, of this report", platform.python_version()])
+    rows += [[f"{name}, of this report", metadata.version(name)] for name in LIBRARIES]
+    return Table("Versions", ["What", "Version"], rows)

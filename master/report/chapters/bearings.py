@@ -1,0 +1,218 @@
+"""Chapters on the rolling bearings: speeds, ball loads, static safety, drops until a limit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ....bearings import rating
+from ...coupling.connections import Attachment
+from ..blocks import Absent, Block, Lacking, Series, Table, Text
+from ..charts import series
+from ..numbers import RPM, digits, listed, quantity, share
+from ..series import Line
+from ..subject import COLOURS, Rated, Subject, rated
+
+RING, BALL = "ring.omega", "balls.force"
+CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
+GPA = 1e-9
+RUN_UP = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
+
+
+def run_up(subject: Subject) -> list[Block]:
+    """Speeds of rotor, inner rings and cages over time, in rpm."""
+    turning = _rolling(subject, RING, "ring that turns")
+    spin = turning[0].motion("omega")
+    lines = []
+    if spin in subject.run.recording:
+        lines.append(Line("rotor", "ink", RPM * subject.run.recording[spin]))
+    for k, a in enumerate(turning):
+        colour = COLOURS[k % len(COLOURS)]
+        lines.append(Line(f"inner ring {subject.name(a)}", colour, RPM * subject.values(a, RING)))
+    for k, a in enumerate(turning[:2]):
+        orbit = _orbit_speed(subject, a)
+        if orbit is not None:
+            lines.append(Line(f"balls' orbit {subject.name(a)}", ("green", "purple")[k], RPM * orbit))
+    chart = subject.chart("run-up", "Speeds of rotor, rings and balls", "speed [rpm]", lines)
+    rows = [_synchronous(subject, a) for a in turning]
+    return [
+        series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
+        Table("Run-up of the inner rings", RUN_UP, rows, 1),
+    ]
+
+
+def _orbit_speed(subject: Subject, a: Attachment) -> np.ndarray | None:
+    """Of the balls round the bearing (rad/s, with the rotor's sign)."""
+    pitch = subject.setting(a, "balls.pitch_diameter")
+    known = next((name for name in CAGE if subject.has(a, name)), None)
+    if known is None or not pitch:
+        return None
+    return subject.values(a, known) / (0.5 * pitch)
+
+
+def _synchronous(subject: Subject, a: Attachment) -> list[str]:
+    ring = subject.values(a, RING)
+    spin = a.motion("omega")
+    end = float(subject.run.recording[spin][-1]) if spin in subject.run.recording else 0.0
+    slip = float(ring[-1]) / end if end else None
+    sync = subject.figure("ring_sync_time_s", a)
+    said = "not in this run" if sync is None else quantity(sync, "s")
+    return [subject.name(a), said, f"{quantity(RPM * float(ring[-1]), '1')} rpm", share(slip, 3)]
+
+
+def balls(subject: Subject) -> list[Block]:
+    """Loads of the balls, pressure on the races."""
+    loaded = _rolling(subject, BALL, "ball")
+    if subject.first_contact is None:
+        raise Absent("nothing touched.")
+    lines = [
+        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, BALL))
+        for k, a in enumerate(loaded)
+    ]
+    chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
+    blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
+    told = {subject.name(a): rated(subject, a) for a in loaded}
+    found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
+    why = {seat: one for seat, one in told.items() if isinstance(one, str)}
+    if found:
+        blocks += [_pressure(subject, found), _pressures(found)]
+    blocks += [Lacking(f"Hertz pressure at {seat}", f"{reason}.") for seat, reason in why.items()]
+    return blocks
+
+
+def _pressure(subject: Subject, found: dict[str, Rated]) -> Series:
+    lines = [
+        Line(seat, COLOURS[k % len(COLOURS)], GPA * one.pressure(rating.INNER))
+        for k, (seat, one) in enumerate(found.items())
+    ]
+    title = "Hertz pressure on the inner race"
+    chart = subject.chart("pressure", title, "largest pressure [GPa]", lines)
+    return series(
+        chart,
+        "Largest pressure of the most loaded ball on the inner race, by Hertz from the ball's load and the "
+        "stated geometry. At 4.2 GPa ball and race keep a dent of a ten-thousandth of the ball's diameter "
+        "(ISO 76).",
+    )
+
+
+def _pressures(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.loads.peak, "N"),
+            quantity(one.peak_pressure(rating.INNER), "Pa", 3),
+            quantity(one.peak_pressure(rating.OUTER), "Pa", 3),
+            " by ".join(quantity(axis, "m", 3) for axis in one.half_axes),
+        ]
+        for seat, one in found.items()
+    ]
+    head = [
+        "Seat",
+        "Largest ball load",
+        "Pressure, inner race",
+        "outer race",
+        "Contact's half axes, inner race",
+    ]
+    return Table("Largest loads and pressures of the run", head, rows, 1)
+
+
+def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]:
+    """The seats whose bearings tell of a variable. Raises Absent where none does."""
+    found = [a for a in subject.need_seats() if subject.has(a, variable)]
+    if not found:
+        names = listed(
+            [f"{a.bearing} ({subject.result.scene.components[a.bearing].fmu})" for a in subject.seats]
+        )
+        raise Absent(f"{names} has no {what}, or it was not recorded.")
+    return found
+
+
+USUAL = 2.0  # s_0 that makers ask for under shocks
+MOST_DROPS = 1e6  # more are said to be more
+
+
+def life(subject: Subject) -> list[Block]:
+    """Static safety and fatigue."""
+    told = {subject.name(a): rated(subject, a) for a in subject.need_seats()}
+    found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
+    if not found:
+        raise Absent(f"{listed([str(why) for why in told.values()])}.")
+    if subject.first_contact is None:
+        raise Absent("nothing touched.")
+    return [
+        Text(
+            "Estimates: load ratings are of bearings that run long and lubricated. A touchdown bearing is "
+            "hit, skids while it is spun up, and is warmed by that, none of which is in them."
+        ),
+        _static(found),
+        _fatigue(found),
+        *_words(found),
+        *(Lacking(f"Ratings at {seat}", f"{why}.") for seat, why in told.items() if isinstance(why, str)),
+    ]
+
+
+def _static(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.capacity.static, "N", 3),
+            one.stated.static,
+            quantity(one.equivalent_load, "N", 3),
+            digits(one.static_safety, 3),
+            digits(one.pressure_safety, 3),
+        ]
+        for seat, one in found.items()
+    ]
+    head = [
+        *("Seat", "Static rating C₀", "C₀ from", "Equivalent load P₀", "s₀ = C₀/P₀"),
+        "Safety against 4.2 GPa",
+    ]
+    return Table("Static safety at the largest ball load of the run", head, rows, 1)
+
+
+def _fatigue(found: dict[str, Rated]) -> Table:
+    rows = [
+        [
+            seat,
+            quantity(one.capacity.dynamic, "N", 3),
+            one.stated.dynamic,
+            digits(one.turns, 3),
+            share(one.damage),
+            f"more than {MOST_DROPS:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
+            if one.drops > MOST_DROPS
+            else digits(one.drops, 2),
+        ]
+        for seat, one in found.items()
+    ]
+    head = ["Seat", "Dynamic rating C", "C from", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
+    return Table("Fatigue: such drops until one in ten bearings has failed", head, rows, 1)
+
+
+def _words(found: dict[str, Rated]) -> list[Block]:
+    said: list[Block] = []
+    dented = [seat for seat, one in found.items() if one.pressure_safety < 1.0]
+    if dented:
+        said.append(
+            Text(
+                f"At {listed(dented)} the races are pressed beyond 4.2 GPa: the first drop reaches the "
+                "limit, and dents them."
+            )
+        )
+    close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL]
+    if close:
+        said.append(
+            Text(f"At {listed(close)} the safety against dents is below {USUAL:g}, usual under shocks.")
+        )
+    if all(math.isinf(one.drops) or one.drops > MOST_DROPS for one in found.values()):
+        said.append(Text("Fatigue: this run takes less than a millionth of a life."))
+    said.append(
+        Text(
+            "Both count this run only; a rotor that still turns at its end goes on. P₀ is the radial load "
+            "that would press the most loaded ball as hard as the run's largest load did, by the share "
+            "that ISO 76 gives that ball. The life taken sums turns of the ring over the life at each "
+            "moment's recorded load (Palmgren and Miner)."
+        )
+    )
+    return said

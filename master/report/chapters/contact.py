@@ -1,0 +1,151 @@
+"""Chapters on contact forces, stresses and spectra."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+
+from ...coupling.connections import Attachment
+from ...results.figures.spectra import has_spectrum, spectrum
+from ...results.figures.stress import has_stress, stress
+from ...results.recording import NotRecordedError
+from ...results.spectra import BEGIN, LENGTH
+from ...results.stresses import stressed
+from ...results.summary import is_heard, relative_orbit
+from ..blocks import Absent, Block, Lacking, Picture, Table
+from ..charts import inline, series
+from ..drawings import SECTORS, Presses, contact_map
+from ..numbers import listed, quantity
+from ..series import Line
+from ..subject import COLOURS, Subject, number
+
+FORCE = "contact.force"
+SEEN = 1.02  # times the largest recorded value: a larger peak is worth a word
+
+
+def forces(subject: Subject) -> list[Block]:
+    """Contact force over time, and its map."""
+    recorded = [a for a in subject.need_seats() if subject.has(a, FORCE)]
+    if not recorded:
+        raise Absent("no contact force was recorded; see run.record.")
+    if subject.first_contact is None:
+        raise Absent("nothing touched.")
+    lines = [
+        Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, FORCE))
+        for k, a in enumerate(recorded)
+    ]
+    heard = [a.bearing for a in recorded if is_heard(subject.run.system, a)]
+    means = f" Forces of {', '.join(heard)} are heard from means over macro steps." if heard else ""
+    chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
+    blocks: list[Block] = [
+        series(
+            chart,
+            f"Normal force between journal and bore, recorded every {subject.interval}."
+            f"{_between(subject, recorded)}{means}",
+        )
+    ]
+    return [*blocks, *_map(subject)]
+
+
+def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
+    """Where a peak fell between recorded moments, that it did."""
+    missed = []
+    for a in recorded:
+        peak, seen = subject.figure("peak_contact_force_N", a), float(np.max(subject.values(a, FORCE)))
+        if peak is not None and peak > SEEN * seen:
+            missed.append(
+                f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
+            )
+    if not missed:
+        return ""
+    return (
+        f" The largest force of the run fell between recorded moments: {listed(missed)}; a smaller "
+        "run.record_every shows more of it."
+    )
+
+
+def _map(subject: Subject) -> list[Block]:
+    try:
+        bores = [_presses(subject, k) for k, a in enumerate(subject.seats) if subject.has(a, FORCE)]
+    except NotRecordedError as error:
+        return [Lacking("Where on the bore", f"{error}.")]
+    if not any((bore.force > 0.0).any() for bore in bores):
+        return [Lacking("Where on the bore", "no recorded moment has a contact; see run.record_every.")]
+    alt = "Maps of the place on the bore where the journal pressed, over time, coloured by the force"
+    return [
+        Picture(
+            inline(partial(contact_map, bores=bores), "contact-map", alt),
+            "Where the journal pressed on the bore, and when: the place as it stands in the housing, in "
+            f"{SECTORS} sectors, coloured by the largest force. A whirl is a slanting line, a pendulum "
+            "swings about the bottom.",
+        )
+    ]
+
+
+def _presses(subject: Subject, seat: int) -> Presses:
+    a = subject.seats[seat]
+    x, y = relative_orbit(subject.run.system, a, subject.run.recording)
+    title = f"{subject.name(a)} ({a.bearing})"
+    return Presses(title, subject.run.recording.time, np.arctan2(y, x), subject.values(a, FORCE))
+
+
+def stresses(subject: Subject) -> list[Block]:
+    """Bending and shear along the shaft and over time."""
+    system = subject.run.system
+    rotors = stressed(system)
+    if not rotors:
+        raise Absent("the rotor tells of none: it is rigid, or known by its matrices, without diameters.")
+    shown = [name for name in rotors if has_stress(system, name)]
+    if not shown:
+        raise Absent("the rotor kept no stress; set stress.active = 1 on it.")
+    blocks: list[Block] = []
+    for name in shown:
+        draw = partial(stress, run=subject.run, name=name)
+        alt = f"Bending and shear stress of {name} along its axis and over time"
+        caption = (
+            f"Stresses of {name}: along the axis both planes at the kept instant, in front of the largest "
+            "resultant of the whole run, and over time the largest anywhere. Nominal: no notch factors."
+        )
+        blocks.append(Picture(inline(draw, f"stress-{name}", alt, wide=True), caption))
+    rows = list(_peaks(subject, shown))
+    return [
+        Table("Largest stresses", ["Stress", "Value", "at node", "after the shutdown"], rows, 1),
+        *blocks,
+    ]
+
+
+def _peaks(subject: Subject, rotors: list[str]) -> Iterator[list[str]]:
+    for name in rotors:
+        tail = f"_{name}" if len(rotors) > 1 else ""
+        for kind in ("bending", "shear"):
+            value, node, time = (
+                number(subject.summary.get(f"peak_{kind}_stress{end}{tail}"))
+                for end in ("_MPa", "_node", "_time_s")
+            )
+            if value is not None:
+                at = quantity(node, "1", 3)
+                yield [
+                    f"{kind.capitalize()}, {name}",
+                    quantity(1e6 * value, "Pa", 3),
+                    at,
+                    quantity(time, "s"),
+                ]
+
+
+def spectra(subject: Subject) -> list[Block]:
+    """Of the inner rings' vibration after the landing."""
+    shown = [a for a in subject.need_seats() if has_spectrum(subject.run.recording, a)]
+    if not shown:
+        raise Absent(
+            f"a spectrum takes {LENGTH:.3g} s from {BEGIN:g} s after the shutdown on, of a bearing whose "
+            "ring is recorded; this run has not that."
+        )
+    return [_spectrum(subject, a) for a in shown]
+
+
+def _spectrum(subject: Subject, a: Attachment) -> Picture:
+    alt = f"Amplitude spectra of the inner ring's horizontal velocity at {subject.name(a)}"
+    svg = inline(partial(spectrum, run=subject.run, a=a), f"spectrum-{a.bearing}", alt, wide=True)
+    return Picture(svg, f"Horizontal velocity of the inner ring at {subject.name(a)}, window by window.")

@@ -1,1 +1,0 @@
-"""What chapters ask of a run, and how its numbers are shown."""

@@ -1,1 +1,0 @@
-"""Pictures that only a report has."""

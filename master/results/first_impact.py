@@ -1,0 +1,92 @@
+"""The first impact in a recording: what it did is repeatable; what comes after it may be chaotic.
+
+Where rings and balls rattle, later impacts amplify whatever differs, rounding too, so that the peaks of a
+whole drop are one draw of many. The first impact's hang on the state in which the journal arrives alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...modelkit.ports import PARTED
+from .ending import Readable
+from .recording import Recording
+from .stresses import KINDS, MPA, stressed
+
+FIRST_IMPACT = "first_impact_"  # begins the keys of its figures
+COARSE = 1e-3  # s; of rows farther apart, one may lie beyond the next impact
+
+
+@dataclass(frozen=True)
+class Reported:
+    """A figure that a bearing reports as a variable."""
+
+    key: str
+    variable: str
+    factor: float = 1.0
+
+
+def over_after(time: np.ndarray, force: np.ndarray, first: float) -> int | None:
+    """The row at which the first impact is over: the journal has parted for longer than a rattle.
+
+    time: s, force: contact force (N), each (rows,); first: the first contact (s). The last row where it
+    never parts; None where rows are too far apart to tell.
+    """
+    apart = float(np.median(np.diff(time))) if len(time) > 1 else np.inf
+    if apart > COARSE or first > time[-1]:
+        return None
+    free = PARTED + apart  # between two loaded rows
+    loaded = np.flatnonzero((force > 0.0) & (time >= first))
+    begin = min(int(np.searchsorted(time, first)), len(time) - 1)
+    if len(loaded) == 0 or time[loaded[0]] > first + free:
+        return begin  # it lies between two rows
+    gaps = np.flatnonzero(np.diff(time[loaded]) > free)
+    last = int(loaded[gaps[0]] if len(gaps) else loaded[-1])
+    return min(last + 1, len(time) - 1)
+
+
+def over_at(system: Readable, bearing: str, zero: float, recording: Recording) -> int | None:
+    """The row at which it is over in a bearing; None where there was none, or it cannot be told.
+
+    zero: the scene's, s on the simulation's clock.
+    """
+    name, touched = f"{bearing}.contact.force", system.value(f"{bearing}.contact.first_time")
+    if touched == -1.0 or name not in recording:
+        return None
+    return over_after(recording.time, recording[name], touched - zero)
+
+
+def latest(rows: Sequence[int | None]) -> int | None:
+    """The row at which it is over at all seats of `rows`; None where it cannot be told of one."""
+    known = [row for row in rows if row is not None]
+    return max(known) if known and len(known) == len(rows) else None
+
+
+def values_at(
+    row: int | None, system: Readable, bearing: str, figures: Iterable[Reported], recording: Recording
+) -> dict[str, object]:
+    """What a bearing reported at a row; None where there is no row, or it was not recorded."""
+    return {
+        figure.key: _value(recording, f"{bearing}.{figure.variable}", row, figure.factor)
+        for figure in figures
+        if figure.variable in system.components[bearing].variables
+    }
+
+
+def stresses_at(row: int | None, system: Readable, recording: Recording) -> dict[str, object]:
+    """The largest stresses in rotors up to a row (MPa)."""
+    names = stressed(system)
+    return {
+        f"{FIRST_IMPACT}{kind}_stress_MPa{f'_{name}' if len(names) > 1 else ''}": _value(
+            recording, f"{name}.stress.peak_{kind}", row, MPA
+        )
+        for name in names
+        for kind in KINDS
+    }
+
+
+def _value(recording: Recording, name: str, row: int | None, factor: float) -> float | None:
+    return None if row is None or name not in recording else factor * float(recording[name][row])

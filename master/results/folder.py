@@ -1,0 +1,234 @@
+"""The folder of a run's results, written and read back."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+from collections.abc import Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from ...modelkit.variables import Causality, Variability
+from ..common.errors import Ended, TouchdownError
+from ..common.files import partial, replace_text, writing_to
+from ..components.component import Kind, Variable
+from ..coupling.connections import Attachment, Connection
+from ..scene.file import SCENE_FILE, restored
+from ..scene.tables import is_scene_file
+from .ending import Ending, LastValues
+from .recording import Recording
+from .result import RECORDING, Result
+
+LOCK = ".touchdown.lock"
+SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
+ENDING = "ending.json"  # the components as they ended
+MADE_OF_IT = ("report.html", "report.pdf", "drop.gif", "drop.mp4")  # by other commands, as they name it
+RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
+
+
+class ResultsFolder:
+    """The folder at `path`, this run's alone."""
+
+    def __init__(self, path: Path, lock: int) -> None:
+        self.path = path
+        self._lock = lock
+
+    def begin(self, scene: Mapping[str, object]) -> None:
+        """Remove what an earlier run left, and write the scene as it is run. Raises OSError."""
+        for path in _left(self.path):
+            path.unlink(missing_ok=True)
+        replace_text(self.path / SCENE, json.dumps(scene, indent=2, default=str) + "\n")
+
+    def finish(self, summary: Mapping[str, object]) -> None:
+        """Write the summary, which says that all else is there. Raises OSError."""
+        os.ftruncate(self._lock, 0)
+        replace_text(self.path / SUMMARY, json.dumps(summary, indent=2) + "\n")
+
+
+@contextmanager
+def claimed(path: Path) -> Generator[ResultsFolder]:
+    """The folder at `path`, made where there is none, for one run.
+
+    Raises TouchdownError where it cannot be written, or another run that lives writes it; one that was
+    killed holds nothing.
+    """
+    with writing_to(path):
+        path.mkdir(parents=True, exist_ok=True)
+        lock = _locked(path / LOCK)
+    try:
+        with writing_to(path):
+            os.pwrite(lock, bytes(RESERVE), 0)
+        yield ResultsFolder(path, lock)
+    finally:
+        with suppress(OSError):
+            (path / LOCK).unlink()
+        os.close(lock)
+
+
+def _locked(path: Path) -> int:
+    """Descriptor of the file at `path`, locked. Raises OSError, or TouchdownError where it is already."""
+    while True:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with suppress(FileNotFoundError):  # removed meanwhile by the run that had it
+                if os.path.samestat(os.fstat(lock), os.stat(path)):
+                    return lock
+        except BlockingIOError:
+            os.close(lock)
+            raise TouchdownError(
+                f"another run is writing to {path.parent}; wait for it, or choose another folder with -o"
+            ) from None
+        except OSError:  # a file system without locks
+            return lock
+        os.close(lock)
+
+
+def _left(folder: Path) -> Iterator[Path]:
+    """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
+    made_of_it = MADE_OF_IT if (folder / ENDING).is_file() else ()  # else such pages are somebody's
+    pictures = list(_pictures(folder))
+    yield folder / SUMMARY
+    yield from pictures
+    yield from (folder / name for name in (TABLE, ENDING, *made_of_it))
+    recording = (folder / RECORDING).resolve()  # a link stays
+    yield recording
+    for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):
+        yield partial(path)
+
+
+def _pictures(folder: Path) -> Iterator[Path]:
+    """Those that an earlier run may have drawn of its scene; others' pictures are none of it."""
+    if not any(folder.glob("*.png")):
+        return
+    try:
+        components = list(json.loads((folder / SCENE).read_text(encoding="utf-8"))["components"])
+    except (OSError, ValueError, TypeError, KeyError):
+        return
+    from .figures.plot import NAMES  # matplotlib is slow to import
+
+    for name in NAMES:
+        yield from (folder / f"{name}{tail}.png" for tail in ("", *(f"-{c}" for c in components)))
+
+
+COLUMNS = (
+    *("name", "reference", "kind", "causality", "variability", "unit", "minimum", "maximum", "start"),
+    *("description", "element", "choices", "value"),
+)
+"""Of a variable, in the order of its row in the file; unit and value in SI."""
+
+
+def write_ending(folder: Path, ending: Ending, warnings: Iterable[str]) -> None:
+    """Write what `read_ending` reads. Raises OSError."""
+    values = {
+        "columns": COLUMNS,
+        "components": {name: _rows(component) for name, component in ending.components.items()},
+        "attachments": [list(vars(a).values()) for a in ending.attachments],
+        "connections": [list(vars(c).values()) for c in ending.connections],
+        "warnings": list(warnings),
+    }
+    replace_text(folder / ENDING, json.dumps(values, separators=(",", ":")) + "\n")
+
+
+def _rows(component: LastValues) -> list[list[object]]:
+    return [
+        [*(getattr(variable, column) for column in COLUMNS[:-1]), component.values[name]]
+        for name, variable in component.variables.items()
+    ]
+
+
+def read_ending(values: Mapping[str, Any]) -> tuple[Ending, list[str]]:
+    """The ending and the warnings in the file's `values`. Raises ValueError, KeyError or TypeError."""
+    return (
+        Ending(
+            {name: _last_values(rows) for name, rows in values["components"].items()},
+            tuple(Attachment(*parts) for parts in values["attachments"]),
+            tuple(_connection(*parts) for parts in values["connections"]),
+        ),
+        [str(warning) for warning in values["warnings"]],
+    )
+
+
+def _last_values(rows: Iterable[Iterable[Any]]) -> LastValues:
+    told = [_variable(*row) for row in rows]
+    return LastValues({v.name: v for v, _ in told}, {v.name: value for v, value in told})
+
+
+def _variable(
+    name: str, reference: int, kind: str, causality: str, variability: str, *others: Any
+) -> tuple[Variable, float]:
+    *about, value = others
+    kinds = Kind(kind), Causality(causality), Variability(variability)
+    return Variable(name, reference, *kinds, *about), value
+
+
+def _connection(*parts: Any) -> Connection:
+    source, output, target, given, scale = parts
+    return Connection(source, output, target, given, scale and (scale[0], scale[1]))
+
+
+def reopened(folder: Path) -> Result:
+    """What a run left in `folder`, as `run_scene` returned it, without its pictures.
+
+    Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
+    """
+    if os.path.isfile(folder):
+        if is_scene_file(folder) and not (folder.parent / SUMMARY).exists():
+            raise TouchdownError(
+                f"{folder} is a scene; `touchdown run {folder}` first, and give the folder it names"
+            )
+        raise TouchdownError(f"{folder} is a file; give the folder that it lies in, {folder.parent}")
+    if not os.path.isdir(folder):
+        raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
+    if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
+        raise TouchdownError(
+            f"{folder} is a machine's folder; `touchdown run {folder}` first, and give the folder it names"
+        )
+    runs = sorted(path.parent for path in folder.glob(f"*/{SUMMARY}"))
+    if runs and not (folder / SUMMARY).exists():
+        raise TouchdownError(
+            f"{folder} is no run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
+        )
+    summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
+    told = _values(folder, ENDING, "an earlier version left it; run the scene again")
+    scene = _values(folder, SCENE, "run the scene again")
+    if not (folder / RECORDING).is_file():
+        raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
+    try:
+        ending, warnings = read_ending(told)
+        ran = restored(scene)
+        if ran.components.keys() != ending.components.keys():
+            raise ValueError(f"{SCENE} has other components than {ENDING}")
+        return Result(
+            ran,
+            Recording(folder / RECORDING),
+            folder,
+            summary,
+            ending,
+            Ended(summary["ended"]),
+            summary.get("stopped_because", ""),
+            warnings,
+        )
+    except TouchdownError as error:
+        raise TouchdownError(f"{folder}: {error}") from None
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise TouchdownError(
+            f"{folder} is not as a run leaves it ({type(error).__name__}: {error}); run the scene again"
+        ) from None
+
+
+def _values(folder: Path, name: str, lacking: str) -> dict[str, Any]:
+    """Of a file of the folder; `lacking`: why there may be none. Raises TouchdownError."""
+    try:
+        values = json.loads((folder / name).read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise TouchdownError(f"{folder} has no {name}: {lacking}") from None
+    except OSError as error:
+        raise TouchdownError(f"cannot read {folder / name}: {error.strerror}") from None
+    except ValueError as error:
+        raise TouchdownError(f"{folder / name} is no JSON: {error}") from None
+    if not isinstance(values, dict):
+        raise TouchdownError(f"{folder / name} is not as a run leaves it; run the scene again")
+    return values

@@ -1,0 +1,297 @@
+"""Whether a motion grows or decays, when it has settled, and how it goes on.
+
+Whether a motion grows, stays or decays, told from its size in successive turns or periods.
+
+A straight line is fitted by least squares to the sizes. What counts is by how much it rises from the first
+to the last of them, over their mean, and how surely: with the interval of Student's t, which is wide where
+sizes are few or scatter.
+
+growing, decaying  the line rises, falls by more than TOLERANCE, and the interval leaves out zero
+steady             neither, and the interval stays within PLAIN of zero
+cannot tell        all else: fewer than LEAST sizes, or so scattered that it may be either
+
+When a journal has settled: when its motion is what it remains to the end of the recording.
+
+The recording is cut, back from its end, into periods of a pendulum, 2 pi sqrt(clearance / g). In each the
+motion has a size, half of how far the journal moves to and fro over the clearance, and a mean contact
+force. Swings of two seats beat: so a swing is looked at over BEAT periods, by the largest size and the
+mean force. It has settled where one of these holds at the end:
+
+at rest        for LEAST periods all sizes are below REST, and the journal does not whirl
+swings on      neither size nor force grows or decays (`trend`), told from the last half of the time in
+               contact, LEAST to MOST times BEAT periods
+whirls on      the whirl is steady turn by turn
+
+The last two are plateaus: it goes on like that until the rotor has slowed down, or for good. The settling
+time is the end of the last period whose size is not within BAND of the clearance, or whose force is not
+within FORCES, of their means over the periods that it was told from: known to a period, or to BEAT of them
+where it swings on. None where it has not settled.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from scipy.special import stdtrit
+
+from .whirl.contacts import FOLLOWED, GRAVITY, TURN, Orbit, wrapped
+from .whirl.verdict import Episode, Whirl, over, still
+
+LEAST = 4  # sizes; through fewer a line says nothing
+MAX_TURNS = 40  # turns, the last ones: what comes before them is past
+PART = 0.5  # of a whirl's turns, the last ones: it takes the first to come up
+TOLERANCE = 0.05  # of the mean, over all the sizes
+PLAIN = 0.25  # of the mean: wider, and it is anybody's guess
+CONFIDENCE = 0.95
+
+
+class Trend(StrEnum):
+    """How a motion goes on, as reports word it."""
+
+    GROWING = "growing"
+    STEADY = "steady"
+    DECAYING = "decaying"
+    UNTOLD = "cannot tell"
+
+
+def change(sizes: np.ndarray) -> tuple[float, float]:
+    """By how much a line through `sizes` (n,) rises over all of them, and half the width of its interval.
+
+    Both are over the mean of the sizes; the interval is infinite where there are less than three.
+    """
+    count, mean = len(sizes), float(np.mean(sizes))
+    if count < 3 or mean <= 0.0:
+        return 0.0, math.inf
+    place = np.arange(count) - 0.5 * (count - 1)
+    squares = float(np.sum(place**2))
+    slope = float(np.sum(place * sizes)) / squares
+    left = sizes - mean - slope * place
+    error = math.sqrt(float(np.sum(left**2)) / (count - 2) / squares)
+    reach = float(stdtrit(count - 2, 0.5 * (1.0 + CONFIDENCE))) * error
+    return slope * (count - 1) / mean, reach * (count - 1) / mean
+
+
+def trend(sizes: np.ndarray) -> Trend:
+    """Of sizes (n,), not below zero, in their order."""
+    if len(sizes) < LEAST:
+        return Trend.UNTOLD
+    if not np.any(sizes):
+        return Trend.STEADY
+    risen, reach = change(sizes)
+    if abs(risen) > max(TOLERANCE, reach):
+        return Trend.GROWING if risen > 0.0 else Trend.DECAYING
+    return Trend.STEADY if abs(risen) + reach <= PLAIN else Trend.UNTOLD
+
+
+def together(trends: Sequence[Trend]) -> Trend:
+    """Of a motion that is told from several sizes, such as amplitude and force: none may contradict."""
+    told = set(trends)
+    if not told or told >= {Trend.GROWING, Trend.DECAYING}:
+        return Trend.UNTOLD
+    for one in (Trend.GROWING, Trend.DECAYING, Trend.UNTOLD):
+        if one in told:
+            return one
+    return Trend.STEADY
+
+
+def turn_by_turn(
+    orbit: Orbit, force: np.ndarray | None, start: float, end: float
+) -> tuple[np.ndarray, ...]:
+    """Means over each of the last turns of a whirl from `start` to `end` (s): of its radius, of the force.
+
+    The radius is about the orbit's own middle, over the clearance; force: size of the contact force (N,
+    rows,), None where unknown. Turns are whole ones, counted back from the end, at most MOST and PART of
+    all. Without a turn where the recording is too coarse to count them.
+    """
+    part = (orbit.time >= start) & (orbit.time <= end) & np.isfinite(orbit.radius)
+    x, y = (
+        values[part] - 0.5 * (np.min(values[part], initial=np.inf) + np.max(values[part], initial=-np.inf))
+        for values in (orbit.x, orbit.y)
+    )
+    steps = wrapped(np.diff(np.arctan2(y, x)))
+    if len(steps) == 0 or np.max(np.abs(steps)) >= FOLLOWED:
+        return ()
+    left = np.abs(np.sum(steps) - np.concatenate([[0.0], np.cumsum(steps)])) / TURN
+    count = min(MAX_TURNS, max(LEAST, int(PART * left[0])), int(left[0]))
+    turn = np.minimum(left.astype(int), count)  # from the end; what lies before is the last, left out
+    shown = [np.hypot(x, y) / orbit.clearance] + ([] if force is None else [force[part]])
+    return tuple(_means(values, turn, count) for values in shown)
+
+
+def _means(values: np.ndarray, turn: np.ndarray, count: int) -> np.ndarray:
+    """Mean over each of the first `count` turns from the end, in the order of time."""
+    rows = np.bincount(turn, minlength=count + 1)[:count]
+    sums = np.bincount(turn, np.nan_to_num(values), count + 1)[:count]
+    return (sums / np.maximum(rows, 1))[::-1]
+
+
+BEAT = 4  # periods; two modes of a pendulum on two seats are 20 to 40 % apart
+MAX_BEATS = 8  # times BEAT periods
+REST = 0.087  # of the clearance: a swing of 5 degrees to either side, half of what makes a pendulum
+BAND = 0.1  # of the clearance
+FORCES = 0.25  # of the mean force
+
+
+@dataclass(frozen=True)
+class Settling:
+    """How a seat ends up."""
+
+    time: float | None  # s from the zero; None: it has not settled
+    trend: Trend  # of the motion at the end
+    whirls: bool  # at the end
+    rests: bool = False
+
+    @property
+    def words(self) -> str:
+        """For a report."""
+        what = "whirls" if self.whirls else "swings"
+        if self.time is not None:
+            return f"settled at {self.time:.3g} s: {'at rest' if self.rests else f'{what} on steadily'}"
+        doing = {
+            Trend.GROWING: f"{what}, growing",
+            Trend.DECAYING: f"{what}, decaying",
+            Trend.STEADY: f"{what} steadily, for too short a time",
+            Trend.UNTOLD: f"{what}; whether that grows or decays cannot be told",
+        }
+        return f"not settled: {doing[self.trend]}"
+
+
+def period(clearance: float) -> float:
+    """Of a pendulum's small swings in a bore (s); clearance: m, on radius."""
+    return TURN * math.sqrt(clearance / GRAVITY)
+
+
+def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl: Trend | None) -> Settling:
+    """How the motion ends up since `first_contact` (s).
+
+    force: size of the contact force (N, rows,), None where unknown. whirl: trend of the whirl that goes on
+    at the end, None where none does.
+    """
+    end, length = float(orbit.time[-1]), period(orbit.clearance)
+    count = max(0, int((end - first_contact) / length))
+    sizes, forces = _periods(orbit, force, count)
+    rests = whirl is None and count >= LEAST and bool(np.all(sizes[-LEAST:] <= REST))
+    if whirl is None and not rests:
+        sizes, forces = _over_beats(sizes, np.max), _over_beats(forces, np.mean)
+        whole = min(MAX_BEATS, max(LEAST, int(PART * count / BEAT)), count // BEAT)
+        told = [trend(values[::-BEAT][:whole][::-1]) for values in (sizes, forces)]
+        now, recent = together(told[: 1 if force is None else 2]), whole * BEAT
+    else:
+        now, recent = whirl or Trend.STEADY, LEAST
+    if count < LEAST or now is not Trend.STEADY:
+        return Settling(None, now, whirl is not None)
+    off = _off(sizes, recent, BAND)
+    if not rests and force is not None:
+        off |= _off(forces, recent, FORCES * float(np.mean(forces[-recent:])))
+    left = np.flatnonzero(off)
+    alike = count - 1 - int(left[-1]) if len(left) else count
+    if alike < LEAST:
+        return Settling(None, now, whirl is not None)
+    since = first_contact if alike == count else end - length * alike
+    return Settling(since, now, whirl is not None, rests)
+
+
+def _periods(orbit: Orbit, force: np.ndarray | None, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Sizes (over the clearance) and mean forces (N, 0 where unknown) of the last `count` periods."""
+    edges = float(orbit.time[-1]) - period(orbit.clearance) * np.arange(count, -1, -1)
+    begins = np.searchsorted(orbit.time, edges)
+    begins[-1] = len(orbit.time)
+    sizes, forces = np.zeros(count), np.zeros(count)
+    for k in range(count):
+        rows = slice(begins[k], max(begins[k + 1], begins[k] + 1))
+        ways = [float(np.ptp(values[rows])) for values in (orbit.x, orbit.y)]
+        sizes[k] = 0.5 * max(ways) / orbit.clearance
+        forces[k] = 0.0 if force is None else float(np.mean(np.nan_to_num(force[rows])))
+    return sizes, forces
+
+
+def _over_beats(values: np.ndarray, of: Callable[[np.ndarray], float]) -> np.ndarray:
+    """Of each period and those before it, BEAT in all."""
+    return np.array([of(values[max(0, k + 1 - BEAT) : k + 1]) for k in range(len(values))])
+
+
+def _off(values: np.ndarray, recent: int, band: float) -> np.ndarray:
+    """Which are farther than `band` from the mean of the last `recent` ones."""
+    return np.abs(values - np.mean(values[-recent:])) > band
+
+
+HOW = {one: one.value for one in Trend} | {Trend.UNTOLD: "whether it grows or decays cannot be told"}
+LONGER, MAX_LONGER = 2.0, 4.0  # times the run, to be proposed where nothing says for how long; at most
+MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to die out, too
+
+
+@dataclass(frozen=True)
+class Course:
+    """Of one seat."""
+
+    whirl: Whirl
+    trend: Trend | None  # of the whirl that goes on at the end; None where none does
+    settling: Settling | None  # None: it was not touched
+    end: float  # s, of the recording
+    left: float | None = None  # s, until a whirl that decays has died out, if its force falls as it does
+
+    @property
+    def words(self) -> str:
+        """The verdict with its time, for a report."""
+        episode = self.whirl.decisive
+        if episode is None:
+            return self.whirl.words
+        if not episode.goes_on:
+            return over(episode.verdict, episode.start, episode.end)
+        return still(episode.verdict, self.end, HOW[self.trend or Trend.UNTOLD])
+
+    @property
+    def duration(self) -> float | None:
+        """To be proposed for a run (s, to the end it should have): None where it has settled."""
+        if self.settling is None or self.settling.time is not None or self.end <= 0.0:
+            return None
+        wanted = LONGER * self.end if self.left is None else MARGIN * (self.end + self.left)
+        return _rounded_up(min(max(wanted, MARGIN * self.end), MAX_LONGER * self.end))
+
+
+def course(
+    orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None, whirl: Whirl, first_contact: float | None
+) -> Course:
+    """Of a seat, from its recorded path, the force on its journal (N, x and y) and its verdict.
+
+    first_contact: s, None where there was none.
+    """
+    size = None if force is None else np.hypot(*force)
+    decisive = whirl.decisive
+    now, left = (
+        (None, None) if decisive is None or not decisive.goes_on else _goes_on(orbit, size, decisive)
+    )
+    settled = None if first_contact is None else settling(orbit, size, first_contact, now)
+    return Course(whirl, now, settled, float(orbit.time[-1]), left)
+
+
+def _goes_on(orbit: Orbit, force: np.ndarray | None, episode: Episode) -> tuple[Trend, float | None]:
+    """How a whirl goes on, and how long it has left (s) where it decays."""
+    turns = turn_by_turn(orbit, force, episode.start, episode.end)
+    now = together([trend(sizes) for sizes in turns])
+    if now is not Trend.DECAYING:
+        return now, None
+    fallen = max(-change(sizes)[0] for sizes in turns)
+    return now, len(turns[0]) / episode.frequency * (1.0 / max(fallen, TOLERANCE) - 0.5)
+
+
+def proposed(courses: Sequence[Course]) -> float | None:
+    """How long a run should be (s) so that all its seats settle; None where they have."""
+    return max((d for one in courses if (d := one.duration) is not None), default=None)
+
+
+def settled_at(courses: Sequence[Course]) -> float | None:
+    """When all have settled (s from the zero); None where one has not."""
+    times = [one.settling.time if one.settling else None for one in courses]
+    known = [time for time in times if time is not None]
+    return max(known) if known and len(known) == len(times) else None
+
+
+def _rounded_up(seconds: float) -> float:
+    """To two digits."""
+    unit = 10.0 ** (math.floor(math.log10(seconds)) - 1)
+    return float(f"{math.ceil(seconds / unit - 1e-9) * unit:.2g}")

@@ -1,0 +1,1 @@
+"""Comparisons of many runs: coupling schemes, models, numbers of modes, and stability in hard cases."""

@@ -1,0 +1,400 @@
+"""What a scene does not need: error and time of variants against the scene as it is.
+
+What a scene does not need: error and time of each variant against the scene as it is.
+
+Errors are found in process, wall time through FMUs unless asked otherwise, with recording as in a run.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ...common.errors import TouchdownError
+from ...coupling.loop.span import brief
+from ...coupling.simulation import Outcome, opened, refuse_endless, simulate
+from ...coupling.system import System
+from ...results.summary import seat_name, touchdown_seats
+from ...scene.scene import ComponentSpec, Scene
+from ..drop.first_impact import LEAST, Peaks, Stop, Trace, run_watched
+from ..drop.measured import finest_inside
+from .modes import BASIS, RIGID
+
+MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
+OTHER = {
+    "detailed_caged": ("simplified_caged", "simplified bearings"),
+    "detailed_cageless": ("simplified_cageless", "simplified bearings"),
+    "simplified_caged": ("detailed_caged", "detailed bearings"),
+    "simplified_cageless": ("detailed_cageless", "detailed bearings"),
+}
+PLAIN = "bushing"
+COULOMB = 0  # of friction.kind
+STEPPING = ("interface.", "micro_step")
+LOOSER = 100.0  # times the tolerance inside a bearing
+OFFSETS = ("x0", "y0")  # of a housing out of line
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A scene that differs in one thing."""
+
+    title: str
+    scene: Scene
+    recorded: bool = True
+
+
+def variants(scene: Scene) -> list[Variant]:
+    """All that apply, the coupling first."""
+    with opened(scene, in_process=True) as system:
+        seats = dict.fromkeys(a.bearing for a in touchdown_seats(system))
+        return [
+            *_coupling(scene, system),
+            *_rotors(scene, system),
+            *_bearings(scene, system, list(seats)),
+            *_friction(scene, system, list(seats)),
+            *_inner_steps(scene, system, list(seats)),
+            *_housings(scene, system),
+            Variant("nothing recorded", scene, recorded=False),
+        ]
+
+
+def _coupling(scene: Scene, system: System) -> Iterator[Variant]:
+    """How much of every difference is the coupling's: half the macro step tells."""
+    step = scene.run.macro_step
+    for factor in (0.5, 2.0):
+        run = scene.set({"run.macro_step": factor * step})
+        yield Variant(f"macro step of {1e6 * factor * step:g} us", run)
+    if scene.run.scheme.modes and _flexible(system):
+        run = scene.set({"run.scheme": "point-mass"})
+        yield Variant("rotor's modes not carried (point-mass)", run)
+
+
+def _flexible(system: System) -> list[str]:
+    return [n for n, c in system.components.items() if all(v in c.variables for v in BASIS)]
+
+
+def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
+    rotors = _flexible(system)
+    if not rotors:
+        return
+    modes = {system.value(f"{name}.modes") for name in rotors}
+    yield Variant("rigid rotor", _all(scene, rotors, {"modes": RIGID, "residual": 0}))
+    for count in MODES:
+        if modes != {count}:
+            yield Variant(f"{count} modes", _all(scene, rotors, {"modes": count}))
+    if any(system.value(f"{name}.residual") for name in rotors):
+        yield Variant("no residual flexibility", _all(scene, rotors, {"residual": 0}))
+    else:
+        yield Variant("with residual flexibility", _all(scene, rotors, {"residual": 1}))
+    if any(system.value(f"{name}.stress.active") for name in rotors):
+        yield Variant("no stresses", _all(scene, rotors, {"stress.active": 0}))
+
+
+def _all(scene: Scene, names: Sequence[str], values: Mapping[str, object]) -> Scene:
+    return scene.set({f"{name}.{key}": value for name in names for key, value in values.items()})
+
+
+def _bearings(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
+    known = {name: OTHER[fmu] for name in seats if (fmu := scene.components[name].fmu) in OTHER}
+    if known:
+        title = " and ".join(dict.fromkeys(title for _, title in known.values()))
+        yield Variant(title, _swapped(scene, system, {name: fmu for name, (fmu, _) in known.items()}))
+        yield Variant("plain bushings", _swapped(scene, system, dict.fromkeys(known, PLAIN)))
+
+
+def _swapped(scene: Scene, system: System, fmus: Mapping[str, str]) -> Scene:
+    """With all parameters of the present ones that the others have too, but for those of their steps."""
+    components = dict(scene.components)
+    for name, fmu in fmus.items():
+        variables = system.components[name].variables.values()
+        parameters = [v.name for v in variables if v.causality == "parameter" and v.settable]
+        values = {v: system.value(f"{name}.{v}") for v in parameters if not v.startswith(STEPPING)}
+        components[name] = ComponentSpec(fmu, preset=components[name].preset, inherited=values)
+    return replace(scene, components=components)
+
+
+def _friction(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
+    """Other laws between journal and ring, with the scene's coefficients."""
+    has = [name for name in seats if "friction.kind" in system.components[name].variables]
+    if not has:
+        return
+    kind = system.components[has[0]].variable("friction.kind")
+    present = {system.value(f"{name}.friction.kind") for name in has}
+    for value in range(int(kind.minimum or 0), int(kind.maximum or 0) + 1):
+        if present != {value}:
+            yield Variant(f"friction: {kind.told(value)}", _with_law(scene, system, has, value))
+
+
+def _with_law(scene: Scene, system: System, seats: Sequence[str], kind: int) -> Scene:
+    """Scene with that friction law; Coulomb's has one coefficient only, the dynamic one."""
+    for name in seats:
+        changes: dict[str, object] = {f"{name}.friction.kind": kind}
+        if kind == COULOMB:
+            changes[f"{name}.friction.static"] = system.value(f"{name}.friction.dynamic")
+        scene = scene.set(changes)
+    return scene
+
+
+def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
+    """Longer steps inside bearings of fixed ones, a looser tolerance in those that adapt theirs; and the
+    finest in all, which tell how far the scene's own are off.
+    """
+    fixed = [n for n in seats if "micro_step" in system.components[n].variables]
+    fixed = [n for n in fixed if system.value(f"{n}.micro_step") > 0.0]
+    if fixed:
+        values = {f"{name}.micro_step": 2.0 * system.value(f"{name}.micro_step") for name in fixed}
+        yield Variant("steps inside bearings twice as long", scene.set(values))
+    variable = "interface.tolerance"
+    rest = [n for n in seats if n not in fixed and variable in system.components[n].variables]
+    if rest:
+        values = {f"{name}.{variable}": LOOSER * system.value(f"{name}.{variable}") for name in rest}
+        title = f"tolerance inside bearings {LOOSER:g} times as large"
+        yield Variant(title, scene.set(values))
+    if fixed or rest:
+        yield Variant("fine adaptive steps inside bearings", scene.set(finest_inside(system)))
+
+
+def _housings(scene: Scene, system: System) -> Iterator[Variant]:
+    """Outer rings that stand in the ground, where no housing is out of line."""
+    seats = touchdown_seats(system)
+    bearings = {a.bearing for a in seats}
+    mounts = [a for a in system.attachments if a.bearing in bearings and a not in seats]
+    names = {a.body for a in mounts} - {a.body for a in seats}
+    offsets = [f"{n}.{v}" for n in names for v in OFFSETS if v in system.components[n].variables]
+    if not names or any(system.value(offset) for offset in offsets) or names & tied(scene):
+        return
+    yield Variant(
+        "housings that stand still",
+        replace(
+            scene,
+            components={n: c for n, c in scene.components.items() if n not in names},
+            attach=tuple(pair for pair in scene.attach if pair[1].partition(".")[0] not in names),
+        ),
+    )
+
+
+def tied(scene: Scene) -> set[str]:
+    """Components that others hang on by sensors, single connections or bonds, beside bearings' ports."""
+    wires = (*scene.connect, *(wire for bond in scene.bond for wire in bond.wires))
+    pairs = (*scene.sense, *((wire.source, wire.target) for wire in wires))
+    return {end.partition(".")[0] for pair in pairs for end in pair}
+
+
+LONGEST = 20e-3  # s after the first contact
+CLEAR = 5.0  # %: what costs less may be left out
+FASTER = 0.95  # of the time: what is left out for less is no gain
+
+
+@dataclass(frozen=True)
+class Drop:
+    """One variant's first impacts, by seat."""
+
+    first: float  # s from zero, the first contact
+    ends: Mapping[str, float]  # s from zero, of the first impact
+    peaks: Mapping[str, Peaks]  # in it
+    traces: Mapping[str, Trace]
+
+    def orbit(self) -> float:
+        """Farthest any journal gets from where it floated, up to the end (m)."""
+        return max(
+            float(np.max(np.hypot(t.x - t.x[0], t.y - t.y[0])[t.time >= self.first]))
+            for t in self.traces.values()
+        )
+
+
+@dataclass(frozen=True)
+class Price:
+    """What a variant changes."""
+
+    first: float  # s, of the first contact
+    force: float  # relative, of the peak force on the journal, averaged; the worst seat, with its sign
+    contact: float  # relative, of the momentary contact force; the worst seat, with its sign
+    position: float  # m, distance of the worst journal at the end of the scene's first impact there
+    orbit: float  # relative, of the largest orbit
+    radius: float  # m, the scene's largest orbit
+    ball: float | None  # relative, of the peak force on the worst ball; None: no balls on one side
+    side: float | None  # relative, of the peak force between a ball and the cage or its neighbour
+
+    @property
+    def percent(self) -> float:
+        """The largest change of the journal's forces, position over orbit, and orbit."""
+        parts = (self.force, self.contact, self.position / self.radius, self.orbit)
+        return 100.0 * max(abs(part) for part in parts)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A variant; without a price where it failed."""
+
+    title: str
+    price: Price | None = None
+    wall: float | None = None  # s per simulated s
+    ratio: float | None = None  # of wall time to the scene's, of runs one after the other
+    failed: str = ""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows against the scene as it is."""
+
+    scene: Scene
+    end: float  # s from zero
+    drop: Drop
+    wall: float  # s per simulated s
+    repeat: int
+    in_process: bool
+    rows: Sequence[Row]
+
+    def dispensable(self) -> list[Row]:
+        """What makes the scene faster for a price below CLEAR, the fastest first."""
+        good = [
+            r for r in self.rows if r.price and r.price.percent < CLEAR and r.ratio and r.ratio < FASTER
+        ]
+        return sorted(good, key=lambda row: row.ratio or math.inf)
+
+
+def compare_models(
+    scene: Scene,
+    chosen: Sequence[Variant],
+    duration: float | None = None,
+    repeat: int = 3,
+    in_process: bool = False,
+    begin: Callable[[str], object] = lambda what: None,
+) -> Comparison:
+    """Run `scene` and its variants `duration` (s) from the first contact, LONGEST without one.
+
+    begin(what) is called before the scene and before each variant. Raises TouchdownError where the scene
+    itself does not land or stops; a variant says so in its row.
+    """
+    refuse_endless(duration or LONGEST, scene.run.macro_step)
+    scene = _unjudged(scene)
+    begin("the scene as it is")
+    exact, outcome = _dropped(scene, Stop(LONGEST if duration is None else duration, early=False))
+    as_long = {"run.duration": outcome.duration}
+    stopwatch = _Stopwatch(scene.set(as_long), repeat, in_process)
+    rows = []
+    for variant in chosen:
+        begin(variant.title)
+        run = _unjudged(variant.scene).set(as_long)
+        rows.append(_row(replace(variant, scene=run), exact, stopwatch))
+    end = outcome.end - outcome.zero
+    return Comparison(scene, end, exact, stopwatch.own(), repeat, in_process, rows)
+
+
+def _unjudged(scene: Scene) -> Scene:
+    """Without the ledger's thresholds, and without what they are measured by: other FMUs may lack it."""
+    return replace(scene, energy_scale=())
+
+
+def _row(variant: Variant, exact: Drop, stopwatch: _Stopwatch) -> Row:
+    try:
+        drop, _ = _dropped(variant.scene)
+        return Row(variant.title, _price(drop, exact), *stopwatch.time(variant))
+    except TouchdownError as error:
+        return Row(variant.title, failed=str(error))
+
+
+def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
+    """The drop, and how its run ended."""
+    with opened(scene, in_process=True) as system:
+        seats = touchdown_seats(system)
+        if not seats:
+            raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
+        outcome, traces = run_watched(scene, system, seats, stop)
+        touched = {seat_name(a, seats): system.value(f"{a.bearing}.contact.first_time") for a in seats}
+    impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
+    if not impacts:
+        raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
+    ends = {seat: end for seat, (_, end) in impacts.items()}
+    peaks = {seat: traces[seat].peaks(end) for seat, end in ends.items()}
+    first = min(touched[seat] for seat in impacts) - outcome.zero
+    return Drop(first, ends, peaks, traces), outcome
+
+
+def _price(drop: Drop, exact: Drop) -> Price:
+    """`drop` against `exact`; a seat that only one of them touches is not compared."""
+    both = [seat for seat in exact.ends if seat in drop.ends]
+    if not both:
+        raise TouchdownError("it touches down at other seats")
+    force, contact = (
+        max((getattr(drop.peaks[s], kind) / getattr(exact.peaks[s], kind) - 1.0 for s in both), key=abs)
+        for kind in ("force", "contact")
+    )
+    places = [
+        np.subtract(_place(drop.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
+        for s in both
+    ]
+    radius = exact.orbit()
+    return Price(
+        first=drop.first - exact.first,
+        force=force,
+        contact=contact,
+        position=float(max(np.hypot(*place) for place in places)),
+        orbit=drop.orbit() / radius - 1.0,
+        radius=radius,
+        ball=_change_inside(drop, exact, both, "ball"),
+        side=_change_inside(drop, exact, both, "side"),
+    )
+
+
+def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> float | None:
+    """Relative, of a peak force inside by the end of the scene's first impact; the worst of `seats`.
+
+    None where none of them has that part in both, or it is but grazed.
+    """
+    changes = []
+    for seat in seats:
+        end = exact.ends[seat]
+        before = exact.traces[seat].momentary_until(end).get(part, 0.0)
+        after = drop.traces[seat].momentary_until(end).get(part)
+        if after is not None and before >= LEAST:
+            changes.append(after / before - 1.0)
+    return max(changes, key=abs, default=None)
+
+
+def _place(trace: Trace, time: float) -> tuple[float, float]:
+    return float(np.interp(time, trace.time, trace.x)), float(np.interp(time, trace.time, trace.y))
+
+
+class _Stopwatch:
+    """Times variants against the scene as it is, one after the other: a busy machine slows both."""
+
+    def __init__(self, scene: Scene, repeat: int, in_process: bool) -> None:
+        self._scene, self._repeat, self._in_process = Variant("", scene), repeat, in_process
+        self._spent: list[float] = []
+        self._warm_up(self._scene)
+
+    def time(self, variant: Variant) -> tuple[float, float]:
+        """Wall time per simulated second, and its ratio to the scene's own; medians."""
+        self._warm_up(variant)
+        own, others = [], []
+        for _ in range(self._repeat):
+            own.append(self._once(self._scene))
+            others.append(self._once(variant))
+        self._spent += own
+        ratios = [other / mine for other, mine in zip(others, own, strict=True)]
+        return statistics.median(others), statistics.median(ratios)
+
+    def own(self) -> float:
+        """Wall time per simulated second of the scene as it is: the median of all its runs."""
+        return statistics.median(self._spent or [self._once(self._scene)])
+
+    def _warm_up(self, variant: Variant) -> None:
+        """Compile what is to be timed."""
+        self._once(variant, 2)
+
+    def _once(self, variant: Variant, steps: int | None = None) -> float:
+        """Wall time per simulated second, of the whole run or of its first macro steps."""
+        scene = variant.scene
+        with tempfile.TemporaryDirectory() as folder, opened(scene, self._in_process) as system:
+            record_to = Path(folder) / "result.h5" if variant.recorded else None
+            run = scene if steps is None else brief(scene, system, steps)
+            outcome = simulate(run, system, record_to)
+        outcome.raise_if_stopped()
+        return outcome.wall_time / outcome.simulated

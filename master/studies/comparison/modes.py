@@ -1,0 +1,278 @@
+"""What the number of modes of a flexible rotor costs in error, in the first impact of a drop.
+
+Every number of modes runs without and with residual flexibility, with stresses by mode displacement and
+by mode acceleration, against all modes of the finite elements at half the macro step. All modes at the
+macro step of the others show what of an error is the coupling's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...common.errors import TouchdownError
+from ...components.component import Component
+from ...coupling.simulation import open_system, opened, refuse_endless
+from ...coupling.system import System
+from ...results.summary import touchdown_seats
+from ...scene.scene import Scene
+from ..drop.first_impact import Peaks, Stop, Trace, run_watched
+
+MODES = (3, 5, 8, 12, 20)  # per plane, the two rigid ones included
+STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes
+LONGEST = 10e-3  # s after the first contact; later on, every difference is amplified
+CLOSED = 1e-2  # energy residual of a reference that can be trusted, over the energy scale
+RIGID = 2
+BASIS = ("modes", "residual", "stress.mode_acceleration")  # parameters of a flexible rotor
+
+
+@dataclass(frozen=True)
+class Stresses:
+    """Largest along the rotor up to the end of the run."""
+
+    bending: float  # Pa
+    shear: float  # Pa
+
+
+@dataclass(frozen=True)
+class Row:
+    """One basis."""
+
+    modes: int  # per plane; 0: all of the finite elements'
+    residual: bool
+    macro_step: float  # s
+    seats: Mapping[str, Peaks]
+    orbit: float  # m, largest distance of a journal from the reference's
+    displacement: Stresses  # from the modes alone
+    acceleration: Stresses  # and what the loads add
+    frequency: float | None  # Hz, highest of the basis; None: rigid, or the seats are not told all
+    wall: float  # s per simulated s
+    energy: float  # residual of the ledger, over the scene's energy scale
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows; errors are against the first."""
+
+    scene: Scene
+    end: float  # s from the scene's zero
+    impacts: Mapping[str, tuple[float, float]]  # s from zero: the reference's first impact at each seat
+    reference: Row
+    coupling: Row  # all modes, at the macro step of the others
+    rows: Sequence[Row]
+
+    @property
+    def first(self) -> float:
+        """The first contact (s from zero)."""
+        return min(start for start, _ in self.impacts.values())
+
+    @property
+    def warnings(self) -> list[str]:
+        """What makes the errors doubtful."""
+        if self.reference.energy <= CLOSED:
+            return []
+        return [
+            f"the energy residual of the reference is {self.reference.energy:.2g} of the energy lost by "
+            "falling; a smaller --macro-step makes it a better one"
+        ]
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one run showed."""
+
+    end: float  # s from zero
+    duration: float  # s, what run.duration ends a run there
+    traces: Mapping[str, Trace]
+    stresses: Stresses
+    frequency: float | None
+    wall: float  # s per simulated s
+    energy: float
+
+
+def parse_modes(text: str) -> tuple[int, ...]:
+    """Numbers of modes from "3,5,8", in order. Raises TouchdownError."""
+    numbers: set[int] = set()
+    for item in text.split(","):
+        try:
+            number = int(item)
+        except ValueError:
+            raise TouchdownError(
+                f"--modes {text}: {item.strip() or 'nothing'!r} is not a whole number"
+            ) from None
+        if number < RIGID:
+            raise TouchdownError(
+                f"--modes {text}: {number} is less than {RIGID}, the rigid modes per plane; "
+                "all modes are the reference, which always runs"
+            )
+        numbers.add(number)
+    return tuple(sorted(numbers))
+
+
+def refuse_varied(names: Iterable[str]) -> None:
+    """Raise TouchdownError for settings that the comparison makes itself."""
+    instead = {
+        "modes": "use --modes",
+        "residual": "both ways are run",
+        "stress.mode_acceleration": "both ways are run",
+        "run.macro_step": "use --macro-step",
+        "run.duration": "use --duration",
+    }
+    for name in names:
+        for key in (name, name.partition(".")[2]):
+            if key in instead:
+                raise TouchdownError(f"--set {name}: compare-modes sets it itself; {instead[key]}")
+
+
+def compare_modes(
+    scene: Scene,
+    modes: Sequence[int] = MODES,
+    macro_step: float = STEP,
+    duration: float | None = None,
+    done: Callable[[], object] = lambda: None,
+) -> Comparison:
+    """Run `scene` in process with each number of modes; done() after each of `runs(modes)` runs.
+
+    Looks at `duration` (s) from the first contact of any seat; without one, until the first impact is
+    over at every seat, or LONGEST. Raises TouchdownError where the scene has no flexible rotor, a number
+    of modes cannot be, nothing touches, or a run stops.
+    """
+    rotor = _rotor(scene)
+    refuse_endless(duration or LONGEST, macro_step)
+    scene = scene.set({"run.macro_step": macro_step})
+    _check_modes(_basis(scene, rotor, max(modes), 1, 1))
+    whole = _basis(scene, rotor, 0, 0, 0)
+    stop = Stop(LONGEST if duration is None else duration, early=duration is None, every=2)
+    exact = _run(whole.set({"run.macro_step": 0.5 * macro_step}), rotor, stop)
+    impacts = {seat: impact for seat, t in exact.traces.items() if (impact := t.first_impact())}
+    if not impacts:
+        raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
+    done()
+    judge = _Judge(exact, impacts)
+    reference = judge.row(0, False, 0.5 * macro_step, exact, exact)
+    ended = {"run.duration": exact.duration}
+    again = _run(whole.set(ended), rotor)
+    done()
+    rows = []
+    for count in modes:
+        for residual in (0, 1):
+            ways = []  # the stresses by mode displacement, then by mode acceleration
+            for acceleration in (0, 1):
+                basis = _basis(scene, rotor, count, residual, acceleration)
+                ways.append(_run(basis.set(ended), rotor))
+                done()
+            rows.append(judge.row(count, bool(residual), macro_step, *ways))
+    coupling = judge.row(0, False, macro_step, again, again)
+    return Comparison(scene, exact.end, impacts, reference, coupling, rows)
+
+
+def runs(modes: Sequence[int]) -> int:
+    """How many runs a comparison takes."""
+    return 2 + 4 * len(modes)
+
+
+def _rotor(scene: Scene) -> str:
+    """The component that is a flexible rotor."""
+    with opened(scene, in_process=True) as system:
+        rotors = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
+    if not rotors:
+        raise TouchdownError(
+            f"scene {scene.name} has no flexible rotor with stresses: no component has the parameters "
+            f"{', '.join(BASIS)}"
+        )
+    if len(rotors) > 1:
+        raise TouchdownError(
+            f"scene {scene.name} has several flexible rotors ({', '.join(rotors)}); compare-modes takes one"
+        )
+    return rotors[0]
+
+
+def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: int) -> Scene:
+    values = dict(zip(BASIS, (modes, residual, acceleration), strict=True))
+    settings = {f"{rotor}.{name}": value for name, value in values.items()}
+    return scene.set(settings | {f"{rotor}.stress.active": 1})
+
+
+def _check_modes(scene: Scene) -> None:
+    """Raise TouchdownError where the rotor has fewer modes, before anything runs for long."""
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+
+
+def _run(scene: Scene, rotor: str, stop: Stop | None = None) -> Run:
+    system = open_system(scene, in_process=True)
+    try:
+        seats = [a for a in touchdown_seats(system) if a.body == rotor]
+        if not seats:
+            raise TouchdownError(f"scene {scene.name} has no touchdown bearing on {rotor}")
+        outcome, traces = run_watched(scene, system, seats, stop)
+        peaks = [system.value(f"{rotor}.stress.peak_{kind}") for kind in ("bending", "shear")]
+        frequency = _highest(scene, system, rotor, [a.body_port for a in seats])
+    except TouchdownError as error:
+        given = scene.components[rotor].set
+        which = f"{given['modes']} modes" if given["modes"] else "all modes"
+        raise TouchdownError(f"with {which}: {error}") from None
+    finally:
+        system.close()
+    wall, end = outcome.wall_time / outcome.simulated, outcome.end - outcome.zero
+    return Run(end, outcome.duration, traces, Stresses(*peaks), frequency, wall, outcome.residual)
+
+
+def _highest(scene: Scene, system: System, rotor: str, ports: Sequence[str]) -> float | None:
+    """Highest frequency of the basis (Hz), from the modes that the seats are told of.
+
+    None where there is none, or where modes may share the last place at a seat.
+    """
+    component, given = system.components[rotor], scene.components[rotor].set
+    told = {port: _mode_stiffness(component, port) for port in ports}
+    elastic = int(str(given["modes"])) - RIGID + int(str(given["residual"])) * len(ports)
+    if given["modes"] == 0 or any(elastic > len(values) for values in told.values()):
+        return None
+    square = max((value for values in told.values() for value in values), default=0.0)
+    return math.sqrt(square) / (2.0 * math.pi) if square > 0.0 else None
+
+
+def _mode_stiffness(component: Component, port: str) -> list[float]:
+    names = [v for v in component.variables if v.startswith(f"{port}.mode[") and v.endswith(".k_over_m")]
+    return component.read(names)
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """The reference, and over what its first impacts are compared."""
+
+    exact: Run
+    impacts: Mapping[str, tuple[float, float]]
+
+    def row(self, modes: int, residual: bool, step: float, plain: Run, corrected: Run) -> Row:
+        """`plain`, `corrected`: by mode displacement and by mode acceleration; one motion."""
+        peaks = {seat: plain.traces[seat].peaks(end) for seat, (_, end) in self.impacts.items()}
+        distances = [self._distance(seat, plain.traces[seat]) for seat in plain.traces]
+        wall = min(plain.wall, corrected.wall)
+        stresses = (plain.stresses, corrected.stresses)
+        return Row(
+            modes, residual, step, peaks, max(distances), *stresses, plain.frequency, wall, plain.energy
+        )
+
+    def _distance(self, seat: str, trace: Trace) -> float:
+        """Largest distance of the journal from the reference's (m), from the first contact of any seat."""
+        exact = self.exact.traces[seat]
+        first = min(start for start, _ in self.impacts.values())
+        part = (trace.time >= first) & (trace.time <= self.exact.end + 1e-12)
+        time = trace.time[part]
+        dx = trace.x[part] - np.interp(time, exact.time, exact.x)
+        dy = trace.y[part] - np.interp(time, exact.time, exact.y)
+        return float(np.max(np.hypot(dx, dy)))
+
+
+def percent(value: float, exact: float) -> float:
+    """Relative error; not a number where there is nothing to relate to."""
+    return 100.0 * (value / exact - 1.0) if exact != 0.0 else math.nan
+
+
+def stress_error(comparison: Comparison, row: Row, kind: str, way: str) -> float:
+    """Error (%) of the peak of `kind`, one of STRESSES, found in one of WAYS."""
+    return percent(getattr(getattr(row, way), kind), getattr(comparison.reference.displacement, kind))

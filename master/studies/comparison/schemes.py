@@ -1,0 +1,389 @@
+"""Speed against error of coupling schemes on one drop.
+
+Speed against error: every coupling scheme over macro steps, and monolithic solvers, on one drop.
+
+Errors are found in process, which is the same to the bit as through FMUs; wall time is through FMUs
+unless asked otherwise. Motion is measured against the monolithic reference. The peak forces of the first
+impact (contact, worst ball, side of a ball), which bearings report from inside their steps, are measured
+against fine steps of the co-simulation, adaptive inside bearings, whose motion stands beside it.
+
+Which macro step a scheme bears, told before a run.
+
+A touchdown bearing says at which rate the journal swings on its contact: from the contact's stiffness, and
+from the masses and elastic modes that the journal moves with (`contact.rate`, rad/s). A scheme bears so
+many radians of that swing in a macro step (`Scheme.bears`, measured: docs/coupling.md).
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+
+import numpy as np
+
+from ...common.errors import TouchdownError
+from ...coupling.loop.span import brief
+from ...coupling.simulation import opened, refuse_endless, simulate
+from ...coupling.system import fastest_contact
+from ...scene.run_spec import tidy
+from ...scene.scene import Scene
+from ...scene.schemes import SCHEMES, Scheme, scheme
+from ..drop.first_impact import CONTACT, INSIDE
+from ..drop.measured import FINE, LONGEST, Landing, Plan, Sampler, fine, land, plan
+from ..drop.reference import (
+    FIRST,
+    POSITION,
+    REFINED,
+    VELOCITY,
+    Reference,
+    Refined,
+    Solve,
+    Solver,
+    has_equations,
+    largest_distance,
+    pair,
+    reference,
+    refine,
+    solve,
+)
+
+ABOVE_FLOOR = 10.0  # an error counts from this many times the floor of what it is measured against
+RISING = 0.5  # least slope between neighbours: below it something else than the macro step errs
+FEWEST = 3  # steps that a slope is fitted to
+
+
+@dataclass(frozen=True)
+class Order:
+    """Slope of log error over log step, and the steps (s) it was fitted to."""
+
+    value: float
+    steps: tuple[float, ...]
+
+
+def fitted_order(
+    steps: Sequence[float], errors: Sequence[float], floor: float, saturated: float
+) -> Order | None:
+    """The slope over the longest stretch of steps in which the error rises with the step.
+
+    Errors within ABOVE_FLOOR times `floor`, from `saturated` on, and what is not a number are left out;
+    a plateau, such as that of the steps inside a bearing, ends a stretch. None where it is too short.
+    """
+    stretch: list[tuple[float, float]] = []
+    longest: list[tuple[float, float]] = []
+    for step, error in sorted(zip(steps, errors, strict=True)):
+        counts = error > 0.0 and ABOVE_FLOOR * floor < error < saturated
+        if not counts:
+            stretch = []
+            continue
+        if stretch and np.log(error / stretch[-1][1]) < RISING * np.log(step / stretch[-1][0]):
+            stretch = []
+        stretch.append((step, error))
+        longest = max(longest, stretch, key=len).copy()
+    if len(longest) < FEWEST:
+        return None
+    used, errors_used = zip(*longest, strict=True)
+    return Order(float(np.polyfit(np.log(used), np.log(errors_used), 1)[0]), used)
+
+
+STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
+WANTED = 1e-7  # m
+LOOSE = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
+LOOSE_OF_MANY = LOOSE[:1]  # each takes about as long as the reference
+AGREED = 0.1  # of the wanted error: what the reference's solvers may differ by
+SATURATED = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
+ABOUT = 1.2  # times the least wall time: as good as the same
+NEVER = 1e9  # a residual of the ledger at which nothing stops
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """How errors of a quantity are shown."""
+
+    title: str
+    unit: str
+    factor: float  # from SI
+    axis: str  # title of the axis of its errors
+
+
+SHOWN = {
+    "position": Quantity("journal", "um", 1e6, "error of journal [um]"),
+    "velocity": Quantity("velocity", "mm/s", 1e3, "error of velocity [mm/s]"),
+    "force": Quantity("peak force", "%", 100.0, "error of peak force [%]"),
+    "ball": Quantity("worst ball", "%", 100.0, "error of the worst ball's peak force [%]"),
+    "side": Quantity("ball side", "%", 100.0, "error of peak force on cage or neighbour [%]"),
+    "energy": Quantity("ledger", "1", 1.0, "residual of the ledger [1]"),
+}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be compared."""
+
+    schemes: Sequence[str] = tuple(SCHEMES)
+    steps: Sequence[float] = STEPS  # s
+    duration: float | None = None  # s from the first contact; None: until the first impact is over
+    wanted: float = WANTED  # m
+    repeat: int = 3  # runs that are timed
+    timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
+    in_process: bool = False
+
+
+class Alarm(StrEnum):
+    """What the ledger would do by the scene's thresholds."""
+
+    NONE = ""
+    WARNS = "warns"
+    STOPS = "stops"
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scheme at one macro step, or one monolithic solver; errors by quantity, where known.
+
+    position: m, velocity: m/s, both the largest of any seat and instant; force, ball, side: of the first
+    impact, relative, of the worst seat; energy: residual of the ledger over the energy scale.
+    """
+
+    name: str
+    step: float | None  # s; None: monolithic
+    errors: Mapping[str, float] = field(default_factory=dict)
+    wall: float | None = None  # s per simulated s
+    ledger: Alarm = Alarm.NONE
+    failed: str = ""  # why there are no errors
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows, and what they are measured against."""
+
+    scene: Scene
+    asked: Asked
+    landing: Landing
+    exact: Reference
+    fine: Mapping[str, float]  # errors of the fine co-simulation: its motion, its forces at twice the step
+    rows: Sequence[Row]  # schemes
+    monolithic: Sequence[Row]
+
+    @property
+    def quantities(self) -> Sequence[str]:
+        """What can be compared: bearings without balls, or whose balls only graze, say less."""
+        return [q for q in SHOWN if q in self.fine]
+
+    @property
+    def forces(self) -> Sequence[str]:
+        """Those of `quantities` that are peak forces."""
+        return [q for q in self.quantities if q == CONTACT or q in INSIDE]
+
+    @property
+    def floors(self) -> Mapping[str, float]:
+        """By quantity: errors below it say nothing."""
+        position, velocity = self.exact.floor(POSITION), self.exact.floor(VELOCITY)
+        forces = {q: self.fine[q] for q in self.forces}
+        return {"position": position, "velocity": velocity, **forces, "energy": 0.0}
+
+    @property
+    def wanted(self) -> Mapping[str, float]:
+        """By quantity: errors that are good enough, of those that the advice goes by."""
+        return {"position": self.asked.wanted}
+
+    def orders(self, scheme: str) -> Mapping[str, Order | None]:
+        """By quantity; None where too few macro steps tell."""
+        extents = {"position": self.exact.extent(POSITION), "velocity": self.exact.extent(VELOCITY)}
+        orders = {}
+        for q in self.quantities:
+            of = {r.step: r.errors[q] for r in self.rows if r.name == scheme and r.step and q in r.errors}
+            limit = SATURATED * extents.get(q, 1.0)
+            orders[q] = fitted_order(list(of), list(of.values()), self.floors[q], limit)
+        return orders
+
+    def recommended(self) -> Row | None:
+        """The cheapest row of a scheme whose journals err by no more than wanted, ledgers that hold first.
+
+        Of rows that take about the same time the most accurate one.
+        """
+        quiet = self._cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
+        return quiet or self._cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
+
+    def recommended_solver(self) -> Row | None:
+        """The cheapest monolithic solver that errs by no more than wanted."""
+        return self._cheapest(self.monolithic)
+
+    def _cheapest(self, rows: Iterable[Row]) -> Row | None:
+        good = [r for r in rows if r.wall and r.errors.get("position", math.inf) <= self.asked.wanted]
+        least = min((row.wall for row in good if row.wall), default=0.0)
+        near = [row for row in good if row.wall and row.wall <= ABOUT * least]
+        return min(near, key=lambda row: row.errors["position"], default=None)
+
+
+def compare_schemes(
+    scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda what: None
+) -> Comparison:
+    """Run everything; begin(what) before each of `pieces(scene, asked)` pieces of work.
+
+    Raises TouchdownError where nothing touches, or where there is no reference. A scheme that stops or
+    fails says so in its row.
+    """
+    limits = scene.run.warn_residual, scene.run.stop_residual
+    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0, "run.impact_step": 0})
+    begin("fine steps")
+    refuse_endless(max(asked.duration or LONGEST, asked.timed or 0.0), min(asked.steps))
+    landing = land(scene, asked.duration)
+    looks = plan(landing, (*asked.steps, 2.0 * FINE))
+    scene = scene.set({"run.duration": landing.duration})
+    solves = _solves(scene, looks, begin)
+    exact = reference(looks.times, solves[0], solves[1], AGREED * asked.wanted)
+    judge = _Judge(looks, exact, *limits)
+    begin("fine steps")
+    finely = judge.row(fine(scene, 2.0 * FINE), "fine steps", 2.0 * FINE)
+    if finely.failed:
+        raise TouchdownError(f"with macro steps of {2e6 * FINE:g} us: {finely.failed}")
+    _warm_up(scene, asked)
+    rows = []
+    for name in asked.schemes:
+        for step in asked.steps:
+            begin(f"{name} at {1e6 * step:g} us")
+            run = scene.set({"run.scheme": name, "run.macro_step": step})
+            rows.append(_timed(judge.row(run, name, step), run, asked))
+    monolithic = [_monolithic(s, exact) for s in solves if isinstance(s.solver, Solver)]
+    return Comparison(scene, asked, landing, exact, finely.errors, rows, monolithic)
+
+
+def pieces(scene: Scene, asked: Asked) -> int:
+    """How many pieces of work a comparison is."""
+    return 2 + len(_solvers(scene)) + len(asked.schemes) * len(asked.steps)
+
+
+def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[Solve]:
+    """Both solutions of the reference, then looser ones."""
+    seats, solvers = looks.landing.seats, _solvers(scene)
+    if has_equations(scene):
+        solve(scene, seats, looks.times[:1], Solver(FIRST.method, 1e-3))  # compiles
+    solves: list[Solve] = []
+    for solver in solvers:
+        begin(solver.title)
+        if isinstance(solver, Refined):
+            solves.append(refine(scene, seats, looks.times, solver))
+        else:
+            solves.append(solve(scene, seats, looks.times, solver))
+    return solves
+
+
+def _solvers(scene: Scene) -> Sequence[Solver | Refined]:
+    """Those of the reference, then looser ones."""
+    if not has_equations(scene):
+        return REFINED
+    first, second = pair(scene)
+    return first, second, *_loose(second)
+
+
+def _loose(second: Solver) -> Sequence[Solver]:
+    return LOOSE if second.implicit else LOOSE_OF_MANY
+
+
+def _monolithic(solution: Solve, exact: Reference) -> Row:
+    """A solution against the reference, the reference against the other one."""
+    other = exact.second if solution is exact.first else exact.first
+    count = len(exact.time)
+    errors = {
+        name: largest_distance(solution.motion[:count], other.motion[:count], part)
+        for name, part in (("position", POSITION), ("velocity", VELOCITY))
+    }
+    return Row(solution.solver.title, None, errors, solution.wall)
+
+
+@dataclass(frozen=True)
+class _Judge:
+    """Measures runs against the reference."""
+
+    looks: Plan
+    exact: Reference
+    warn: float
+    stop: float
+
+    def row(self, scene: Scene, name: str, step: float) -> Row:
+        """Run `scene` in process and measure it."""
+        try:
+            with opened(scene, True) as system:
+                sampler = Sampler(system, self.looks.landing, self.looks.every[step])
+                outcome = simulate(scene, system, observers=[sampler])
+                outcome.raise_if_stopped()
+        except TouchdownError as error:
+            return Row(name, step, failed=str(error))
+        errors = self._errors(sampler, outcome.residual)
+        return Row(name, step, errors, ledger=self._alarm(outcome.share))
+
+    def _alarm(self, share: float) -> Alarm:
+        if share > self.stop:
+            return Alarm.STOPS
+        return Alarm.WARNS if share > self.warn else Alarm.NONE
+
+    def _errors(self, sampler: Sampler, residual: float) -> Mapping[str, float]:
+        times = np.array(sampler.times) - self.looks.landing.zero
+        motion = np.array(sampler.motion)
+        at = np.searchsorted(self.exact.time, times - 1e-10)
+        at = np.minimum(at, len(self.exact.time) - 1)
+        known = np.abs(self.exact.time[at] - times) < 1e-10  # up to the horizon
+        return {
+            "position": self.exact.distance(motion[known], at[known], POSITION),
+            "velocity": self.exact.distance(motion[known], at[known], VELOCITY),
+            **self.looks.landing.force_errors(sampler.peaks),
+            "energy": residual,
+        }
+
+
+def _warm_up(scene: Scene, asked: Asked) -> None:
+    """Compile what is to be timed."""
+    with opened(scene, asked.in_process) as system:
+        simulate(brief(scene, system, 2), system).raise_if_interrupted()
+
+
+def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
+    """The row with its wall time: the median of some runs."""
+    if row.failed:
+        return row
+    if asked.timed is not None:
+        scene = scene.set({"run.duration": asked.timed})
+    spent = []
+    try:
+        for _ in range(asked.repeat):
+            with opened(scene, asked.in_process) as system:
+                outcome = simulate(scene, system)
+            outcome.raise_if_stopped()
+            spent.append(outcome.wall_time / outcome.simulated)
+    except TouchdownError as error:
+        return replace(row, failed=f"while it was timed: {error}")
+    return replace(row, wall=statistics.median(spent))
+
+
+LONGEST_MACRO_STEP = 1e-4  # s; what happens within a longer macro step is lost to recording and ledger
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A macro step, and why."""
+
+    macro_step: float  # s
+    reason: str
+
+
+def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice]:
+    """The macro step that each of the schemes `names` bears in `scene`; without names, the scene's own.
+
+    Raises TouchdownError where the scene cannot be assembled, or no bearing states its contact's rate.
+    """
+    with opened(scene, in_process=True) as system:
+        system.initialise()
+        bearing, rate = fastest_contact(system)
+    return {name: _for(scheme(name), bearing, rate) for name in names or [scene.run.scheme.name]}
+
+
+def _for(chosen: Scheme, bearing: str, rate: float) -> Advice:
+    return Advice(
+        tidy(min(chosen.bears / rate, LONGEST_MACRO_STEP)),
+        f"the journal swings at {rate / (2.0 * math.pi):.3g} Hz on the contact of {bearing}, and scheme "
+        f"{chosen.name} bears {chosen.bears:g} rad of that in a macro step, "
+        f"up to {1e6 * LONGEST_MACRO_STEP:g} us",
+    )

@@ -1,1 +1,0 @@
-"""Section 4.2: stresses in rotor II."""

@@ -1,1 +1,0 @@
-"""Bearing models beside each other on one scene."""

@@ -1,1 +1,0 @@
-"""How many elastic modes of a rotor a drop needs."""

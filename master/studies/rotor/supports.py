@@ -1,0 +1,344 @@
+"""A scene's rotor on what holds it: levitated, and resting on touchdown bearings.
+
+A scene's rotor on what holds it: levitated by its magnetic bearings, and resting on touchdown bearings.
+
+The rotor is its model's, with as many modes as the scene has it keep. Bearings are measured on a rig, each
+by itself, and what they stand on is told by the contract. Levitated, all that gives a force where the rotor
+starts holds it; at rest, all that does not shut down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....modelkit.model import ModelError
+from ....rotor.beams.shaft import Shaft
+from ....rotor.modal.data import most_modes, seats
+from ....rotor.modal.modes import RIGID, Basis, basis
+from ....rotor.modal.supported import Foundation, HeldRotor, LinearBearing, static_stiffness
+from ....rotor.modal.whirl_speeds import Held, held
+from ....rotor.statics import at_rest
+from ...common.errors import TouchdownError
+from ...components.component import GAINS, POSITION, SENSED
+from ...coupling.connections import Attachment
+from ...coupling.simulation import opened
+from ...coupling.system import System
+from ...scene.scene import Scene
+from .report import find_rotor
+from .rig import DEEPEST, Answer, Place, Pressed, Rig, answers
+
+
+def balanced(scene: Scene, bodies: Iterable[str]) -> bool:
+    """Whether all these components are rotors of elements or matrices, none with an unbalance."""
+    try:
+        unbalances = [u for body in bodies for u in scene_shaft(scene, body).unbalances]
+        return not any(u.moment for u in unbalances)
+    except TouchdownError:  # a rotor of another kind
+        return False
+
+
+SHUTDOWN, NEVER = "shutdown_time", 1e9  # a parameter of magnetic bearings; s
+LINES = 12  # followed over the speed
+MOST = 16  # modes per plane
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """One of a scene's bearings as it holds the rotor, and how that was found."""
+
+    name: str
+    station: str  # of the rotor
+    node: int
+    parts: tuple[LinearBearing, ...]  # one that follows the journal, one that follows a sensor, or both
+    sensor: str = ""  # the station that the latter looks at
+    answers: tuple[Answer, ...] = ()  # by part, of one that holds the rotor where it starts
+    load: float = 0.0  # N, that it was pressed with
+    pressed: Pressed | None = None  # of one that the rotor lies on
+    mount: str = ""  # what it stands on; "": the ground
+    foundation: Foundation | None = None
+
+    @property
+    def statically(self) -> np.ndarray:
+        """Stiffness (2, 2) with what it stands on in series, N/m, as if it looked where it acts."""
+        return static_stiffness(self.parts)
+
+
+@dataclass(frozen=True)
+class Situation:
+    """The rotor held by some of its scene's bearings."""
+
+    name: str  # "levitated" or "resting"
+    bearings: tuple[Bearing, ...]
+    held: Held
+    left_out: tuple[str, ...]  # a line for each bearing that does not hold it
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What of a scene is needed, once it is initialised."""
+
+    scene: Scene
+    body: str  # the rotor
+    shaft: Shaft
+    basis: Basis
+    damping_ratio: float  # of the elastic modes
+    gravity: float  # m/s2
+    speed: float  # rad/s, counter-clockwise: that bearings are measured at
+    journals: tuple[Attachment, ...]
+    sensors: dict[str, dict[str, str]]  # by bearing: its port, and the rotor's that it sees
+    places: dict[str, Place]  # by bearing
+    mounts: dict[str, str]  # by bearing, COMPONENT.PORT
+    foundations: dict[str, Foundation]  # by mount
+    remarks: tuple[str, ...]  # what a run of the scene would say before its first step
+
+
+def situations(
+    seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1.0
+) -> tuple[list[Situation], list[str]]:
+    """Levitated and resting, where the rotor is, and a line for each of the two that it is not.
+
+    speeds: rad/s, not negative; the one that modes are told at, then those of the diagram. load: of the
+    touchdown bearings, over what they carry of the rotor's weight. Raises TouchdownError where nothing
+    holds the rotor either way.
+    """
+    with opened(seen.scene, in_process=True, listening=False) as idle:
+        rigs = {a.bearing: _rig(seen, idle, a) for a in seen.journals}
+        floating = {a.bearing: _floating(seen, a, rigs[a.bearing]) for a in seen.journals}
+        lying = _lying(seen, idle, rigs, floating, load)
+    both = (("levitated", floating), ("resting", lying))
+    made = {name: _situation(seen, name, found, speeds) for name, found in both}
+    there = [one for one in made.values() if one is not None]
+    if not there:
+        raise TouchdownError(f"scene {seen.scene.name}: no bearing holds its rotor")
+    why = {name: "; ".join(f"{b} {told}" for b, told in found.items()) for name, found in both}
+    return there, [f"not {name}: {why[name]}" for name, one in made.items() if one is None]
+
+
+def _situation(
+    seen: Seen, name: str, found: Mapping[str, Bearing | str], speeds: Sequence[float] | np.ndarray
+) -> Situation | None:
+    bearings = tuple(b for b in found.values() if isinstance(b, Bearing))
+    if not bearings:
+        return None
+    parts = [part for b in bearings for part in b.parts]
+    if seen.speed < 0.0:  # forward is with the spin: seen from the other end
+        flip = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        parts = [replace(p, stiffness=flip * p.stiffness, damping=flip * p.damping) for p in parts]
+    rotor = HeldRotor(seen.basis, parts, seen.damping_ratio)
+    left_out = tuple(f"{bearing} {why}" for bearing, why in found.items() if isinstance(why, str))
+    return Situation(name, bearings, held(rotor, speeds, LINES), left_out)
+
+
+# -- what the scene says -----------------------------------------------------------------------------
+
+
+def seen_in(scene: Scene) -> Seen:
+    """What a scene tells of its rotor and bearings. Raises TouchdownError where it has none of elements."""
+    scene = scene.set({"run.scheme": "interface"})  # motion within a macro step as it is given
+    with opened(scene, in_process=True, listening=False) as system:
+        journals = tuple(a for a in system.attachments if a.on_journal)
+        body = _body(scene, journals)
+        shaft = _of_elements(scene, body)
+        system.initialise()
+        value = {name: system.value(f"{body}.{name}") for name in ("modes", "residual", "damping_ratio")}
+        own, seat_nodes = value["damping_ratio"], tuple(dict.fromkeys(seats(shaft)))
+        sensors = {a.bearing: _sensors(system, a) for a in journals}
+        mounts = {a.bearing: m for a in journals if (m := _mount(system, a)) is not None}
+        return Seen(
+            scene=scene,
+            body=body,
+            shaft=shaft,
+            basis=_basis(shaft, int(value["modes"]), seat_nodes if value["residual"] else ()),
+            damping_ratio=shaft.damping_ratio if own < 0.0 else own,
+            gravity=system.value(f"{body}.gravity"),
+            speed=system.value(f"{body}.speed"),
+            journals=journals,
+            sensors=sensors,
+            places={a.bearing: _place(system, a, sensors[a.bearing], mounts) for a in journals},
+            mounts=mounts,
+            foundations={m: f for m in mounts.values() if (f := _foundation(system, m)) is not None},
+            remarks=tuple(system.remarks),
+        )
+
+
+def _basis(shaft: Shaft, modes: int, residual_at: tuple[int, ...]) -> Basis:
+    """As the rotor has it; of more than `MOST` modes that many, and the flexibility of the others."""
+    if RIGID <= modes <= MOST:
+        return basis(shaft, modes, residual_at)
+    return basis(shaft, min(MOST, most_modes(shaft)), tuple(dict.fromkeys(s.node for s in shaft.stations)))
+
+
+def _of_elements(scene: Scene, body: str) -> Shaft:
+    """`scene_shaft`, or what is said of a scene without one."""
+    fmu = scene.components[body].fmu
+    try:
+        return scene_shaft(scene, body)
+    except TouchdownError:
+        if fmu.endswith(".toml"):
+            raise
+        raise TouchdownError(
+            f"{body} of scene {scene.name} is {fmu}, no rotor of beam elements, so that its modes are not "
+            "known; take a scene with a rotor's .toml, or such as rotor1-9000"
+        ) from None
+
+
+def scene_shaft(scene: Scene, component: str) -> Shaft:
+    """The rotor of elements that a component is. Raises TouchdownError where it is none, or is gone."""
+    fmu = scene.components[component].fmu
+    path = scene.folder / fmu
+    return find_rotor(str(path) if fmu.endswith(".toml") and path.is_file() else fmu)
+
+
+def _body(scene: Scene, journals: Sequence[Attachment]) -> str:
+    bodies = list(dict.fromkeys(a.body for a in journals))
+    if len(bodies) != 1:
+        which = f"its bearings hold {', '.join(bodies)}" if bodies else "no bearing holds one"
+        raise TouchdownError(f"scene {scene.name} must have one rotor to look at; {which}")
+    return bodies[0]
+
+
+def _sensors(system: System, a: Attachment) -> dict[str, str]:
+    """Ports by which a bearing sees the rotor elsewhere than at its journal, and what they see."""
+    seen: dict[str, str] = {}
+    for c in system.connections:
+        port, _, variable = c.input.rpartition(".")
+        if (c.source, c.target) == (a.body, a.bearing) and variable in SENSED and "[" not in port:
+            seen[port] = c.output.rpartition(".")[0]
+    return {port: source for port, source in seen.items() if port != a.bearing_port}
+
+
+def _mount(system: System, a: Attachment) -> str | None:
+    """COMPONENT.PORT of what a bearing stands on."""
+    own = [other for other in system.attachments if other.bearing == a.bearing and not other.on_journal]
+    return own[0].body_end.title if own else None
+
+
+def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[str, str]) -> Place:
+    """Where the journal of a bearing starts, and what sees it."""
+
+    def at(port: str) -> np.ndarray:
+        return np.array([system.value(f"{port}.{axis}") for axis in POSITION])
+
+    mount = mounts.get(a.bearing)
+    housing = at(mount) if mount else np.zeros(2)
+    return Place(at(a.body_end.title), housing, {p: at(f"{a.body}.{s}") for p, s in sensors.items()})
+
+
+def _foundation(system: System, mount: str) -> Foundation | None:
+    """What the body at COMPONENT.PORT is, as the contract has it; None: it does not give way."""
+    names = [f"{mount}.{gain}" for gain in GAINS if gain != "inv_I"]
+    inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)
+    return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m, mount) if inv_m > 0.0 else None
+
+
+# -- what the bearings do ----------------------------------------------------------------------------
+
+
+def _rig(seen: Seen, idle: System, a: Attachment) -> Rig:
+    component = idle.components[a.bearing]
+    if SHUTDOWN in component.variables:
+        component.set({SHUTDOWN: NEVER})
+    step = seen.scene.run.macro_step * idle.every[a.bearing]
+    return Rig(component, a.bearing_port, seen.places[a.bearing], step)
+
+
+def _floating(seen: Seen, a: Attachment, rig: Rig) -> Bearing | str:
+    """A bearing about the place where the rotor starts, spinning; or that it gives no force there."""
+    sensors = seen.sensors[a.bearing]
+    rig.spin = seen.speed
+    found = answers(rig, bool(sensors))
+    if not found:
+        return "gives no force where the rotor starts"
+    node, sensor = seen.shaft.node(a.body_port), ""
+    if any(answer.sensed for answer in found):
+        sensor = _looks_at(seen, a.bearing, tuple(sensors.values()))
+    mount, foundation = _stands_on(seen, a)
+    parts = tuple(
+        LinearBearing(
+            node,
+            answer.law.stiffness,
+            answer.law.damping,
+            answer.law.lag,
+            seen.shaft.node(sensor) if answer.sensed else None,
+            foundation,
+        )
+        for answer in found
+    )
+    return Bearing(
+        a.bearing, a.body_port, node, parts, sensor, answers=found, mount=mount, foundation=foundation
+    )
+
+
+def _looks_at(seen: Seen, bearing: str, stations: Sequence[str]) -> str:
+    """The station that a bearing sees the rotor at. Raises TouchdownError where there are several."""
+    if len({seen.shaft.node(station) for station in stations}) > 1:
+        raise TouchdownError(
+            f"{bearing} of scene {seen.scene.name} sees the rotor at {', '.join(stations)}: "
+            "what it does by each is not told apart; give it one sensor"
+        )
+    return stations[0]
+
+
+def _stands_on(seen: Seen, a: Attachment) -> tuple[str, Foundation | None]:
+    mount = seen.mounts.get(a.bearing, "")
+    return mount, seen.foundations.get(mount)
+
+
+def _lying(
+    seen: Seen, idle: System, rigs: Mapping[str, Rig], floating: Mapping[str, Bearing | str], load: float
+) -> dict[str, Bearing | str]:
+    """Bearings as the rotor rests on them once it is shut down; or why one does not hold it."""
+    lying: dict[str, Bearing | str] = {}
+    pressing: list[Attachment] = []
+    for a in seen.journals:
+        found = floating[a.bearing]
+        if SHUTDOWN in idle.components[a.bearing].variables:
+            lying[a.bearing] = "is shut down"
+        elif isinstance(found, Bearing):
+            lying[a.bearing] = found
+        else:
+            pressing.append(a)
+    shares = _shares(seen, pressing, [b for b in lying.values() if isinstance(b, Bearing)])
+    for a in pressing:
+        lying[a.bearing] = _pressed(seen, a, rigs[a.bearing], load * shares[a.bearing])
+    return lying
+
+
+def _shares(seen: Seen, pressing: Sequence[Attachment], holding: Sequence[Bearing]) -> dict[str, float]:
+    """Of the rotor's weight (N), by bearing: what rigid ones carry; those of one place share it."""
+    nodes = {a.bearing: seen.shaft.node(a.body_port) for a in pressing}
+    supports = dict.fromkeys(nodes.values(), np.inf)
+    others = {b.node: float(b.statically[1, 1]) for b in holding if b.node not in supports}
+    supports |= {node: k for node, k in others.items() if k > 0.0}  # a damper carries nothing
+    if len(supports) < 2:  # it would tip; nothing is known of what holds it there
+        return dict.fromkeys(nodes, 0.0)
+    try:
+        reactions = at_rest(seen.shaft, list(supports.items()), seen.gravity).reactions
+    except ModelError as error:
+        raise TouchdownError(f"scene {seen.scene.name}: how its rotor lies is not known: {error}") from None
+    on = dict(zip(supports, reactions.tolist(), strict=True))
+    every = list(nodes.values())
+    return {name: on[node] / every.count(node) for name, node in nodes.items()}
+
+
+def _pressed(seen: Seen, a: Attachment, rig: Rig, load: float) -> Bearing | str:
+    """A bearing under `load` (N), on its foundation; or why it carries none."""
+    if load <= 0.0:
+        return "carries none of the rotor's weight"
+    pressed = rig.pressed(load)
+    if pressed is None:
+        return f"lets the journal sink by more than {1e3 * DEEPEST:g} mm"
+    mount, foundation = _stands_on(seen, a)
+    part = LinearBearing(
+        seen.shaft.node(a.body_port),
+        np.diag([pressed.across, pressed.along]),
+        np.diag([0.0, pressed.damping]),
+        foundation=foundation,
+    )
+    return Bearing(
+        a.bearing, a.body_port, part.node, (part,),
+        load=load, pressed=pressed, mount=mount, foundation=foundation,
+    )  # fmt: skip

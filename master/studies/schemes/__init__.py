@@ -1,1 +1,0 @@
-"""Coupling schemes beside each other on one scene: error, order and cost by macro step."""

@@ -1,1 +1,0 @@
-"""A sweep as pictures over one or two of its settings."""

@@ -1,0 +1,286 @@
+"""Verbs that compare: schemes, models, modes, stability, and advice on macro steps."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from ..common.errors import STOPPED, TouchdownError
+from ..common.progress import bar_over, named_progress
+from ..scene.schemes import SCHEMES, scheme
+from .arguments import (
+    above_zero,
+    add_jobs,
+    add_output,
+    add_quiet,
+    add_scene_name,
+    add_settings,
+    add_swaps,
+    chosen_jobs,
+    count,
+    results_folder,
+    settings,
+    several_above_zero,
+    swapped,
+)
+from .verb import Verb, broken_off, complain, warn
+
+ADVISE_EXAMPLES = (
+    "touchdown advise rotor1-9000",
+    "touchdown advise disk-caged-simplified --set bearing.preset=6014",
+)
+
+
+def _declare_advise(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    add_settings(verb, "set COMPONENT.VARIABLE")
+
+
+def _execute_advise(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.scenes import find_scene
+    from ..scene.schemes import SCHEMES
+    from ..studies.comparison.schemes import advise
+
+    chosen = find_scene(options.scene).set(settings(options))
+    advice = advise(chosen, SCHEMES)
+    reason = advice[chosen.run.scheme.name].reason
+    print(f"{chosen.name}: {reason}")
+    print(
+        f"It takes {1e6 * chosen.run.macro_step:g} us. With what is advised, peaks of the first impact are"
+    )
+    print("within about 1 %; what longer steps do is in the ledger of a run.")
+    for name, advised in advice.items():
+        scheme = SCHEMES[name]
+        print(f"  {name:<18}{1e6 * advised.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")
+    return 0
+
+
+ADVISE = Verb(
+    "advise",
+    "which macro step each coupling scheme bears in a scene",
+    ADVISE_EXAMPLES,
+    _declare_advise,
+    _execute_advise,
+)
+
+
+COMPARE_EXAMPLES = (
+    'touchdown compare disk-caged-simplified --schemes hold,velocity,interface --macro-steps "5,20,100 us"',
+    'touchdown compare disk-caged-simplified --models --repeat 1 --duration "3 ms"',
+)
+
+
+def _declare_compare(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    verb.add_argument(
+        "--models",
+        action="store_true",
+        help="instead: what could be left out of the scene, and its price",
+    )
+    verb.add_argument("--schemes", help=f"some of {', '.join(SCHEMES)} (default: all)")
+    verb.add_argument("--macro-steps", help='such as "5,20,100 us" (default: "5,10,20,50,100 us")')
+    verb.add_argument("--wanted", help='error of the journal to find a scheme for (default: "0.1 um")')
+    verb.add_argument(
+        "--duration",
+        help='from the first contact, such as "2 ms" (default: until the first impact is over, at most '
+        "5 ms; with --models 20 ms)",
+    )
+    verb.add_argument("--timed", help='of the runs that are timed, such as "1 s" (default: as compared)')
+    verb.add_argument("--repeat", default="3", metavar="N", help="runs that are timed (default: 3)")
+    verb.add_argument("--in-process", action="store_true", help="time the models without FMUs")
+    add_settings(verb)
+    add_swaps(verb)
+    add_output(verb, "runs/compare-SCENE")
+    add_quiet(verb)
+
+
+def _execute_compare(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.scenes import find_scene
+    from ..studies.drop.first_impact import shortened
+
+    given = settings(options)
+    _refuse_varied(given, options)
+    chosen = shortened(swapped(find_scene(options.scene), options)).set(given)
+    print("\n".join((_models if options.models else _schemes)(chosen, options)))
+    return 0
+
+
+def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
+    from ..studies.comparison.schemes import STEPS, WANTED, Asked, compare_schemes, pieces
+    from ..studies.comparison.schemes_report import report_lines, write_report
+
+    asked = Asked(
+        schemes=tuple(SCHEMES) if options.schemes is None else _scheme_names(options.schemes),
+        steps=several_above_zero(options.macro_steps, "s", "--macro-steps") or STEPS,
+        duration=above_zero(options.duration, "s", "--duration"),
+        wanted=above_zero(options.wanted, "m", "--wanted") or WANTED,
+        repeat=count(options.repeat, "--repeat"),
+        timed=above_zero(options.timed, "s", "--timed"),
+        in_process=options.in_process,
+    )
+    folder = results_folder(options, f"compare-{scene.name}")
+    with named_progress(pieces(scene, asked), options.quiet) as begin:
+        comparison = compare_schemes(scene, asked, begin)
+    write_report(comparison, folder)
+    return [*report_lines(comparison), f"results in {folder}"]
+
+
+def _models(scene: Any, options: argparse.Namespace) -> list[str]:
+    from ..studies.comparison.models import compare_models, variants
+    from ..studies.comparison.models_report import report_lines, write_report
+
+    duration = above_zero(options.duration, "s", "--duration")
+    repeat = count(options.repeat, "--repeat")
+    folder = results_folder(options, f"compare-models-{scene.name}")
+    chosen = variants(scene)
+    with named_progress(1 + len(chosen), options.quiet) as begin:
+        comparison = compare_models(scene, chosen, duration, repeat, options.in_process, begin)
+    write_report(comparison, folder)
+    return [*report_lines(comparison), f"results in {folder}"]
+
+
+def _scheme_names(text: str) -> tuple[str, ...]:
+    from ..studies.sweep.definition import listed
+
+    return tuple(dict.fromkeys(scheme(name).name for name in listed(text, f"--schemes {text}")))
+
+
+def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> None:
+    """Raise TouchdownError for settings that the comparison makes itself, and options it does not have."""
+    instead = {"run.duration": "--duration"}
+    if options.models:
+        for option in ("schemes", "macro_steps", "wanted", "timed"):
+            if getattr(options, option) is not None:
+                raise TouchdownError(f"--{option.replace('_', '-')} does not go with --models")
+    else:
+        instead |= {"run.macro_step": "--macro-steps", "run.scheme": "--schemes"}
+    for name in settings:
+        if name in instead:
+            raise TouchdownError(f"--set {name}: compare sets it itself; use {instead[name]}")
+
+
+COMPARE = Verb(
+    "compare",
+    "speed against error of coupling schemes, or of --models",
+    COMPARE_EXAMPLES,
+    _declare_compare,
+    _execute_compare,
+)
+
+
+COMPARE_MODES_EXAMPLES = ("touchdown compare-modes rotor1-9000 --modes 5,20",)
+
+
+def _declare_compare_modes(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb, "name of a scene with a flexible rotor, or path of a .toml")
+    verb.add_argument(
+        "--modes",
+        default="3,5,8,12,20",
+        help="numbers of modes per plane, the two rigid ones included (default: 3,5,8,12,20)",
+    )
+    add_settings(verb)
+    verb.add_argument(
+        "--duration",
+        help='from the first contact, such as "2 ms" (default: until the first impact is over, '
+        "at most 10 ms)",
+    )
+    verb.add_argument("--macro-step", default="2 us", help='macro step (default: "2 us")')
+    add_output(verb, "runs/modes-SCENE")
+    add_quiet(verb)
+
+
+def _execute_compare_modes(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..common.units import to_si
+    from ..interop.scenes import find_scene
+    from ..studies.comparison.modes import compare_modes, parse_modes, refuse_varied, runs
+    from ..studies.comparison.modes_report import report_lines, write_report
+
+    chosen = find_scene(options.scene)
+    given = settings(options)
+    refuse_varied(given)
+    chosen = chosen.set(given)
+    modes = parse_modes(options.modes)
+    step = to_si(options.macro_step, "s", "--macro-step")
+    duration = None if options.duration is None else to_si(options.duration, "s", "--duration")
+    for name, value in (("--macro-step", step), ("--duration", duration)):
+        if value is not None and not value > 0.0:
+            raise TouchdownError(f"{name} = {value:g} s must be above 0")
+    folder = results_folder(options, f"modes-{chosen.name}")
+    with bar_over(runs(modes), "drops", options.quiet) as bar:
+        comparison = compare_modes(chosen, modes, step, duration, bar.update)
+    write_report(comparison, folder)
+    print("\n".join(report_lines(comparison)))
+    print(f"results in {folder}")
+    warn(comparison.warnings)
+    return 0
+
+
+COMPARE_MODES = Verb(
+    "compare-modes",
+    "what the number of modes of a flexible rotor costs in error",
+    COMPARE_MODES_EXAMPLES,
+    _declare_compare_modes,
+    _execute_compare_modes,
+)
+
+
+STABILITY_EXAMPLES = (
+    "touchdown stability --cases bounce,mass-1 --schemes hold,interface -o runs/stability",
+)
+
+
+def _declare_stability(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument("--cases", metavar="A,B", help="cases, by name (default: all that are short)")
+    verb.add_argument("--schemes", metavar="A,B", help=f"of {', '.join(SCHEMES)} (default: all)")
+    verb.add_argument("--long", action="store_true", help="also the cases that take minutes")
+    add_jobs(verb)
+    add_output(verb, Path("runs/stability"))
+    add_quiet(verb)
+
+
+def _execute_stability(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..studies.comparison.stability import chosen
+    from ..studies.comparison.stability_report import report_lines, size, study_stability
+
+    cases = chosen(_names(options.cases, "--cases"), options.long)
+    schemes = [scheme(name).name for name in _names(options.schemes, "--schemes")] or list(SCHEMES)
+    jobs = chosen_jobs(options)
+    folder = results_folder(options)
+    with bar_over(size(cases, schemes), "searches", options.quiet) as bar:
+        study = study_stability(cases, schemes, folder, jobs, bar.update)
+    print("\n".join(report_lines(study)))
+    print(f"results in {folder}")
+    if study.interrupted:
+        return broken_off()
+    if study.failed:
+        complain(f"{len(study.failed)} searches failed, see the end of the table")
+        return STOPPED
+    return 0
+
+
+def _names(text: str | None, option: str) -> list[str]:
+    """Names between commas; none where the option is not given. Raises TouchdownError."""
+    if text is None:
+        return []
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise TouchdownError(f"{option} {text}: a name is missing between the commas")
+    return list(dict.fromkeys(names))
+
+
+STABILITY = Verb(
+    "stability",
+    "which macro steps the coupling schemes bear in hard cases, and what the ledger says",
+    STABILITY_EXAMPLES,
+    _declare_stability,
+    _execute_stability,
+)

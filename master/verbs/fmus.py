@@ -1,0 +1,340 @@
+"""Verbs for FMUs and systems: build, check, doctor, ssp, container, cache."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..common.errors import FAILED, TouchdownError
+from ..common.units import to_si
+from ..scene.run_spec import CALL_TIMEOUT
+from . import completion
+from .arguments import above_zero, add_making, add_output, add_scene, chosen_scene, making
+from .completion import complete
+from .verb import Verb, say_whose_code_runs
+
+if TYPE_CHECKING:
+    from ..common.cache import Entry
+
+
+BUILD_EXAMPLES = (
+    "touchdown build -o build",
+    "touchdown build simplified_caged housing --link-python -o build/linked",
+    "touchdown build my-rotor.toml",
+    "touchdown build simplified_caged rotor_I --modes 5 -o build/five-modes",
+    "touchdown build --native -o build/native",
+    "touchdown build housing --native --target linux-x86_64 windows-x86_64 -o build/native",
+    "touchdown build housing --native --fmi 3 -o build/fmi3",
+    "touchdown build --native examples/rubber_ring.py -o build/native",
+)
+
+
+def _declare_build(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    names = verb.add_argument(
+        "names",
+        nargs="*",
+        help="FMUs to build, rotor files (.toml), or models in C (.py, which is run) (default: all)",
+    )
+    complete(names, completion.fmus)
+    add_output(verb, Path("build"))
+    verb.add_argument(
+        "--link-python",
+        action="store_true",
+        help="for hosts without Python on this machine: the FMUs name this interpreter's libpython",
+    )
+    verb.add_argument("--native", action="store_true", help="FMUs that need no Python anywhere")
+    verb.add_argument(
+        "--fmi",
+        type=int,
+        choices=(2, 3),
+        default=2,
+        help="version of FMI; 3.0 with --native only (default: 2)",
+    )
+    targets = verb.add_argument(
+        "--target",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="TARGET",
+        help="machines that native FMUs are for, all in one file (default: this one)",
+    )
+    complete(targets, completion.targets)
+    verb.add_argument(
+        "--modes",
+        metavar="N",
+        help="modes per plane that rotors start with, the two rigid ones included; seats have connectors "
+        "for what they then carry (2: none); native rotors hold constants for several, N,N,... "
+        "(default: 2,5,10)",
+    )
+
+
+def _execute_build(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..api.fmus import built_one_by_one
+
+    if not options.native and options.target:
+        raise TouchdownError("--target is for native FMUs; add --native")
+    made = built_one_by_one(
+        options.names or None,
+        options.output,
+        link_python=options.link_python,
+        native=options.native,
+        targets=options.target,
+        modes=None if options.modes is None else _counts(options.modes),
+        fmi=options.fmi,
+    )
+    for path in made:
+        print(path, flush=True)
+    return 0
+
+
+def _counts(text: str) -> list[int]:
+    """Numbers of modes in a text such as "2,5,10"."""
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise TouchdownError(f"--modes {text}: give whole numbers with commas between, as in 2,5") from None
+
+
+BUILD = Verb("build", "build the FMUs", BUILD_EXAMPLES, _declare_build, _execute_build)
+
+
+CHECK_EXAMPLES = (
+    "touchdown check simplified_caged",
+    "touchdown check my-bearing.fmu --as bearing --names my-names.toml",
+)
+
+
+def _declare_check(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    fmus = verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
+    complete(fmus, completion.fmus)
+    roles = ("bearing", "rotor", "amb", "housing")
+    verb.add_argument("--as", dest="role", choices=roles, help="what it is to stand in for")
+    verb.add_argument(
+        "--names", type=Path, metavar="FILE", help="TOML: what it calls the variables of the contract"
+    )
+    verb.add_argument(
+        "--call-timeout",
+        default=f"{CALL_TIMEOUT:g} s",
+        metavar="TIME",
+        help=f"what a call of an .fmu may take (default: {CALL_TIMEOUT:g} s)",
+    )
+
+
+def _execute_check(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..components.loading import foreign
+    from ..interop.check import check_fmu
+    from ..scene.file import read_names
+
+    names = read_names(options.names) if options.names else {}
+    call_timeout = above_zero(options.call_timeout, "s", "--call-timeout")
+    assert call_timeout is not None
+    say_whose_code_runs({name: True for name in options.fmus if foreign(name)})
+    failed = 0
+    for name in options.fmus:
+        report = check_fmu(name, options.role, names, call_timeout)
+        print(report.text, flush=True)
+        failed += bool(report.problems)
+    return FAILED if failed else 0
+
+
+CHECK = Verb(
+    "check",
+    "check FMUs: validity, contract, a dry run, proofs",
+    CHECK_EXAMPLES,
+    _declare_check,
+    _execute_check,
+)
+
+
+DOCTOR_EXAMPLES = (
+    "touchdown doctor",
+    "touchdown doctor build/simplified_caged.fmu",
+)
+
+
+def _declare_doctor(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument("fmus", nargs="*", type=Path, metavar="FMU", help="try these in a clean process")
+
+
+def _execute_doctor(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.doctor import advice, examine, why_not
+
+    good = True
+    if not options.fmus:
+        for finding in examine():
+            print(finding.line, flush=True)
+            good = good and finding.good
+        print(advice())
+    for path in options.fmus:
+        reason = why_not(path)
+        print(reason or f"{path}: OK", flush=True)
+        good = good and not reason
+    return 0 if good else FAILED
+
+
+DOCTOR = Verb(
+    "doctor",
+    "what a host of the FMUs needs on this machine; try FMUs",
+    DOCTOR_EXAMPLES,
+    _declare_doctor,
+    _execute_doctor,
+)
+
+
+SSP_EXAMPLES = (
+    "touchdown ssp disk-caged-simplified -o disk.ssp",
+    'touchdown ssp rotor1-9000 --scheme jacobi-lead --macro-step "5 us" --outputs-only',
+    "touchdown ssp disk-caged-simplified --scheme jacobi-lead --outputs-only --native -o disk.ssp",
+)
+
+
+def _declare_ssp(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene(verb)
+    verb.add_argument(
+        "--outputs-only",
+        action="store_true",
+        help="connect outputs only; constants such as inv_m are start values (for libcosim and others)",
+    )
+    add_making(verb)
+    add_output(verb, "SCENE.ssp", "file")
+
+
+def _execute_ssp(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.ssp.write import write_package
+
+    scene = chosen_scene(options)
+    path = options.output or Path(f"{scene.name}.ssp")
+    package = write_package(scene, path, options.outputs_only, making(options))
+    print(
+        f"{package.path}: {package.components} components, {package.connections} connections, "
+        f"macro step {scene.run.macro_step:g} s"
+    )
+    if package.fixed:
+        names = ", ".join(package.fixed)
+        print(f"in tools that set no values, FMUs given as files start from their own: {names}")
+    return 0
+
+
+SSP = Verb(
+    "ssp", "write a scene as an SSP package, for other tools", SSP_EXAMPLES, _declare_ssp, _execute_ssp
+)
+
+
+CONTAINER_EXAMPLES = ("touchdown container disk-caged-simplified --scheme jacobi-lead -o disk.fmu",)
+
+
+def _declare_container(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene(verb)
+    add_making(verb)
+    add_output(verb, "SCENE.fmu", "file")
+
+
+def _execute_container(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.container import write_container
+
+    scene = chosen_scene(options)
+    path = write_container(scene, options.output or Path(f"{scene.name}.fmu"), making(options))
+    print(f"{path}: macro step {scene.run.macro_step:g} s, scheme {scene.run.scheme.name}")
+    return 0
+
+
+CONTAINER = Verb(
+    "container",
+    "write a scene as one FMU, for tools that take only one",
+    CONTAINER_EXAMPLES,
+    _declare_container,
+    _execute_container,
+)
+
+
+CACHE_EXAMPLES = (
+    "touchdown cache",
+    "touchdown cache --unused-for 7",
+    "touchdown cache --clear",
+)
+
+
+def _declare_cache(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    what = verb.add_mutually_exclusive_group()
+    what.add_argument(
+        "--unused-for", metavar="DAYS", help="remove what was not used for so many days (unasked: 30)"
+    )
+    what.add_argument(
+        "--clear",
+        action="store_true",
+        help="remove all that is made again when it is missed; runs under way break",
+    )
+
+
+def _execute_cache(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ...modelkit.kernel.cache_folder import user_cache
+    from ..common.cache import entries, made_again, outworn, remove
+
+    root = user_cache()
+    try:
+        held = entries(root)
+    except OSError as error:  # something went meanwhile
+        raise TouchdownError(f"cannot look at {error.filename}: {error.strerror}; try again") from None
+    print("\n".join(_table(str(root), held)))
+    if not options.clear and options.unused_for is None:
+        return 0
+    _require_cache(root)
+    chosen = made_again(held) if options.clear else outworn(held, time.time(), _days(options.unused_for))
+    try:
+        freed = remove(chosen)
+    except OSError as error:
+        raise TouchdownError(f"cannot remove {error.filename}: {error.strerror}") from None
+    print(f"removed {len(chosen)} of {len(held)}, {freed / 1e6:.1f} MB")
+    return 0
+
+
+def _table(root: str, held: Sequence[Entry]) -> Iterator[str]:
+    """What is held, a line for each kind."""
+    from ..common.cache import ABOUT, DAY
+
+    now = time.time()
+    yield root
+    for kind, about in ABOUT.items():
+        own = [entry for entry in held if entry.kind == kind]
+        if own:
+            unused = max(now - entry.used for entry in own) / DAY
+            yield f"{_line(kind, own)}  {about}; unused for {unused:.0f} days at most"
+    yield _line("in all", held)
+
+
+def _line(name: str, held: Sequence[Entry]) -> str:
+    return f"  {name:<13}{len(held):>5}{sum(entry.size for entry in held) / 1e6:>10.1f} MB"
+
+
+def _require_cache(root: Path) -> None:
+    from ...modelkit.kernel.cache_folder import is_cache
+
+    if not is_cache(root):
+        raise TouchdownError(f"{root} holds other things than the cache; remove by hand what is to go")
+
+
+def _days(text: str) -> float:
+    days = to_si(text.removesuffix("days").removesuffix("d"), "1", "--unused-for")
+    if days < 0.0:
+        raise TouchdownError(f"--unused-for {text} must not be negative")
+    return days
+
+
+CACHE = Verb(
+    "cache", "show what is kept between runs, and clean up", CACHE_EXAMPLES, _declare_cache, _execute_cache
+)

@@ -1,1 +1,0 @@
-"""Verbs that make and check FMUs and packages of them."""

@@ -1,1 +1,0 @@
-"""Verbs that show a run that is over."""

@@ -1,0 +1,153 @@
+"""Verbs for one run: run, report, animate."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..common.errors import STOPPED, TouchdownError
+from ..common.progress import growing_bar
+from .arguments import add_output, add_quiet, add_scene, add_until, chosen_scene, count
+from .verb import BROKEN_OFF, Verb, complain, say_whose_code_runs, warn
+
+if TYPE_CHECKING:
+    from ..results.result import Result
+
+
+RUN_EXAMPLES = (
+    "touchdown run disk-caged-simplified",
+    "touchdown run disk-caged-simplified --swap bearing=detailed_caged -o runs/detailed",
+    'touchdown run rotor1-9000 --macro-step "10 us" --set "rotor.speed=12000 rpm"',
+    'touchdown run rotor1-18000-150um --in-process --until settled --duration "2 s"',
+    'touchdown run rotor1-9000 --in-process --duration "40 ms" --spread 8',
+)
+
+
+def _declare_run(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene(verb)
+    add_output(verb, "runs/SCENE", "folder for the results")
+    verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
+    verb.add_argument(
+        "--native", action="store_true", help="take FMUs that need no Python, built on first use"
+    )
+    verb.add_argument("--isolate", action="store_true", help="step each .fmu in a process of its own")
+    add_until(verb)
+    verb.add_argument(
+        "--spread",
+        metavar="N",
+        help="also run N siblings, whose starts are nanometres apart, and tell how far peaks lie apart",
+    )
+    verb.add_argument("--csv", action="store_true", help="also write result.csv")
+    verb.add_argument("--no-pictures", action="store_true", help="draw nothing")
+    verb.add_argument("--dark", action="store_true", help="pictures on a dark ground")
+    add_quiet(verb)
+
+
+def _execute_run(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..common.errors import Ended
+    from ..components.loading import foreign
+    from ..results.run import natively, run_scene
+    from ..results.summary import table
+    from ..results.whirl.evidence import evidence, goes_on, hint, unbalanced
+    from ..studies.rotor.supports import balanced
+
+    chosen = chosen_scene(options)
+    files = [name for name, spec in chosen.components.items() if foreign(spec.fmu)]
+    if options.isolate:
+        chosen = chosen.set({f"{name}.isolate": True for name in files})
+    if options.native:
+        if options.in_process:
+            raise TouchdownError("--native takes FMUs and --in-process takes none; choose one")
+        chosen = natively(chosen)
+    say_whose_code_runs({name: chosen.components[name].isolate for name in files})
+    result = run_scene(
+        chosen,
+        options.output or Path("runs") / chosen.name,
+        in_process=options.in_process,
+        csv=options.csv,
+        pictures=False if options.no_pictures else "dark" if options.dark else True,
+        progress=not options.quiet,
+    )
+    print("\n".join([table(result.summary), *evidence(result.summary)]))
+    told = [*goes_on(result.summary), *_spread(result, options)]
+    hints = list(hint(options.scene, result.ending, result.summary))
+    if hints and balanced(chosen, unbalanced(result.ending)):
+        hints = ["the rotor has no unbalance, so the verdict hangs on no phase of it"]
+    print("\n".join([*told, *hints, f"results in {result.folder}"]))
+    warn(result.warnings)
+    if result.ended is not Ended.COMPLETED:
+        complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
+        return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
+    return 0
+
+
+def _spread(result: Result, options: argparse.Namespace) -> list[str]:
+    """What --spread asks for, in lines; nothing of a run that did not come to its end."""
+    from ..common.errors import Ended
+    from ..studies.drop.spread import spread, spread_lines
+
+    if options.spread is None or result.ended is not Ended.COMPLETED:
+        return []
+    siblings = count(options.spread, "--spread")
+    with growing_bar("siblings", options.quiet) as progress:
+        warn(spread(result, siblings, progress=progress))
+    return list(spread_lines(result.summary))
+
+
+RUN = Verb("run", "run a scene", RUN_EXAMPLES, _declare_run, _execute_run)
+
+
+REPORT_EXAMPLES = (
+    "touchdown report runs/disk-caged-simplified",
+    "touchdown report runs/disk-caged-simplified -o runs/drop.html --pdf",
+    "touchdown report runs/sweep-disk-caged-simplified",
+)
+
+
+def _declare_report(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    meant = "folder that `touchdown run` or `touchdown sweep` wrote"
+    verb.add_argument("folder", metavar="RUN|SWEEP", type=Path, help=meant)
+    add_output(verb, "RUN/report.html", "file")
+    verb.add_argument("--pdf", action="store_true", help="print it as PDF, too, by a Chromium on the PATH")
+
+
+def _execute_report(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..api.machines import report
+
+    for path in report(options.folder, options.output, pdf=options.pdf):
+        print(path)
+    return 0
+
+
+REPORT = Verb(
+    "report", "a run or a sweep as a page to hand on", REPORT_EXAMPLES, _declare_report, _execute_report
+)
+
+
+ANIMATE_EXAMPLES = (
+    "touchdown animate runs/disk-caged-simplified -o runs/drop.gif",
+    "touchdown animate runs/disk-caged-simplified -o runs/drop.mp4",
+)
+
+
+def _declare_animate(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument("folder", metavar="RUN", type=Path, help="folder that `touchdown run` wrote")
+    add_output(verb, "RUN/drop.gif", "film, .gif or .mp4")
+    add_quiet(verb)
+
+
+def _execute_animate(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..api.machines import animate
+
+    print(animate(options.folder, options.output, progress=not options.quiet))
+    return 0
+
+
+ANIMATE = Verb("animate", "a run's drop as a film", ANIMATE_EXAMPLES, _declare_animate, _execute_animate)

@@ -1,1 +1,0 @@
-"""Verbs that run a scene many times, or describe what is in it."""

@@ -1,1 +1,0 @@
-"""Verbs about rotors alone: describe them, and import those of others."""

@@ -1,0 +1,296 @@
+"""Verbs for many runs of a scene: sweep, merge, verdict."""
+
+from __future__ import annotations
+
+import argparse
+from functools import reduce
+from operator import mul
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..common.errors import STOPPED, TouchdownError
+from ..common.progress import bar_over, growing_bar
+from .arguments import (
+    above_zero,
+    add_jobs,
+    add_maps,
+    add_output,
+    add_phases,
+    add_quiet,
+    add_scene_name,
+    add_settings,
+    add_until,
+    angle,
+    chosen_jobs,
+    count,
+    settings,
+    several_above_zero,
+    show_sweep,
+    timed,
+)
+from .verb import Verb, broken_off, complain, warn
+
+if TYPE_CHECKING:
+    from ..studies.sweep.definition import Design
+
+
+SWEEP_EXAMPLES = (
+    'touchdown sweep disk-caged-simplified --vary "bearing.clearance=0.2,0.25,0.3 mm" --duration "0.1 s"',
+    'touchdown sweep rotor1-9000 --vary "housing_A.x0=0:150:4 um" --jobs 4 --pick "*whirl*"',
+    'touchdown sweep rotor1-9000 --sobol 64 --range "bearing_*.clearance=0.2:0.3 mm" --in-process',
+    'touchdown sweep rotor1-9000 --vary "rotor.unbalance_angle=0:345:24 deg" --shard 3/8 -o runs/part-3',
+)
+SAMPLES = {"random": "drawn at random", "latin": "Latin hypercube", "sobol": "Sobol, 2^k"}
+
+
+def _declare_sweep(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    _add_points(verb)
+    verb.add_argument("--duration", help='of each run, such as "2 s"')
+    add_until(verb)
+    add_settings(verb)
+    add_output(verb, "runs/sweep-SCENE", "folder for the results, in which a sweep goes on")
+    verb.add_argument("--anew", action="store_true", help="throw away a sweep that the folder holds")
+    add_jobs(verb)
+    verb.add_argument(
+        "--shard",
+        metavar="K/N",
+        help="run every Nth point from the Kth on; `touchdown merge` joins them",
+    )
+    verb.add_argument("--dask", metavar="ADDRESS", help="run on the workers of this Dask scheduler")
+    verb.add_argument("--in-process", action="store_true", help="step the models without FMUs, faster")
+    verb.add_argument("--keep", action="store_true", help="keep each run's recording, result.h5")
+    add_maps(verb)
+    add_quiet(verb)
+
+
+def _add_points(verb: argparse.ArgumentParser) -> None:
+    points = verb.add_argument_group(
+        "points", "NAME is a setting, or several with commas between them, or has * for anything"
+    )
+    points.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help='a list such as "0.2,0.25,0.3 mm", or START:STOP:COUNT such as "0:315:8 deg"; '
+        "repeat it for every combination",
+    )
+    points.add_argument(
+        "--tie",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help="the same; what several --tie give varies together, value by value",
+    )
+    points.add_argument(
+        "--list",
+        type=Path,
+        metavar="FILE",
+        help="CSV: a column NAME [UNIT] per setting, a line per point",
+    )
+    for name, what in SAMPLES.items():
+        points.add_argument(f"--{name}", metavar="N", help=f"N points of the --range settings: {what}")
+    points.add_argument(
+        "--range", action="append", default=[], metavar="NAME=LOW:HIGH UNIT", help="to draw points from"
+    )
+    points.add_argument("--seed", default="0", help="of the points that are drawn (default: 0)")
+
+
+def _execute_sweep(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..common.errors import Ended
+    from ..interop.scenes import find_scene
+    from ..studies.sweep.maps import refuse_axes
+    from ..studies.sweep.sweep import Running, sweep
+
+    chosen = timed(find_scene(options.scene).set(settings(options)), options)
+    design = _design(options)
+    refuse_axes(options.over, design.names)
+    running = Running(
+        chosen_jobs(options), options.dask or "", options.in_process, options.keep, options.anew
+    )
+    folder = options.output or Path("runs") / f"sweep-{chosen.name}{_tail(design)}"
+    shard = f", shard {options.shard} of" if options.shard else ":"
+    print(f"{len(design)} runs{shard} {design.about}", flush=True)
+    with bar_over(len(design), "runs", options.quiet) as bar:
+        found = sweep(chosen, design, folder, running, bar.update)
+    if kept := sum(member.kept for member in found):
+        print(f"{kept} of {len(found)} were finished before and not run again")
+    show_sweep(found, folder, options)
+    if any(m.ended is Ended.INTERRUPTED for m in found):
+        return broken_off()
+    if failed := sum(bool(m.failed) for m in found):
+        complain(f"{failed} of {len(found)} runs failed, see the table")
+        return STOPPED
+    return 0
+
+
+def _tail(design: Design) -> str:
+    """Of the folder's name: each shard has one of its own."""
+    number, of = design.part
+    return f"-{number}-of-{of}" if of > 1 else ""
+
+
+def _design(options: argparse.Namespace) -> Design:
+    """The points that are asked for: every combination of all that is given. Raises TouchdownError."""
+    from ..studies.sweep.definition import Design, parse_all, read_points
+
+    designs: list[Design] = []
+    if options.list is not None:
+        designs.append(read_points(options.list))
+    designs += _samples(options)
+    if options.tie:
+        designs.append(Design.tied(parse_all(options.tie, "--tie")))
+    if options.vary:
+        designs.append(Design.grid(parse_all(options.vary)))
+    if not designs:
+        raise TouchdownError(
+            "nothing varies; add --vary NAME=VALUE,VALUE,... or --vary NAME=START:STOP:COUNT"
+        )
+    return _sharded(reduce(mul, designs), options.shard)
+
+
+def _samples(options: argparse.Namespace) -> list[Design]:
+    """The points that are drawn: of one kind, or none."""
+    from ..studies.sweep.definition import MAX_POINTS, Design
+
+    asked = {name: getattr(options, name) for name in SAMPLES if getattr(options, name) is not None}
+    if not asked and options.range:
+        raise TouchdownError("--range says where to draw points; add how many, such as --sobol 64")
+    if len(asked) > 1:
+        raise TouchdownError(f"--{' and --'.join(asked)} are different samples; choose one")
+    ranges = {}
+    for text in options.range:
+        name, equals, span = (part.strip() for part in text.partition("="))
+        if not equals or not name or name in ranges:
+            raise TouchdownError(f"--range {text}: write NAME=LOW:HIGH UNIT, each name once")
+        ranges[name] = span
+    seed = options.seed.strip()
+    if not seed.isdecimal():
+        raise TouchdownError(f"--seed {options.seed} must be a whole number, 0 or above")
+    return [
+        getattr(Design, name)(ranges, count(number, f"--{name}", MAX_POINTS), int(seed))
+        for name, number in asked.items()
+    ]
+
+
+def _sharded(design: Design, shard: str | None) -> Design:
+    if shard is None:
+        return design
+    number, slash, of = shard.partition("/")
+    if not slash or not number.strip().isdecimal() or not of.strip().isdecimal():
+        raise TouchdownError(f"--shard {shard}: write K/N, such as 3/8")
+    return design.shard(int(number), int(of))
+
+
+SWEEP = Verb(
+    "sweep",
+    "run a scene many times with settings that vary",
+    SWEEP_EXAMPLES,
+    _declare_sweep,
+    _execute_sweep,
+)
+
+
+MERGE_EXAMPLES = (
+    "touchdown merge runs/part-1 runs/part-2 runs/part-3 -o runs/whole",
+    "touchdown merge runs/sweep-rotor1-9000 -o runs/so-far --over bearing_A.clearance",
+)
+
+
+def _declare_merge(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument(
+        "folders", nargs="+", type=Path, metavar="FOLDER", help="of a sweep, or of its shards"
+    )
+    add_output(verb, Path("runs/merged"), "folder for all of it, in which the sweep can go on")
+    add_maps(verb)
+
+
+def _execute_merge(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..studies.sweep.results import merge
+
+    found = merge(options.folders, options.output)
+    show_sweep(found, options.output, options)
+    if failed := sum(bool(m.failed) for m in found):
+        complain(f"{failed} of {len(found)} runs failed, or were not run yet, see the table")
+    return 0
+
+
+MERGE = Verb(
+    "merge",
+    "put the shards of a sweep together, or read one that is under way",
+    MERGE_EXAMPLES,
+    _declare_merge,
+    _execute_merge,
+)
+
+
+VERDICT_EXAMPLES = (
+    'touchdown verdict rotor1-18000-150um --duration "0.2 s" --in-process',
+    'touchdown verdict rotor1-18000-150um --duration "0.2 s" --macro-steps "10,20,40 us" --reference',
+)
+
+
+def _declare_verdict(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    add_phases(verb)
+    verb.add_argument("--macro-steps", help='such as "5,10,20,40 us" (default: the scene\'s own)')
+    verb.add_argument(
+        "--reference",
+        nargs="?",
+        const="5 us",
+        metavar="STEP",
+        help='also with adaptive steps inside the bearings, at this macro step (as it stands: "5 us")',
+    )
+    add_output(verb, "runs/verdict-SCENE", "folder for the results")
+    add_jobs(verb)
+    add_settings(verb)
+    verb.add_argument(
+        "--duration",
+        help='of each run, such as "0.2 s" (default: until it has settled, at most 4 times the scene\'s)',
+    )
+    add_until(verb)
+    verb.add_argument("--in-process", action="store_true", help="step the models without FMUs")
+    add_quiet(verb)
+
+
+def _execute_verdict(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.scenes import find_scene
+    from ..studies.verdict.report import report_lines, write_report
+    from ..studies.verdict.study import Plan, Running, study_verdict
+
+    chosen = timed(find_scene(options.scene).set(settings(options)), options)
+    plan = Plan(
+        spacing=angle(options.grid, "--grid"),
+        resolution=angle(options.resolution, "--resolution"),
+        macro_steps=several_above_zero(options.macro_steps, "s", "--macro-steps"),
+        reference=above_zero(options.reference, "s", "--reference"),
+    )
+    running = Running(chosen_jobs(options), options.in_process)
+    folder = options.output or Path("runs") / f"verdict-{chosen.name}"
+    with growing_bar("runs", options.quiet) as progress:
+        study = study_verdict(chosen, plan, folder, running, progress)
+    write_report(study, folder)
+    print("\n".join(report_lines(study)))
+    print(f"results in {folder}")
+    warn(study.remarks)
+    if study.interrupted:
+        return broken_off()
+    if failed := sum(len(circle.failed) for circle in study.circles):
+        complain(f"{failed} runs failed, see above")
+    return STOPPED if failed else 0
+
+
+VERDICT = Verb(
+    "verdict",
+    "which phases of the unbalance whirl, and where the edges are",
+    VERDICT_EXAMPLES,
+    _declare_verdict,
+    _execute_verdict,
+)

@@ -1,1 +1,0 @@
-"""Mathematics that kernels need and no library has as they need it."""

@@ -1,0 +1,111 @@
+"""What is known of a rotor before it is dropped: modes, whirl, critical speeds, how it lies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..modelkit.model import ModelError
+from .beams.shaft import Shaft
+from .modal.data import most_modes, seats
+from .modal.modes import RIGID, Basis, basis, fullest
+from .modal.supported import HeldRotor, LinearBearing
+from .modal.whirl_speeds import CriticalMap, Held, critical_map, held, whirl_frequencies
+from .statics import Rest, at_rest
+
+HERTZ = 0.5 / math.pi
+FOLLOWED = 12  # modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones
+LINES = 12  # of a Campbell diagram on supports
+COARSER = 2  # of the speeds every which is taken for it
+
+
+@dataclass(frozen=True)
+class Portrait:
+    """A free rotor's modes in one plane, by frequency, and its lines over the spin speed.
+
+    A line belongs to a mode; lines of the translation, and the backward one of the tilt, stay at zero.
+    """
+
+    shaft: Shaft
+    kinds: tuple[str, ...]  # of the n modes
+    frequencies: np.ndarray  # (n,), Hz, at rest
+    shapes: np.ndarray  # (N, n), deflection of the nodes, largest 1
+    speeds: np.ndarray  # (S,), rad/s, not negative
+    forward: np.ndarray  # (S, n), Hz, whirl with the spin
+    backward: np.ndarray  # (S, n), Hz, whirl against it
+    rest: Rest | None  # rigidly held at the seats; None where there are less than two
+    critical: tuple[CriticalMap, ...]  # held where it is levitated, and at its seats; where two nodes are
+    held: Held | None  # on the shaft's own supports, over the speeds as well; None where there are none
+
+
+def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> Portrait:
+    """The lowest `modes` modes of `shaft` (0: all) and their whirl frequencies at `speeds` (rad/s).
+
+    The sign of a speed does not matter: it turns the senses of whirl with it. Raises ModelError where
+    there are not so many modes, or the elements are too unlike each other.
+    """
+    full = basis(shaft, 0)
+    count = modes or len(full.omega)
+    if not RIGID <= count <= len(full.omega):
+        raise ModelError(
+            f"modes = {modes}: {shaft.title} has {len(full.omega)} modes per plane; ask for "
+            f"{RIGID} (rigid) to {len(full.omega)}, or 0 for all"
+        )
+    full_there = fullest(shaft, list(dict.fromkeys(s.node for s in (*shaft.stations, *shaft.supports))))
+    shapes = full.shapes[0::2, :count]
+    turning = np.abs(np.asarray(speeds, dtype=float))
+    whirl = HERTZ * whirl_frequencies(full, turning)
+    forward, backward = _lines(whirl, count)
+    return Portrait(
+        shaft=shaft,
+        kinds=tuple(_kind(k) for k in range(count)),
+        frequencies=HERTZ * full.omega[:count],
+        shapes=shapes / np.max(np.abs(shapes), axis=0),
+        speeds=turning,
+        forward=forward,
+        backward=backward,
+        rest=_at_rest(shaft),
+        critical=tuple(_critical(shaft, full_there)),
+        held=_held(shaft, turning) if shaft.supports else None,
+    )
+
+
+def _held(shaft: Shaft, speeds: np.ndarray) -> Held:
+    """On its own supports, at the first speed and over the others, with the damping of its own modes."""
+    nodes = list(dict.fromkeys(s.node for s in shaft.supports))
+    few = basis(shaft, min(FOLLOWED, most_modes(shaft)), nodes)
+    rotor = HeldRotor(few, [LinearBearing.of(s) for s in shaft.supports], shaft.damping_ratio)
+    return held(rotor, [speeds[0], *speeds[1:][::COARSER]], LINES)
+
+
+def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:
+    """Held by what levitates it, and by its seats."""
+    levitating = [s for s in shaft.stations if s.name in shaft.levitated_at]
+    for places in (levitating, [s for s in shaft.stations if s not in levitating]):
+        if len({s.node for s in places}) > 1:
+            yield critical_map(shaft, full, places)
+
+
+def _kind(mode: int) -> str:
+    return ("translation", "tilt")[mode] if mode < RIGID else f"bending {mode - RIGID + 1}"
+
+
+def _lines(whirl: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Forward and backward lines (S, count) out of ascending whirl frequencies (S, 2n).
+
+    Of the 2n, n - 2 are negative, three are zero, and n - 1 positive: tilting, a free rotor goes round
+    only forwards.
+    """
+    bending = whirl.shape[1] // 2 - RIGID
+    zero = np.zeros((len(whirl), 1))
+    forward = np.hstack((zero, np.abs(whirl[:, -bending - 1 :])))
+    backward = np.hstack((zero, zero, -whirl[:, :bending][:, ::-1]))
+    return forward[:, :count], backward[:, :count]
+
+
+def _at_rest(shaft: Shaft) -> Rest | None:
+    nodes = sorted(set(seats(shaft)))
+    return at_rest(shaft, [(node, math.inf) for node in nodes]) if len(nodes) > 1 else None
