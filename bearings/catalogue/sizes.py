@@ -1,7 +1,5 @@
 """Bearings with a designation: the source's Tables 1 and 3, and the common sizes of ISO 15.
 
-Bearings of the source's Tables 1 and 3.
-
 Filled in, because the source does not give them: masses and inertias of the inner rings, masses of the
 outer rings (catalogue mass less the other parts), static load ratings of the small bearings, dynamic ones
 by ISO 281, the cage as heavy as two balls. Corrected: the pitch diameter of the 6904, printed as 26.1 mm,

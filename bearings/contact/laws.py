@@ -1,7 +1,5 @@
 """Normal contact forces, and their stiffness from geometry.
 
-Normal contact forces.
-
 One law holds the source's three: Hertz (2.1), indentation-proportional damping (2.38) and the
 rotor-ring law (2.12) with its exponent and dissipation parameter; (2.2), plain linear damping, is the
 `viscous` term.

@@ -1,7 +1,5 @@
 """Two bodies that touch in one point, at an instant and over a kick of the leapfrog method.
 
-Contact forces that depend on velocity, over a kick of the leapfrog method.
-
 A kick of h seconds changes the velocities of light bodies, their places held. Friction and damping answer
 to that change within the kick: on a ball of half a gram friction does so within 0.1 us. So both are taken
 implicitly, with the mean of the force over the kick. A contact's relative speed goes from s to s + ds with
@@ -18,8 +16,6 @@ of third order, and no step reverses a motion for long, however stiff the law (L
 this is the law as it stands.
 
 Hairer, Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.5.
-
-Two bodies that touch in one point: what they do to each other there.
 
 Both forces act in one point of space, so what one body loses in linear and angular momentum the other
 gains. Every contact of a journal, a ball, a ring or a cage is this one; they differ in where the point

@@ -1,14 +1,10 @@
 """Races that are not circles: lobed or worn, and where a ball touches them.
 
-Races that are not circles: lobed by manufacture, or worn in one place.
-
 In polar coordinates about the ring's centre, turning with the ring,
 
     r(s) = r0 + a cos(n (s - s0)) + w exp((cos(s - s1) - 1) / b^2)
 
 `r0` is the circle's radius. Wear is a dent: it widens the outer race and narrows the inner one.
-
-Where a ball touches a race that is not a circle (2.29-2.36).
 
 Both outlines are curves: a point on one is p(s) = R + A(theta) u(s). The contact is where the line
 between the points is normal to both curves, which Newton's method finds from

@@ -12,8 +12,6 @@ The same contact as `bearings.contact.pair.press`, for all balls at once: the lo
 `bearings.rolling.rubbing` for friction, are vector code (`bearings.rolling.ball_state`) and make up most of
 a detailed bearing's cost. Where a race is no circle, the contact is searched for.
 
-Balls as bodies between both races, which press and rub them (2.39, 2.45).
-
 A ball touches the inner ring from outside and the outer ring, which is fixed in the housing, from inside,
 each with its own stiffness and with friction. Races are circles, or curves where a profile says so.
 

@@ -1,7 +1,5 @@
 """The balls as a set: where they and the ring rest at the start, and the largest of their loads.
 
-Where the ring rests on the balls at the start, and the balls between the races.
-
 The ring's weight and the springs at the balls have a potential that is convex in the ring's place: it rests
 where that is least. Newton's method finds it from anywhere: where nothing holds the ring along a line it
 goes far down that, and a step that overshoots is halved.

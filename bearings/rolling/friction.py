@@ -7,8 +7,6 @@ those that press are gathered from both races, one behind the other, and what co
 eight of them become one pass of vector code, however they lie. The passes are short ones, each over all
 contacts, as one long chain of operations would keep the processor waiting for its own results.
 
-Friction of all balls at both races, and of the journal in the bore, over a kick of the leapfrog method.
-
 A ball's two contacts share its velocity and its spin, all inner contacts and the bore share the ring's: so
 they are solved together (`bearings.contact.kick` has one contact alone). With f_o, f_i the friction on a
 ball along t, e the changes of the sliding speeds by all other forces, and Delta the ring's change of

@@ -1,7 +1,5 @@
 """The inner ring, in which the journal lands, and where balls lie behind it in the state.
 
-The inner ring of a bearing, in which the journal lands: what every rolling model shares.
-
 Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state starts with the
 ring's seven components; balls and cage follow.
 

@@ -1,7 +1,5 @@
 """The row of balls of a cageless bearing, each free along its race and in its spin.
 
-The row of balls of a cageless bearing, each free along its race and in its spin (2.8, 2.10, 2.11).
-
 Each ball has its attitude angle, its orbit (the angle's rate) and its spin; the ring's race and the
 housing's drive it (`bearings.rolling.pitch_circle`), its neighbours push and rub.
 

@@ -1,11 +1,7 @@
 """Copies of journal and housing within a bearing's macro step.
 
-Where the copies of journal and housing lie in a bearing's state, and what a bearing's memory holds.
-
 The state begins with the copies and their quadratures, `INSIDE` components. What is inside the bearing
 follows, and behind it `PER_MODE` components for each elastic mode that is carried.
-
-The copies of journal and housing: how they take the bodies' state and move under the bearing's load.
 
 The journal's copy is a point mass, or with a flexible rotor the sum of one and of the rotor's elastic
 modes; the housing's is a mass on its springs. Quadratures of the load run beside them.

@@ -8,8 +8,6 @@ With the impulse P and the first moment Q about the middle of a step of H second
 
 or, for a housing on springs, the two numbers that bring it where its copy went.
 
-A bearing's macro step: copies set to the bodies, integrated with what is inside, the load handed over.
-
 A bearing brings four kernels, which are compiled into the functions below:
 
     react(t, q, dq, m)          the `Load` (N, N m) at t (s), and in dq the derivative of what is inside

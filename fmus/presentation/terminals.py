@@ -1,7 +1,5 @@
 """Terminals and icons: which variables belong to one port, and pictures to draw them with.
 
-terminalsAndIcons/: which variables belong to one port, and pictures to draw FMU and ports with.
-
 FMI 3.0 defines it (2.4.9), and FMI 2.0 takes it over from its release 2.0.4 on. Tools that know it connect
 a bearing with a journal by one line instead of thirty: members of one name belong together.
 """

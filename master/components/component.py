@@ -4,8 +4,6 @@ The contract's variables, as `touchdown.modelkit.ports` declares them: their nam
 
 At a port stands the motion of a body, which crosses to the bearing, and the load on it, which comes back.
 
-What the master knows of a component: named variables, and calls in a fixed order.
-
     set(...)  enter()  [push() / pull()]...  exit()  then for each macro step  push()  step(t, H)  pull()
 
 `bind` fixes, before `enter`, which variables are exchanged at every step. Broken order is a programming

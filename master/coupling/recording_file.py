@@ -1,7 +1,5 @@
 """An HDF5 file that is netCDF-4 as well, and whole at every moment.
 
-A file that is whole at every moment, for HDF5 to write to.
-
 HDF5 changes its file in many small writes, and between two of them it is broken. Here they are held, and
 reach the disk at `commit`, in an order of which every beginning is a whole file: what is new lies where
 nothing leads to yet; then the heads of the datasets change, one write each, which say how long these are. A

@@ -4,8 +4,6 @@ The FMUs that a package holds: each starts from what its component starts from i
 
 Not every tool reads a package's values. One that sets nothing then runs the same drop.
 
-A scene as one FMU, for tools that take only one: a container of fmu-manipulation-toolbox.
-
 Its runtime is native code that steps the FMUs inside at the scene's macro step, one after the other in
 the order of the scene's Gauss-Seidel schemes, or all at once for Jacobi schemes. Constants are not linked
 but set, since a container links outputs only; with them all parameters are fixed in the container.

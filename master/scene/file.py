@@ -1,7 +1,5 @@
 """Scenes from TOML files, and from the values a run leaves behind.
 
-Scenes from TOML files.
-
 title = "..."
 about = "..."
 zero = "amb.shutdown_time"                     # times and the duration count from here

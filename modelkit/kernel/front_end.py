@@ -1,7 +1,5 @@
 """numba's way from a function to LLVM code, without what kernels have no use for.
 
-numba's way from a function to LLVM code, without what kernels have no use for.
-
 Most of the time that a kernel takes to compile is numba's own, in Python: over a third of its passes look
 for what no kernel contains, and the type of each sum and product is found by trying dozens of candidates.
 """

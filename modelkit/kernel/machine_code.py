@@ -8,8 +8,6 @@ had, for the very sources, numba and Python that it was made of. It lies beside 
 change the sources, so it is trusted as they are. Its results are those of code compiled here, to the last
 bit: nothing is reassociated or contracted, and wider instructions round as plain ones do.
 
-Machine code kept between processes, and loaded only where it is what was written.
-
 numba's own cache loads whatever its files hold: one flipped byte ends the process. Here a file holds the
 code of one kernel for one signature behind a digest of it, under a name that both decide. What is damaged,
 another signature's or another user's is as good as missing: it is compiled again and replaced. Where this

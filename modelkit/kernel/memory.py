@@ -1,7 +1,5 @@
 """Memory, machine code and words shared by threads, reached by their addresses from within a kernel.
 
-Memory and machine code reached by their addresses, from within a kernel.
-
 A kernel that calls others by address is compiled once, whatever it calls. Two conventions are known: that
 of FMI 2.0's C functions, and that of `Model.advance`, which is numba's own and is left to numba to follow.
 """

@@ -1,7 +1,5 @@
 """A flexible rotor as data: elements, masses, seats, supports, and the matrices of the whole.
 
-A flexible rotor as data: what it is made of, and what sits on it and holds it.
-
 It is a stepped shaft of circular beam elements, or a superelement of matrices. Nodes are numbered from 1,
 at the ends of the elements in their order; positions are measured along the axis from node 1. SI units.
 """

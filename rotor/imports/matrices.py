@@ -1,7 +1,5 @@
 """Rotors from mass, stiffness and gyroscopic matrices of other finite-element programs.
 
-A rotor from mass, stiffness and gyroscopic matrices, as finite-element programs export them.
-
 Arrays by name, for n rows and N nodes on the axis:
 
     M, K, G      (n, n) of M q'' + (C + Omega G) q' + K q = F, the spin Omega in rad/s

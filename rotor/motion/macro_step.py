@@ -1,7 +1,5 @@
 """A macro step of the flexible rotor.
 
-A macro step of the rotor, divided into strides.
-
 In a stride the gyroscopic coupling turns the velocities (exactly, in the principal axes of G) for half of
 it, each mode swings alone (exactly, under a load linear in time) for the whole of it, and the velocities
 are turned for another half: Strang splitting, of second order in the stride. Stable for every mode,

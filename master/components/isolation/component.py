@@ -1,7 +1,5 @@
 """A component that is an FMU in a process of its own.
 
-A component that is an FMU in a process of its own.
-
 A macro step crosses once: inputs are left on the board until something is asked for, and the outputs come
 with the step. An FMU that ends its process, crashes or hangs is a TouchdownError like any other failure.
 """

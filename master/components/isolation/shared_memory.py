@@ -1,7 +1,5 @@
 """Memory that the master and the process of an FMU share, and how they take turns.
 
-Memory that the master and the process of an FMU share: requests, replies and values.
-
 Words that the two sides write lie on cache lines of their own. Values follow them; one request at a time is
 under way, and each side reads them only when the other has posted.
 

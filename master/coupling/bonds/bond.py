@@ -1,7 +1,5 @@
 """Bonds: a force that one component gives and another takes, and the motion that comes back.
 
-A bond: a force that one component gives and another takes, and the motion that comes back.
-
 Their product is power, so what crosses a bond can be audited, and exchanged as neither of both can alone.
 The giver of the force takes motion; its taker gives it.
 """

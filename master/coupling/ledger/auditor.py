@@ -6,8 +6,6 @@ Such a bearing gets the variables of a report beside its own, so that summary, p
 find them as they find those of the project's bearings. They come of means over macro steps: a contact
 shorter than a few of these is heard too low.
 
-Who listens to a bearing that keeps no account of its work.
-
 The loads that such a bearing hands over do not tell what the coupling made: a mean force over a step in
 which the contact opens and closes is consistent with any loss. So a second instance of its FMU is told, in
 parts of each step that is over, the motion that the bodies really made, prescribed as the contract has it

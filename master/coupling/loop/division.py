@@ -1,12 +1,8 @@
 """Macro steps that are divided: two bearings hit at once, or a whirl that makes energy.
 
-Macro steps that are divided while a rotor is hit by two bearings at once.
-
 A bearing knows in a macro step what its rotor did under the other one in the step before. Where both are
 hit, the light rings between journal and balls rattle at tens of kHz, within a macro step: what one bearing
 will do in the next step its last load does not tell. So these steps, some per cent of a drop, are divided.
-
-Macro steps that are divided while a whirl makes energy.
 
 In a whirl the journal is pressed hard against its ring all the time, and turns over in milliseconds what a
 drop turns over once. What the coupling makes of that grows with a power of the macro step, the order of the

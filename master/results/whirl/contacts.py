@@ -1,7 +1,5 @@
 """Where the journal presses on the bore, and how that place moves round it.
 
-Where the journal presses on the bore, and how that place moves round it.
-
 A recording shows a row of contacts with flights between them. In contact the place follows from the force
 on the journal, of which the bearing presses it back: this holds wherever the orbit has its centre, and
 friction turns it by no more than its angle. Where no force was recorded, contact is assumed beyond

@@ -6,8 +6,6 @@ The bearing presses the journal inwards, and friction turns that force out of th
 spins, sliding friction points against the spin: it drives a backward whirl and brakes a forward one, which
 something else has to keep up, an unbalance for one. Where the journal rolls on the bore, nothing does.
 
-What a journal does in its bearing, told from where it presses on the bore.
-
 A journal that whirls is pressed to the bore by its own centrifugal force, all the way round. Against the
 spin, friction drives it; it would roll at the journal's radius over the clearance times the spin, tens of
 times the spin, and mostly slides while the ring turns with it. With the spin it slides. To go round at all,

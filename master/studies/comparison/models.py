@@ -1,7 +1,5 @@
 """What a scene does not need: error and time of variants against the scene as it is.
 
-What a scene does not need: error and time of each variant against the scene as it is.
-
 Errors are found in process, wall time through FMUs unless asked otherwise, with recording as in a run.
 """
 

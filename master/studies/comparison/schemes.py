@@ -1,7 +1,5 @@
 """Speed against error of coupling schemes on one drop.
 
-Speed against error: every coupling scheme over macro steps, and monolithic solvers, on one drop.
-
 Errors are found in process, which is the same to the bit as through FMUs; wall time is through FMUs
 unless asked otherwise. Motion is measured against the monolithic reference. The peak forces of the first
 impact (contact, worst ball, side of a ball), which bearings report from inside their steps, are measured

@@ -1,7 +1,5 @@
 """How long a macro step the coupling bears in hard cases.
 
-How long a macro step a coupling scheme bears in a hard case, and whether the energy ledger says so.
-
 A case is a scene, figures read at the end of its run, and what is right: from theory, or from a run at
 REFERENCE_STEP with the default scheme. A run is
 

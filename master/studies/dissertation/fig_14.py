@@ -1,7 +1,5 @@
 """Which drops of rotor I whirl, by speed and misalignment, beside Fig 14 of the source.
 
-Which drops of rotor I whirl, by speed and misalignment, beside Fig 14 of the source.
-
 Whether a rotor whirls is decided by little, the phase of its unbalance for one: so what is counted is the
 part of all phases that whirls, over phases that resolve the windows.
 """

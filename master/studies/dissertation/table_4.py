@@ -10,8 +10,6 @@ How the cases of the source's Table 4, rotor II, are read: what is assumed, and 
 Like is to be compared with like: a reading is how stresses are recovered, the friction law, the offsets and
 the instant. What the source does not state is an assumption.
 
-Table 4 of the source, the stresses of rotor II: read as the source reads them, and as they are.
-
 Drops over unbalance phases; of each reading the medians stand beside the source's figures, and below them
 what they move by if one thing is changed.
 """

@@ -1,7 +1,5 @@
 """The first impact at each touchdown seat, watched while a scene runs.
 
-The first impact at each touchdown seat of a rotor, watched while a scene runs.
-
 A light inner ring rattles between journal and balls: the momentary contact force swings about what the
 rotor is decelerated by, and parts from it for some ten microseconds at a time. So an impact is over once
 the journal has been free for PARTED, and its force is the resultant on the journal averaged over AVERAGE,

@@ -1,11 +1,7 @@
 """What runs are measured against: the monolithic solution, or the scene's own refinement.
 
-What runs are measured against where there are no equations to join: the scene's own refinement.
-
 An FMU of others' can only be stepped. So the reference is the same drop in finer and finer macro steps, as
 far as two of them agree on it; an error that all steps have in common stays unseen.
-
-What runs are measured against: the monolithic solution, as far as two solvers agree on it.
 
 After some impacts every difference is amplified beyond any use, that of two exact solvers too. So the
 motion is compared point by point only up to the horizon, the last instant up to which both agree.

@@ -1,7 +1,5 @@
 """A scene's rotor on what holds it: levitated, and resting on touchdown bearings.
 
-A scene's rotor on what holds it: levitated by its magnetic bearings, and resting on touchdown bearings.
-
 The rotor is its model's, with as many modes as the scene has it keep. Bearings are measured on a rig, each
 by itself, and what they stand on is told by the contract. Levitated, all that gives a force where the rotor
 starts holds it; at rest, all that does not shut down.

@@ -13,10 +13,8 @@ A range to draw from has two ends, and the unit of both:
 
 rotor.speed=6000:12000 rpm
 
-What a sweep was asked to do: its scene, its points, and what they are run with.
-
-It stands in its folder as sweep.json, so that the sweep can go on, be merged with others, and be read by
-programs. Two sweeps are the same where all that changes a number is.
+A definition stands in its folder as sweep.json, so that the sweep can go on, be merged with others, and be
+read by programs. Two sweeps are the same where all that changes a number is.
 """
 
 from __future__ import annotations

@@ -6,8 +6,6 @@ Phases are in degrees, from 0 to below 360, and the circle closes: from 350 on t
 Between two neighbours of different verdicts lies an edge, known to within the gap between them. Neighbours
 of equal verdicts are taken to have nothing between them: what is narrower than the grid may be missed.
 
-A scene at many phases of its unbalance, refined where the verdicts of neighbours differ.
-
 A rotor that drops meets the bearing as its unbalance happens to stand, and whether it whirls is decided by
 that: within windows of phases it does, outside it does not. One run is one phase and tells neither.
 """
