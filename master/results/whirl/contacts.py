@@ -38,7 +38,9 @@ CLINGS = 0.6 * TURN  # most that such a flight turns: the journal touches along 
 HOPS = TURN * 160.0 / 360.0  # most that a chord spans: a star's 150 degrees, and not the 180 of a bounce
 BENDS = 0.25  # of the clearance: gravity bends a hop off its chord by so much, inwards or outwards
 COARSE = TURN / 4.0  # between recorded values in contact; a whirl turns by less where it is recorded well
-ROUND, OWN_CENTRE = 0.05, 0.5  # of the clearance: how well a circle fits, how far off its centre may be
+ROUND = 0.05  # of the clearance: so closely an orbit follows the circle through it
+OUTER = 0.5  # of the clearance, from the orbit's middle: what lies within is a fall or a bounce
+WIDEST = 1.5  # of the clearance: the radius of a circle that a bore may give way to
 DEEPER = 0.5  # of a short chord's distance to the centre: a rebound that lands nearby may come so deep
 
 
@@ -104,22 +106,30 @@ def too_coarse(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> boo
 def about_its_circle(orbit: Orbit) -> Orbit:
     """The orbit about the centre of the circle that its outer part runs on, as about a displaced ring.
 
-    Unchanged where that part is no circle of about the clearance, or does not go all the way round.
+    Unchanged where that part is no circle of about the clearance, or does not go all the way round. How far
+    off its centre is does not count: a circle so wide has a ring about it, wherever that stands.
     """
-    far = np.flatnonzero(orbit.radius >= OWN_CENTRE)
-    if len(far) < FEWEST:
+    known = np.isfinite(orbit.radius)
+    x, y = orbit.x[known] / orbit.clearance, orbit.y[known] / orbit.clearance
+    if len(x) < FEWEST:
         return orbit
-    x, y = orbit.x[far] / orbit.clearance, orbit.y[far] / orbit.clearance
+    far = np.hypot(x - _middle(x), y - _middle(y)) >= OUTER
+    x, y = x[far], y[far]
+    if len(x) < FEWEST:
+        return orbit
     # |r|^2 = 2 r . c + (R^2 - |c|^2), linear in the centre c and in the bracket
     matrix = np.column_stack([2.0 * x, 2.0 * y, np.ones(len(x))])
     cx, cy, rest = np.linalg.lstsq(matrix, x * x + y * y, rcond=None)[0]
     radius = math.sqrt(max(rest + cx * cx + cy * cy, 0.0))
     off = np.abs(np.hypot(x - cx, y - cy) - radius)
     quarters = np.unique(np.floor(np.arctan2(y - cy, x - cx) / (0.25 * TURN)))
-    fits = np.median(off) <= ROUND and len(quarters) == 4 and math.hypot(cx, cy) <= OWN_CENTRE
-    if not fits or not TOUCHES <= radius <= 1.0 + OWN_CENTRE:
+    if np.median(off) > ROUND or len(quarters) < 4 or not TOUCHES <= radius <= WIDEST:
         return orbit
     return orbit._replace(x=orbit.x - cx * orbit.clearance, y=orbit.y - cy * orbit.clearance)
+
+
+def _middle(values: np.ndarray) -> float:
+    return 0.5 * float(np.min(values) + np.max(values))
 
 
 def _contacts(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> tuple[np.ndarray, np.ndarray]:

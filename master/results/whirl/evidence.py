@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from ..ending import Readable
 from .contacts import SWING
-from .verdict import Verdict, short_of_one
+from .verdict import TOO_COARSE, Verdict, short_of_one
 
 ANGLE = "unbalance_angle"  # of a rotor at the start
 SIZES = ("eccentricity", "unbalance_scale")  # without it there is no unbalance, where a rotor states one
@@ -27,6 +27,10 @@ NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn i
 MARCHED = "_most_turns_one_way"  # behind the key of a verdict
 CONTACT = "first_contact_time_s"  # begins the key of a bearing's; no value: not yet
 SWUNG = math.degrees(SWING)  # of a pendulum, either way in contact
+COARSELY = (
+    "from one recorded row in contact to the next the contact mostly moves by a quarter turn or more; "
+    "a smaller run.record_every or run.macro_step tells"
+)
 SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a whirl nor brakes it
 
 
@@ -67,6 +71,8 @@ def _rests_on(summary: Mapping[str, object], seat: str) -> str:
     marched, turns = summary[f"{seat}{MARCHED}"], summary[f"{seat}_revolutions"]
     if not isinstance(marched, float) or not isinstance(turns, float):
         return f"{seat}: not told, the bearing states no clearance"
+    if summary[seat] == TOO_COARSE:
+        return f"{seat}: {TOO_COARSE}: {COARSELY}"
     if turns > 0.0:
         said = f"the contact went round {turns:.3g} times{_driven(summary[f'{seat}_force_phase_deg'])}"
     elif marched == 0.0:

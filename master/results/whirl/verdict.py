@@ -121,6 +121,7 @@ def clopper_pearson(hits: float, count: float) -> Share:
 TURNS = "_revolutions"  # behind the key of a seat's verdict: turns of its decisive whirl
 TREND = "_trend"  # behind it: how a whirl goes on at the end
 AT_THE_END = ", still so at the end"
+TOO_COARSE = "cannot tell: sampled too coarsely"
 STILL, OVER = re.compile(r", at \S+ s still whirling.*"), re.compile(r", \S+ to \S+ s$")
 
 
@@ -189,8 +190,13 @@ def how_it_goes_on(summary: Mapping[str, object]) -> str:
 
 
 def has_verdict(summary: Mapping[str, object]) -> bool:
-    """Whether one could be given at any seat."""
-    return any(summary[seat] is not None for seat in _seats(summary))
+    """Whether one could be given: at any seat, unless what may whirl was recorded too coarsely to tell."""
+    return any(summary[seat] is not None for seat in _seats(summary)) and not recorded_too_coarsely(summary)
+
+
+def recorded_too_coarsely(summary: Mapping[str, object]) -> bool:
+    """Whether some seat cannot be told for that, and none is known to whirl."""
+    return not whirling(summary) and any(summary[seat] == TOO_COARSE for seat in _seats(summary))
 
 
 def kind(words: str) -> Kind:
@@ -216,7 +222,6 @@ def _goes_on(words: str) -> bool:
     return words.endswith(AT_THE_END)
 
 
-TOO_COARSE = "cannot tell: sampled too coarsely"
 LOOPS = 2.0 * TURN  # a bounce or two may chance to circle the centre once
 WIDE = 0.2  # of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
 
@@ -321,7 +326,7 @@ class Whirl:
 
     @property
     def radius(self) -> float | None:
-        """Of the decisive whirl (m, median), from the bearing's centre."""
+        """Of the decisive whirl (m, median), from the bearing's centre, or the circle's (`classify`)."""
         return self.decisive.radius if self.decisive else None
 
     @property
@@ -362,7 +367,8 @@ def classify(
 
     All arrays have the shape (rows,). clearance: m, on radius; spin: of the rotor, rad/s, of which the
     sign counts (0 as above 0). force: the bearing's force on the journal (N), x and y; None where it was
-    not recorded: then contact is told from the orbit. Values that are no numbers are passed over.
+    not recorded: then contact is told from the orbit, about the circle that it runs on if it does.
+    Values that are no numbers are passed over.
     """
     orbit = Orbit(time, x, y, clearance)
     if force is None:  # then contact is told from the orbit, whose centre a displaced ring takes along

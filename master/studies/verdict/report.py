@@ -223,9 +223,9 @@ def _records(study: Study) -> Iterator[dict[str, object]]:
             yield {
                 "steps": circle.title,
                 "phase_deg": phase,
-                "verdict": "" if m.failed else circle.verdicts[phase] or SETTLES,
+                "verdict": (circle.verdicts[phase] or SETTLES) if phase in circle.verdicts else "",
                 "largest_contact_force_N": peak_force(m.summary),
-                "failed": m.failed,
+                "failed": circle.failed.get(phase, m.failed),
                 **{key: counted(value) for key, value in m.summary.items()},
             }
 

@@ -29,7 +29,7 @@ from ...coupling.system import System
 from ...results.run import make_writable
 from ...results.summary import touchdown_seats
 from ...results.whirl.evidence import ANGLE, unbalanced
-from ...results.whirl.verdict import Share, clopper_pearson, whirling
+from ...results.whirl.verdict import TOO_COARSE, Share, clopper_pearson, recorded_too_coarsely, whirling
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
 from ..sweep.members import Member
@@ -47,15 +47,19 @@ class Circle:
     @cached_property
     def verdicts(self) -> Verdicts:
         """Of the runs that came to their end: how the rotor whirls, in words, or "" where it does not."""
-        return {phase: whirling(m.summary) for phase, m in self.members.items() if not m.failed}
+        return {
+            phase: whirling(m.summary)
+            for phase, m in self.members.items()
+            if not m.failed and not recorded_too_coarsely(m.summary)
+        }
 
     @property
     def failed(self) -> dict[float, str]:
         """Why runs gave no verdict, those left out where they were interrupted."""
         return {
-            phase: m.failed
+            phase: m.failed or TOO_COARSE
             for phase, m in self.members.items()
-            if m.failed and m.ended is not Ended.INTERRUPTED
+            if (m.failed and m.ended is not Ended.INTERRUPTED) or recorded_too_coarsely(m.summary)
         }
 
     @property

@@ -40,7 +40,7 @@ def turning(time: np.ndarray, frequency: float, begin: float = 0.0, end: float =
     return BOTTOM + 2.0 * math.pi * frequency * (np.clip(time, begin, end) - begin)
 
 
-@pytest.mark.parametrize("offset", [0.1, 0.25, 0.4])
+@pytest.mark.parametrize("offset", [0.1, 0.25, 0.4, 0.6, 1.0])
 @pytest.mark.parametrize(("frequency", "verdict"), [(90.0, "forward whirl"), (-90.0, "backward whirl")])
 def test_a_whirl_about_a_displaced_ring_needs_no_force(
     offset: float, frequency: float, verdict: str

@@ -23,7 +23,12 @@ from touchdown.master.coupling.connections import Attachment
 from touchdown.master.results.ending import Ending
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.evidence import evidence, hint
-from touchdown.master.results.whirl.verdict import force_phase
+from touchdown.master.results.whirl.verdict import (
+    TOO_COARSE,
+    force_phase,
+    has_verdict,
+    recorded_too_coarsely,
+)
 
 SLIDING = math.atan(FRICTION)
 STANDS_OFF = replace(circle(-60.0, centre=0.4 - 0.2j), bore=0.4 - 0.2j)
@@ -156,6 +161,18 @@ def test_a_run_that_ends_before_contact_says_so() -> None:
         assert list(hint("mine", Unbalanced(), untouched))
     one = {"first_contact_time_s_bearing_A": None, "first_contact_time_s_bearing_B": 0.0079}
     assert evidence(one | untouched) == ["whirl_A: no whirl: no contact that could swing or go round"]
+
+
+def test_what_was_recorded_too_coarsely_is_no_verdict() -> None:
+    """It does not count as settled, unless another seat is known to whirl."""
+    line = told(TOO_COARSE, 0.0, 0.4)
+    assert line.startswith("whirl_A: cannot tell: sampled too coarsely: from one recorded row")
+    assert line.endswith("a smaller run.record_every or run.macro_step tells")
+    coarse: dict[str, object] = {"whirl_A": TOO_COARSE, "whirl_A_revolutions": 0.0}
+    assert recorded_too_coarsely(coarse)
+    assert not has_verdict(coarse)
+    beside = coarse | {"whirl_B": "backward whirl, still so at the end", "whirl_B_revolutions": 9.0}
+    assert has_verdict(beside)
 
 
 def test_without_a_clearance_nothing_is_told() -> None:

@@ -12,7 +12,7 @@ import pytest
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, Ended, TouchdownError
 from touchdown.master.common.progress import Progress
-from touchdown.master.results.whirl.verdict import whirling
+from touchdown.master.results.whirl.verdict import TOO_COARSE, whirling
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.dissertation import fig_14
@@ -203,6 +203,13 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
 )
 def test_the_verdict_of_a_run_is_that_of_the_seat_that_whirls(told: dict[str, object], words: str) -> None:
     assert whirling(told) == words
+
+
+def test_a_run_recorded_too_coarsely_gives_no_verdict() -> None:
+    members = {0.0: Member(1, {}, summary(TOO_COARSE, 0.0)), 90.0: Member(2, {}, summary("pendulum", 0.0))}
+    circle = Circle("made", members)
+    assert circle.verdicts == {90.0: ""}
+    assert circle.failed == {0.0: "cannot tell: sampled too coarsely"}
 
 
 def test_forces_and_ledgers_of_all_runs() -> None:
