@@ -22,6 +22,8 @@ from ...scene.scene import Scene
 from ..sweep.maps import COLOURS
 from ..sweep.report import counted
 from .study import (
+    FIRST_IMPACT_FORCE,
+    PEAK_FORCE,
     Circle,
     Edge,
     Study,
@@ -92,9 +94,7 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
         yield from _window_lines(circle)
         yield f"  share of phases that whirl: {percent(share(circle.verdicts))}"
         yield from _goes_on(circle)
-        force = circle.largest_force()
-        if force is not None:
-            yield f"  largest contact force: {newtons(force)}"
+        yield from _force_lines(circle)
         if study.reference is not None and circle is not study.reference:
             yield f"  {_against(circle, study.reference)}"
     stop = study.scene.run.stop_residual
@@ -103,6 +103,14 @@ def _circle_lines(study: Study, circle: Circle) -> Iterator[str]:
         yield f"  in {over} of them {passed}, at which a run of the scene stops"
     for phase, reason in circle.failed.items():
         yield f"  {phase:g} deg failed: {reason}"
+
+
+def _force_lines(circle: Circle) -> Iterator[str]:
+    """Contact forces over the phases: repeatable in the first impact, one draw each in a chaotic drop."""
+    for title, key in (("first impact", FIRST_IMPACT_FORCE), ("whole drop", PEAK_FORCE)):
+        if forces := circle.forces(key):
+            least, most = map(newtons, forces)
+            yield f"  largest contact force, {title}: {least} to {most} over the phases"
 
 
 def _lengths(scene: Scene) -> str:

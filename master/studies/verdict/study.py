@@ -74,15 +74,21 @@ class Circle:
 
     def largest_force(self) -> float | None:
         """The largest contact force of all runs and seats (N); None where no bearing reports it."""
-        forces = (peak_force(m.summary) for m in self.members.values())
-        return max((force for force in forces if force is not None), default=None)
+        forces = self.forces(PEAK_FORCE)
+        return forces[1] if forces else None
+
+    def forces(self, key: str) -> tuple[float, float] | None:
+        """The least and the largest over all runs of their largest force (N), by how its figures begin."""
+        found = [force for m in self.members.values() if (force := largest(m.summary, key)) is not None]
+        return (min(found), max(found)) if found else None
 
 
 def peak_force(summary: Mapping[str, object]) -> float | None:
     """The largest contact force of a run (N), of all its bearings; None where none reports it."""
-    return largest(summary, "peak_contact_force_N")
+    return largest(summary, PEAK_FORCE)
 
 
+PEAK_FORCE, FIRST_IMPACT_FORCE = "peak_contact_force_N", "first_impact_contact_force_N"
 CIRCLE = 360.0  # deg
 DIGITS = 9  # of a phase in degrees: bisection meets the same phase from either side
 

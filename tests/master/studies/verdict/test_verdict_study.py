@@ -42,6 +42,8 @@ def summary(words: str, turns: float, force: float = 100.0, residual: float = 1e
     return {
         "peak_contact_force_N_bearing_A": force,
         "peak_contact_force_N_bearing_B": 50.0,
+        "first_impact_contact_force_N_bearing_A": 700.0,
+        "first_impact_contact_force_N_bearing_B": 650.0,
         "whirl_A": words,
         "whirl_A_revolutions": turns,
         "whirl_B": "pendulum",
@@ -120,7 +122,9 @@ def test_a_study_refines_edges_at_every_step(
         assert recorded == pytest.approx(scene.run.record_every * scene.run.macro_step)
     text = "\n".join(report_lines(study))
     assert "2 edges against the reference's 2, at most 9 deg off; strays 0 of 34 against 0 of 34" in text
-    assert "largest contact force: 12.0 kN" in text
+    assert "largest contact force, first impact: 700 N to 700 N over the phases" in text
+    assert "largest contact force, whole drop: " in text
+    assert " to 12.0 kN over the phases" in text
     passed = "the energy ledger passed 0.2 of what a connection turned over"
     assert f"of them {passed}, at which a run of the scene stops" in text
     own = "phase 2 deg, the scene's own, with macro step"
