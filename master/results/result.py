@@ -73,7 +73,7 @@ class Result:
 
         Every variable has the attributes units and long_name, and is read when it is looked at.
         """
-        from .recording import dataset
+        from .dataset import dataset
 
         return dataset(self.recording)
 

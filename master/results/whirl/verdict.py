@@ -45,7 +45,6 @@ from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import beta
 
 from .contacts import (
     BACK,
@@ -112,6 +111,8 @@ def clopper_pearson(hits: float, count: float) -> Share:
 
     Both may be no whole numbers, where drops weigh differently. `count` must be above 0.
     """
+    from scipy.stats import beta  # slow to import, and no run needs it
+
     tail, misses = 0.5 * (1.0 - CONFIDENCE), count - hits
     low = 0.0 if hits <= 0.0 else float(beta.ppf(tail, hits, misses + 1.0))
     high = 1.0 if misses <= 0.0 else float(beta.ppf(1.0 - tail, hits + 1.0, misses))

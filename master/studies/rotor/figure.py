@@ -21,7 +21,7 @@ from ....rotor.modal.data import seats
 from ....rotor.modal.whirl_speeds import Held
 from ....rotor.properties import Portrait
 from ...results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
-from .supported import held_campbell
+from .supported_figure import held_campbell
 
 RPM = 60.0 / (2.0 * math.pi)
 MM = 1e3

@@ -20,7 +20,8 @@ from touchdown.master.results.figures.style import sheet
 from touchdown.master.studies.rotor import supports
 from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Response, Rig, answers, fitted
 from touchdown.master.studies.rotor.scene_report import SceneRotor, described_in, scene_text
-from touchdown.master.studies.rotor.supported import held_campbell, held_lines
+from touchdown.master.studies.rotor.supported import held_lines
+from touchdown.master.studies.rotor.supported_figure import held_campbell
 from touchdown.master.studies.rotor.supports import Situation
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.modal.supported import LinearBearing, Whirl
