@@ -109,7 +109,8 @@ def door() -> list[str]:
 
 def picture() -> str:
     """The SVG. Raises ValueError where master/ has other rooms than it shows."""
-    entries = {path.stem for path in MASTER.iterdir() if not path.name.startswith(("_", "."))}
+    rooms = [path for path in MASTER.iterdir() if path.is_dir() or path.suffix == ".py"]
+    entries = {path.stem for path in rooms if not path.name.startswith(("_", "."))}
     if entries != {room for room, _ in ROOMS}:
         raise ValueError(f"master/ has the rooms {sorted(entries)}")
     head = (
