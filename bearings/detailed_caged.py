@@ -21,7 +21,7 @@ from . import seat
 from .contact import friction, journal
 from .contact.friction import FrictionLaw
 from .contact.journal import out_of_proportion
-from .contact.laws import ContactLaw, damp, lay_abreast
+from .contact.laws import ContactLaw, broadcast_law, damp
 from .rolling import bodies, cage, ring
 from .rolling.ball_bodies import (
     drift,
@@ -33,11 +33,11 @@ from .rolling.ball_bodies import (
     rub_races,
     set_weights,
 )
-from .rolling.ball_set import EVEN, MOST_BALLS, BallContacts, ball_mass, start_angle
+from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, BallContacts, ball_mass, start_angle
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
 from .rolling.micro_step import book, leapfrog
-from .rolling.ring import MOST_STATES
+from .rolling.ring import MAX_STATES
 from .rolling.sides import stored
 
 
@@ -75,12 +75,12 @@ class Derived(BallBodiesDerived):
     cage_contact: ContactLaw = group(ContactLaw)
     cage_friction: FrictionLaw = group(FrictionLaw)
     cage_inertia: float = real(0.0, "kg.m2", "of the cage")
-    pocket_x: tuple = array(MOST_BALLS)  # from the cage's centre, at the start
-    pocket_y: tuple = array(MOST_BALLS)
+    pocket_x: tuple = array(MAX_BALLS)  # from the cage's centre, at the start
+    pocket_y: tuple = array(MAX_BALLS)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=BallBodiesMemory)
-SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=BallBodiesMemory)
+SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().cage_friction.static
 _SHARED = bodies.problems("cage_friction")
 SHARED = len(_SHARED)
@@ -153,13 +153,13 @@ def _settle_cage(m):
     p, d, b = m.p, m.d, m.p.balls
     radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b.rows, b.diameter, b.density), p.cage.mass)
     d.cage_contact, d.cage_friction = p.cage_contact, p.cage_friction
-    lay_abreast(d.cage_contact, b.rows)
+    broadcast_law(d.cage_contact, b.rows)
     damp(d.cage_contact, lighter)
     friction.settle(d.cage_friction)
     d.cage_inertia = p.cage.inertia if p.cage.inertia != 0.0 else p.cage.mass * radius**2.0
     d.cage_answer = 1.0 / p.cage.mass + radius**2.0 / d.cage_inertia
     for i in range(b.count):
-        angle = start_angle(b.first_angle, b.count, EVEN, i)
+        angle = start_angle(b.first_angle, b.count, EVEN_SPREAD, i)
         d.pocket_x[i], d.pocket_y[i] = radius * math.cos(angle), radius * math.sin(angle)
     return lighter
 
@@ -174,7 +174,7 @@ def settle(words):
     if problem != 0:
         return problem
     lighter = _settle_cage(m)
-    bodies.settle(m, EVEN, m.d.cage_contact, lighter, m.p.cage.clearance)
+    bodies.settle(m, EVEN_SPREAD, m.d.cage_contact, lighter, m.p.cage.clearance)
     size.coordinates, size.constraints = 9 + 3 * count, 1
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)

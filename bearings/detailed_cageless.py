@@ -22,7 +22,7 @@ from ..modelkit.variables import group, real
 from . import seat
 from .contact import friction
 from .contact.friction import FrictionLaw
-from .contact.laws import ContactLaw, damp, lay_abreast
+from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.pair import OUTSIDE, Place
 from .rolling import bodies, ring
 from .rolling.ball_bodies import (
@@ -43,7 +43,7 @@ from .rolling.ball_set import BallContacts, FreeBallSet, ball_mass, spread_of
 from .rolling.bodies import BallBodiesDerived, BallBodiesMemory, BallBodiesOutputs, BallBodiesParameters
 from .rolling.declarations import starts_from, state_constants
 from .rolling.micro_step import book, leapfrog
-from .rolling.ring import MOST_STATES, part
+from .rolling.ring import MAX_STATES, part
 from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub_sides, share, stored
 
 
@@ -88,8 +88,8 @@ class Memory(BallBodiesMemory):
     chain: Chain = group(Chain)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Memory)
-SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Memory)
+SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC = Parameters().ball_friction.static
 CONSTANTS, PROBLEMS = constants(MEMORY, bodies.problems("ball_friction"))
 
@@ -188,7 +188,7 @@ def settle(words):
     if problem != 0:
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
-    lay_abreast(d.ball_contact, p.balls.rows)
+    broadcast_law(d.ball_contact, p.balls.rows)
     mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
     damp(d.ball_contact, mass)
     friction.settle(d.ball_friction)

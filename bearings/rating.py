@@ -179,8 +179,8 @@ def load_distribution(
 
 PRESSURE_LIMIT = 4.2e9  # Pa; of ISO 76 for ball bearings: a ball and its race keep 1e-4 of its diameter
 BALL_SHARE = 5.0  # of the mean load, on the most loaded ball of a bearing with usual clearance (ISO 76)
-STEEL = 1.3  # b_m of ISO 281, radial ball bearings of contemporary steel
-LARGEST_BALL = 25.4  # mm, from which on the rating rises less
+STEEL_FACTOR = 1.3  # b_m of ISO 281, radial ball bearings of contemporary steel
+LARGE_BALL_MM = 25.4  # mm, from which on the rating rises less
 INNER_GROOVE, OUTER_GROOVE = 0.52, 0.53  # the widest for which f_c holds
 EXPONENT = 10.0 / 3.0
 FACTORS = (  # f_c of ISO 281 (2007), Table 2, single-row radial ball bearings, for 0.01, 0.02, ... of gamma
@@ -227,9 +227,9 @@ def dynamic_rating(bearing: RatedBearing) -> float:
     share = _grooves(b.gamma, *wider) / _grooves(b.gamma, INNER_GROOVE, OUTER_GROOVE)
     factor = share * float(np.interp(100.0 * b.gamma, np.arange(1, len(FACTORS) + 1), FACTORS))
     size = 1e3 * b.diameter
-    ball = size**1.8 if size <= LARGEST_BALL else 3.647 * size**1.4
+    ball = size**1.8 if size <= LARGE_BALL_MM else 3.647 * size**1.4
     rows = (b.rows * math.cos(b.contact_angle)) ** 0.7
-    return STEEL * factor * rows * b.count ** (2.0 / 3.0) * ball
+    return STEEL_FACTOR * factor * rows * b.count ** (2.0 / 3.0) * ball
 
 
 def _grooves(gamma: float, inner: float, outer: float) -> float:
@@ -251,7 +251,7 @@ def pressure_safety(pressure: ArrayLike) -> np.ndarray:
 
 
 MILLION = 1e6  # revolutions
-SLOPE = 10.0 / 9.0  # of the Weibull distribution, point contact
+WEIBULL_SLOPE = 10.0 / 9.0  # of the Weibull distribution, point contact
 TURNING, RESTING = 3.0, EXPONENT  # exponents of the mean load on a ring that turns or rests under the load
 
 
@@ -287,7 +287,7 @@ def reference_life(
     ):
         equivalent = float(np.mean(on_race**exponent)) ** (1.0 / exponent)
         worn += bearing.rows * (equivalent / rating) ** EXPONENT
-    return MILLION * worn ** (-1.0 / SLOPE) if worn > 0.0 else math.inf
+    return MILLION * worn ** (-1.0 / WEIBULL_SLOPE) if worn > 0.0 else math.inf
 
 
 def drop_damage(

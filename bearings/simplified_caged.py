@@ -31,7 +31,7 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, elastic_force
 from .contact.peaks import Largest
 from .rolling import declarations, ring
-from .rolling.ball_set import EVEN, MOST_BALLS, ball_inertia, ball_mass, set_race_law, start_angle
+from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, ball_inertia, ball_mass, set_race_law, start_angle
 from .rolling.balls import Total, watch_balls
 from .rolling.declarations import (
     RollingDerived,
@@ -116,8 +116,8 @@ class Derived(RollingDerived):
     spinning: float = real(0.0, "kg.m2", "moment of inertia of the balls about themselves")
     cage_ratio: float = real(0.0, "1", "cage speed over ring speed (4.2)")
     ball_ratio: float = real(0.0, "1", "ball spin over ring speed (4.2)")
-    cosine: tuple = array(MOST_BALLS)
-    sine: tuple = array(MOST_BALLS)
+    cosine: tuple = array(MAX_BALLS)
+    sine: tuple = array(MAX_BALLS)
 
 
 @dataclass(frozen=True)
@@ -273,7 +273,7 @@ def _settle_turning(m):
     if p.slip == 0:
         d.ring_inertia += d.orbiting * d.cage_ratio**2.0 + d.spinning * d.ball_ratio**2.0
     for i in range(b.count):
-        angle = start_angle(b.first_angle, b.count, EVEN, i)
+        angle = start_angle(b.first_angle, b.count, EVEN_SPREAD, i)
         d.cosine[i], d.sine[i] = math.cos(angle), math.sin(angle)
 
 
@@ -300,7 +300,7 @@ def settle(words):
     problem = declarations.law_problem(problem, p.race_friction, STATIC, declarations.OWN, m.told)
     if problem != 0:
         return problem
-    declarations.settle(m, EVEN)
+    declarations.settle(m, EVEN_SPREAD)
     d.mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
     set_race_law(d.race, p.balls, d.stiffness.series, d.mass)
     d.race_friction = p.race_friction

@@ -44,11 +44,11 @@ from ..modelkit.variables import SWITCH, Choices, array, choice, group, real
 from . import seat
 from .contact import friction
 from .contact.friction import FrictionLaw
-from .contact.laws import ContactLaw, damp, lay_abreast
+from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.peaks import PeakMemory, watch_peaks
 from .rolling import declarations, ring
 from .rolling.ball_set import (
-    MOST_BALLS,
+    MAX_BALLS,
     BallContacts,
     FreeBallSet,
     ball_inertia,
@@ -74,7 +74,7 @@ from .rolling.pitch_circle import RollingResistance
 from .rolling.ring import BALLS, part
 from .rolling.row import (
     ANGLE,
-    MOST_STATES,
+    MAX_STATES,
     ORBIT,
     SPIN,
     RaceBalls,
@@ -166,7 +166,7 @@ class Derived(RollingDerived):
     run_share: float = real(0.0, "1", "of the rings' approach by which that radius grows")
     micro_step: float = real(0.0, "s", "longest step inside")
     resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
-    angles: tuple = array(MOST_BALLS)
+    angles: tuple = array(MAX_BALLS)
 
 
 @dataclass(frozen=True)
@@ -180,11 +180,11 @@ class Hidden(RollingMemory, KickMemory):
     side: SideContacts = group(SideContacts)
     chain: Chain = group(Chain)
     side_peaks: PeakMemory = group(PeakMemory)
-    lever: tuple = array(MOST_BALLS)  # m, of the chord between neighbours that touch, about the middle
+    lever: tuple = array(MAX_BALLS)  # m, of the chord between neighbours that touch, about the middle
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, MOST_STATES, derived=Derived, hidden=Hidden)
-SCRATCH = dopri.scratch_layout(MOST_STATES + seat.ROOM)
+MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
+SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
 CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
 
@@ -262,7 +262,7 @@ def _settle_laws(m):
     friction.settle(d.race_friction)
     friction.settle(d.ball_friction)
     d.ball_contact = p.ball_contact
-    lay_abreast(d.ball_contact, b.rows)
+    broadcast_law(d.ball_contact, b.rows)
     damp(d.ball_contact, d.mass)
     d.micro_step = min(
         p.micro_step,

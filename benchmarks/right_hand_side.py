@@ -38,7 +38,7 @@ import numpy as np
 from detailed_speed import MODULES, kept, released, repeater
 
 from touchdown.bearings.contact.friction import MAKKAR
-from touchdown.bearings.rolling.ball_set import MOST_BALLS
+from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.micro_step import COPIES, MICRO_STEP
 from touchdown.bearings.rolling.ring import BALLS
 from touchdown.modelkit.instance import Instance
@@ -78,24 +78,24 @@ def numbers(names: str, size: int = 1) -> np.dtype:
 
 
 # The structs of in_c/bearing.h.
-STATE = np.dtype([("head", "f8", 32), ("cage", "f8", 8), ("balls", "f8", (6, MOST_BALLS))])
+STATE = np.dtype([("head", "f8", 32), ("cage", "f8", 8), ("balls", "f8", (6, MAX_BALLS))])
 RACE = numbers(
     "normal tangential indentation stiffness loss nx ny second sliding rate damped driven expected "
     "start slope base held gain middle stored",
-    MOST_BALLS,
+    MAX_BALLS,
 )
 SIDE = numbers(
     "normal highest tangential indentation stiffness nx ny first second sliding rate damped middle stored",
-    MOST_BALLS,
+    MAX_BALLS,
 )
-CHAIN = numbers("elastic driven across base pull free", MOST_BALLS)
-LINES = numbers("normal sliding expected answer spot last flat start slope base", 2 * MOST_BALLS)
+CHAIN = numbers("elastic driven across base pull free", MAX_BALLS)
+LINES = numbers("normal sliding expected answer spot last flat start slope base", 2 * MAX_BALLS)
 LAW, FRICTION = numbers("stiffness damping dissipation viscous"), numbers("g1 g2 g3 dynamic slope g6")
 BEARING = np.dtype(
     [
         *[("inner", RACE), ("outer", RACE), ("side", SIDE), ("chain", CHAIN), ("lines", LINES)],
-        *[("faster", numbers("x y spin", MOST_BALLS)), ("cross", "f8", MOST_BALLS)],
-        *numbers("pocket_x pocket_y", MOST_BALLS).descr,
+        *[("faster", numbers("x y spin", MAX_BALLS)), ("cross", "f8", MAX_BALLS)],
+        *numbers("pocket_x pocket_y", MAX_BALLS).descr,
         ("before", STATE),
         *[("kick", "f8"), ("drift", "f8"), ("rubbed", "f8"), ("ahead", "f8", len(COPIES)), ("half", "f8")],
         *[

@@ -36,7 +36,7 @@ READABLE = (*AT_START, Causality.OUTPUT)
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
 _LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
 _CHECK = struct.Struct("<I")  # what serialised states end with: their checksum
-LATE = 1e-2  # of a step: how far it may begin from the end of the last one
+TIME_TOLERANCE = 1e-2  # of a step: how far it may begin from the end of the last one
 
 
 class ModelSlave(Fmi2Slave):
@@ -100,7 +100,7 @@ class ModelSlave(Fmi2Slave):
             self._stop_again()
         if self._phase != STEPPING:
             self._raise(messages.ENDED if self._phase == ENDED else messages.NOT_STARTED)
-        if abs(current_time - self._end) > LATE * step_size:
+        if abs(current_time - self._end) > TIME_TOLERANCE * step_size:
             self._raise(messages.APART.format(time=current_time, step=step_size, end=self._end))
         problem = ""
         try:

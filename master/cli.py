@@ -20,7 +20,8 @@ from .common.interrupts import ended_as_by_ctrl_c
 from .verbs.fault import report_fault, versions
 from .verbs.verb import broken_off, complain, show_any_text, undelivered
 
-UNSAID = (  # warnings of libraries that would say in lines of code what the command says, or shows, itself
+# Warnings of libraries that would say in lines of code what the command says, or shows, itself
+SUPPRESSED_WARNINGS = (
     (UserWarning, "Glyph .* missing"),  # in a title: the picture shows a box
     (RuntimeWarning, ""),  # of numpy: a run that runs away is stopped, and its figures are none
 )
@@ -53,7 +54,7 @@ def _executed(given: list[str]) -> int:
         argcomplete.autocomplete(command)  # answers the shell and exits where it was asked to
         options = command.parse_args(joined(given))
         with warnings.catch_warnings():
-            for kind, meant in UNSAID:
+            for kind, meant in SUPPRESSED_WARNINGS:
                 warnings.filterwarnings("ignore", meant, kind)
             with ended_as_by_ctrl_c():
                 return options.run(options)

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import messages
 from .integrators import dopri
-from .integrators.control import MOST_STEPS
+from .integrators.control import MAX_STEPS
 from .model import Model, ModelError, Slot, StepSizeError, slots
 from .status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
 from .variables import Causality, Scalar, as_tuple, from_record, layout
@@ -155,7 +155,7 @@ def explanation(instance: Instance, status: int, time: float, step: float) -> st
     if status in (BAD_LOAD, BAD_INPUT):  # finite inputs can be too large to add up
         return messages.BAD_LOAD.format(time=time)
     if status == TOO_MANY_STEPS:
-        return messages.TOO_MANY_STEPS.format(most=MOST_STEPS, step=step, time=time)
+        return messages.TOO_MANY_STEPS.format(most=MAX_STEPS, step=step, time=time)
     if status < 0:
         return messages.GAVE_UP.format(time=time)
     return messages.UNRESOLVED.format(time=time, step=step)

@@ -11,7 +11,7 @@ import numpy as np
 
 from .variables import Causality, Nothing, Variable, flatten, layout
 
-TOLD = 4  # numbers that a text of a problem may hold
+MAX_PROBLEM_NUMBERS = 4  # numbers that a text of a problem may hold
 
 
 class ModelError(Exception):
@@ -55,7 +55,7 @@ def memory_layout(
             ("q", "f8", (state_size,)),
             ("weight", "f8", (state_size,)),
             ("d", layout(derived)),
-            ("told", "f8", (TOLD,)),
+            ("told", "f8", (MAX_PROBLEM_NUMBERS,)),
         ]
     )
 

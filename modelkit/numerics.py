@@ -26,17 +26,17 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from .kernel import kernel, woven
+from .kernel import inlined, kernel
 
-PER_QUARTER = 2.0 / math.pi
+QUARTERS_PER_RAD = 2.0 / math.pi
 QUARTER, QUARTER_REST = 1.57079632673412561417, 6.07710050650619224932e-11  # add up to pi/2
-ROUND = 6755399441055744.0  # 1.5 * 2^52: adding it leaves no room for a fraction
+ROUNDING_SHIFT = 6755399441055744.0  # 1.5 * 2^52: adding it leaves no room for a fraction
 
 
-@woven
+@inlined
 def cosine_and_sine(angle):
     """(cos, sin) of `angle` (rad), to 2e-16 up to a million radians."""
-    quarters = (angle * PER_QUARTER + ROUND) - ROUND
+    quarters = (angle * QUARTERS_PER_RAD + ROUNDING_SHIFT) - ROUNDING_SHIFT
     rest = (angle - quarters * QUARTER) - quarters * QUARTER_REST
     square = rest * rest
     tail = square * (
@@ -49,7 +49,7 @@ def cosine_and_sine(angle):
     c = 2.48015872894767294178e-05 + square * -2.75573143513906633035e-07 + square * tail
     c = 4.16666666666666019037e-02 + square * (-1.38888888888741095749e-03 + square * c)
     c = 1.0 - 0.5 * square + square * square * c
-    turns = (quarters * 0.25 - 0.375 + ROUND) - ROUND
+    turns = (quarters * 0.25 - 0.375 + ROUNDING_SHIFT) - ROUNDING_SHIFT
     quadrant = quarters - 4.0 * turns
     odd = (quadrant == 1.0) | (quadrant == 3.0)
     cosine, sine = s if odd else c, c if odd else s
@@ -59,7 +59,7 @@ def cosine_and_sine(angle):
     )
 
 
-MOST_MEANS = 20  # each doubles the digits; a modulus of 1 - 1e-300 takes 14
+MAX_MEANS = 20  # each doubles the digits; a modulus of 1 - 1e-300 takes 14
 
 
 class Complete(NamedTuple):
@@ -75,7 +75,7 @@ class Complete(NamedTuple):
 def complete(parameter, complement):
     """`Complete` integrals of a `parameter` m from 0 to 1, to rounding; complement: 1 - m, above 0."""
     a, b, weight, later = 1.0, math.sqrt(complement), 0.5, 0.0
-    for _ in range(MOST_MEANS):
+    for _ in range(MAX_MEANS):
         c = 0.5 * (a - b)
         a, b, weight = 0.5 * (a + b), math.sqrt(a * b), 2.0 * weight
         later += weight * c * c
@@ -86,8 +86,8 @@ def complete(parameter, complement):
     return Complete(first, first * (1.0 - lost), lost, 0.5 * parameter - later)
 
 
-SERIES = 0.5  # below this k h^2 or c h the closed form cancels and a power series takes its place
-TERMS = 16  # of the series, which leaves SERIES^16/16!
+SERIES_LIMIT = 0.5  # below this k h^2 or c h the closed form cancels and a power series takes its place
+SERIES_TERMS = 16  # of the series, which leaves SERIES^16/16!
 
 
 class Step(NamedTuple):
@@ -127,7 +127,7 @@ def _free(k, c, h):
 @kernel
 def step(k, c, h):
     """The `Step` of h seconds of an oscillator of stiffness k (1/s2) and damping c (1/s), both >= 0."""
-    if max(k * h * h, c * h) < SERIES:
+    if max(k * h * h, c * h) < SERIES_LIMIT:
         return _series(k, c, h)
     if k <= 1e-12 * c * c:
         return _dashpot(c, h)
@@ -142,7 +142,7 @@ def _series(k, c, h):
     """`step` by power series: with A = [[0, 1], [-k, -c]], sums of A^i (0, 1) h^j/j!."""
     w0, w1 = 0.0, h  # A^i (0, 1) h^(i+1)/(i+1)!
     zf, vf, zg, vg = 0.0, 0.0, 0.0, 0.0
-    for i in range(TERMS):
+    for i in range(SERIES_TERMS):
         zf += w0
         vf += w1
         zg += w0 * h / (i + 2)

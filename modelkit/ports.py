@@ -21,7 +21,7 @@ MODES = 20  # of a flexible body that a seat can carry, per plane
 # s; an impact is over once the journal has been free for longer. A light inner ring rattles between journal
 # and balls at tens of kHz, and parts from the journal for some ten microseconds at a time; from bounce to
 # bounce of a rotor it is milliseconds.
-PARTED = 2e-4
+PARTING_TOLERANCE = 2e-4
 
 
 @dataclass(frozen=True)

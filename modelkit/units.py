@@ -7,7 +7,7 @@ import re
 from numbers import Real
 
 # unit as written: (factor, SI unit)
-SCALES: dict[str, tuple[float, str]] = {
+UNIT_SCALES: dict[str, tuple[float, str]] = {
     "km": (1e3, "m"), "cm": (1e-2, "m"), "mm": (1e-3, "m"), "um": (1e-6, "m"), "nm": (1e-9, "m"),
     "mm/s": (1e-3, "m/s"),
     "min": (60.0, "s"), "ms": (1e-3, "s"), "us": (1e-6, "s"),
@@ -27,7 +27,7 @@ SCALES: dict[str, tuple[float, str]] = {
 
 
 # units that values are shown in, from small to large; of what is 0 at the start, where it is not the first
-DISPLAYED: dict[str, tuple[str, ...]] = {
+DISPLAY_UNITS: dict[str, tuple[str, ...]] = {
     "m": ("um", "mm", "m"),
     "m/s": ("mm/s", "m/s"),
     "s": ("us", "ms", "s"),
@@ -43,10 +43,10 @@ DISPLAYED: dict[str, tuple[str, ...]] = {
     "N.s/m": ("N.s/m", "N.s/mm"),
     "Pa": ("MPa", "GPa"),
 }
-OF_NOTHING = {"s": "ms", "m/s": "m/s", "kg": "kg", "kg.m": "kg.m", "kg.m2": "kg.m2", "N.m": "N.m"}
+UNIT_OF_ZERO = {"s": "ms", "m/s": "m/s", "kg": "kg", "kg.m": "kg.m", "kg.m2": "kg.m2", "N.m": "N.m"}
 
 NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)([eE][-+]?\d+)?(?![\d.])|(nan|inf)\b)", re.IGNORECASE)
-MICRO = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
+MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # both signs that people type for micro
 
 
 class UnitError(ValueError):
@@ -55,7 +55,7 @@ class UnitError(ValueError):
 
 def units_of(unit: str) -> list[str]:
     """Ways to write the SI unit `unit`, itself first."""
-    return [unit, *(written for written, (_, si) in SCALES.items() if si == unit)]
+    return [unit, *(written for written, (_, si) in UNIT_SCALES.items() if si == unit)]
 
 
 def display_unit(unit: str, size: float) -> str:
@@ -63,16 +63,16 @@ def display_unit(unit: str, size: float) -> str:
 
     size = 0: it is not known.
     """
-    written = DISPLAYED.get(unit, (unit,))
+    written = DISPLAY_UNITS.get(unit, (unit,))
     if size == 0.0:
-        return OF_NOTHING.get(unit, written[0])
+        return UNIT_OF_ZERO.get(unit, written[0])
     fitting = [w for w in written if per_display(unit, w) * abs(size) >= 1.0]
     return fitting[-1] if fitting else written[0]
 
 
 def per_display(unit: str, written: str) -> float:
     """How many of the unit `written` are one of the SI unit `unit`."""
-    return 1.0 if written == unit else 1.0 / SCALES[written][0]
+    return 1.0 if written == unit else 1.0 / UNIT_SCALES[written][0]
 
 
 def to_si(value: object, unit: str | None, name: str) -> float:
@@ -84,7 +84,7 @@ def to_si(value: object, unit: str | None, name: str) -> float:
     else:
         number, written = _split(value, name)
     if written and written != unit:
-        factor, si = SCALES.get(written, (1.0, written))
+        factor, si = UNIT_SCALES.get(written, (1.0, written))
         if si != unit:
             raise UnitError(f"{name} = {value!r} has the unit {written}; it is measured in {unit or '1'}")
         number *= factor
@@ -103,4 +103,4 @@ def _split(text: str, name: str) -> tuple[float, str]:
             f"{name} = {text!r} is not a number; write a number or text like '0.3 mm'"
         ) from None
     written = text.strip()[match.end() :].strip() if match else ""
-    return number, written.translate(MICRO)
+    return number, written.translate(MICRO_SIGNS)

@@ -27,10 +27,10 @@ from ..modelkit.ports import (
 )
 from ..modelkit.status import BAD_INPUT, BAD_LOAD, OK
 from ..modelkit.variables import SWITCH, as_tuple, choice, group, groups, integer, real
-from .beams.shaft import MOST_STATIONS, Shaft
-from .modal.data import MOST_MODES, Derived, most_modes, tabulate
-from .modal.modes import RIGID
-from .modal.stresses import MOST_WATCHED, watched
+from .beams.shaft import MAX_STATIONS, Shaft
+from .modal.data import MAX_MODES, Derived, most_modes, tabulate
+from .modal.modes import RIGID_MODES
+from .modal.stresses import MAX_STRESS_NODES, watched
 from .motion import macro_step, outputs
 from .motion.equations import ANGLE, SPIN, WORK, modal, rest, rhs
 from .motion.macro_step import Stride, take_mode_loads
@@ -70,7 +70,7 @@ class Parameters:
 class Inputs:
     """A load at each station."""
 
-    station: tuple = groups(FlexibleSeatLoad, MOST_STATIONS)
+    station: tuple = groups(FlexibleSeatLoad, MAX_STATIONS)
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,11 @@ class StationState(StaticLoad, FlexibleSeatState):
 class Outputs:
     """Motion at the stations, stresses, energy."""
 
-    station: tuple = groups(StationState, MOST_STATIONS)
-    sensor: tuple = groups(PointMotion, MOST_STATIONS)
+    station: tuple = groups(StationState, MAX_STATIONS)
+    sensor: tuple = groups(PointMotion, MAX_STATIONS)
     energy: Energy = group(Energy)
     stress: outputs.StressReport = group(outputs.StressReport)
-    node: tuple = groups(outputs.NodeStress, MOST_WATCHED)
+    node: tuple = groups(outputs.NodeStress, MAX_STRESS_NODES)
     mass: float = real(0.0, "kg", "mass", constant=True)
     polar_inertia: float = real(0.0, "kg.m2", "polar moment of inertia", constant=True)
 
@@ -99,7 +99,7 @@ class Hidden:
     watched: float = real(0.0, "Pa", "largest of the stress that decides what is kept")
 
 
-SIZE = 4 * MOST_MODES + WORK + MOST_STATIONS
+SIZE = 4 * MAX_MODES + WORK + MAX_STATIONS
 MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE, derived=Derived, hidden=Hidden)
 CONSTANTS, PROBLEMS = constants(
     MEMORY,
@@ -158,7 +158,7 @@ def settle(words):
         d.static_fy[j] = d.held[j] * p.gravity
     for k in range(d.modes):
         d.damping[k], d.sag[k] = 2.0 * d.damping_ratio * math.sqrt(d.stiffness[k]), 0.0
-        for j in range(d.stations if k >= RIGID else 0):
+        for j in range(d.stations if k >= RIGID_MODES else 0):
             d.sag[k] += d.shape[j, k] * d.static_fy[j] / d.stiffness[k]
     _set_weights(m)
     return missing(words, CONSTANTS)
@@ -223,8 +223,8 @@ def tables(shaft: Shaft, p: Parameters) -> np.ndarray:
 
     That is for `settle` to say.
     """
-    there = p.modes == 0 or RIGID <= p.modes <= most_modes(shaft)
-    return _tables(shaft, p.modes if there else RIGID, p.residual)
+    there = p.modes == 0 or RIGID_MODES <= p.modes <= most_modes(shaft)
+    return _tables(shaft, p.modes if there else RIGID_MODES, p.residual)
 
 
 def exposed(shaft: Shaft, name: str) -> str | None:

@@ -11,19 +11,21 @@ import numpy as np
 from ..modelkit.model import ModelError
 from .beams.shaft import Shaft
 from .modal.data import most_modes, seats
-from .modal.modes import RIGID, Basis, basis, fullest
+from .modal.modes import RIGID_MODES, Basis, basis, fullest
 from .modal.supported import HeldRotor, LinearBearing
 from .modal.whirl_speeds import CriticalMap, Held, critical_map, held, whirl_frequencies
 from .statics import Rest, at_rest
 
-HERTZ = 0.5 / math.pi
-FOLLOWED = 12  # modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones
-LINES = 12  # of a Campbell diagram on supports
-COARSER = 2  # of the speeds every which is taken for it
+HZ_PER_RAD_S = 0.5 / math.pi
+SUPPORTED_MODES = (
+    12  # modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones
+)
+CAMPBELL_LINES = 12  # of a Campbell diagram on supports
+CAMPBELL_STRIDE = 2  # of the speeds every which is taken for it
 
 
 @dataclass(frozen=True)
-class Portrait:
+class RotorProperties:
     """A free rotor's modes in one plane, by frequency, and its lines over the spin speed.
 
     A line belongs to a mode; lines of the translation, and the backward one of the tilt, stay at zero.
@@ -41,7 +43,7 @@ class Portrait:
     held: Held | None  # on the shaft's own supports, over the speeds as well; None where there are none
 
 
-def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> Portrait:
+def rotor_properties(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> RotorProperties:
     """The lowest `modes` modes of `shaft` (0: all) and their whirl frequencies at `speeds` (rad/s).
 
     The sign of a speed does not matter: it turns the senses of whirl with it. Raises ModelError where
@@ -49,20 +51,20 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
     """
     full = basis(shaft, 0)
     count = modes or len(full.omega)
-    if not RIGID <= count <= len(full.omega):
+    if not RIGID_MODES <= count <= len(full.omega):
         raise ModelError(
             f"modes = {modes}: {shaft.title} has {len(full.omega)} modes per plane; ask for "
-            f"{RIGID} (rigid) to {len(full.omega)}, or 0 for all"
+            f"{RIGID_MODES} (rigid) to {len(full.omega)}, or 0 for all"
         )
     full_there = fullest(shaft, list(dict.fromkeys(s.node for s in (*shaft.stations, *shaft.supports))))
     shapes = full.shapes[0::2, :count]
     turning = np.abs(np.asarray(speeds, dtype=float))
-    whirl = HERTZ * whirl_frequencies(full, turning)
+    whirl = HZ_PER_RAD_S * whirl_frequencies(full, turning)
     forward, backward = _lines(whirl, count)
-    return Portrait(
+    return RotorProperties(
         shaft=shaft,
         kinds=tuple(_kind(k) for k in range(count)),
-        frequencies=HERTZ * full.omega[:count],
+        frequencies=HZ_PER_RAD_S * full.omega[:count],
         shapes=shapes / np.max(np.abs(shapes), axis=0),
         speeds=turning,
         forward=forward,
@@ -76,9 +78,9 @@ def portrait(shaft: Shaft, modes: int, speeds: Sequence[float] | np.ndarray) -> 
 def _held(shaft: Shaft, speeds: np.ndarray) -> Held:
     """On its own supports, at the first speed and over the others, with the damping of its own modes."""
     nodes = list(dict.fromkeys(s.node for s in shaft.supports))
-    few = basis(shaft, min(FOLLOWED, most_modes(shaft)), nodes)
+    few = basis(shaft, min(SUPPORTED_MODES, most_modes(shaft)), nodes)
     rotor = HeldRotor(few, [LinearBearing.of(s) for s in shaft.supports], shaft.damping_ratio)
-    return held(rotor, [speeds[0], *speeds[1:][::COARSER]], LINES)
+    return held(rotor, [speeds[0], *speeds[1:][::CAMPBELL_STRIDE]], CAMPBELL_LINES)
 
 
 def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:
@@ -90,7 +92,7 @@ def _critical(shaft: Shaft, full: Basis) -> Iterator[CriticalMap]:
 
 
 def _kind(mode: int) -> str:
-    return ("translation", "tilt")[mode] if mode < RIGID else f"bending {mode - RIGID + 1}"
+    return ("translation", "tilt")[mode] if mode < RIGID_MODES else f"bending {mode - RIGID_MODES + 1}"
 
 
 def _lines(whirl: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -99,7 +101,7 @@ def _lines(whirl: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     Of the 2n, n - 2 are negative, three are zero, and n - 1 positive: tilting, a free rotor goes round
     only forwards.
     """
-    bending = whirl.shape[1] // 2 - RIGID
+    bending = whirl.shape[1] // 2 - RIGID_MODES
     zero = np.zeros((len(whirl), 1))
     forward = np.hstack((zero, np.abs(whirl[:, -bending - 1 :])))
     backward = np.hstack((zero, zero, -whirl[:, :bending][:, ::-1]))

@@ -21,20 +21,20 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..rating import RatedBearing, dynamic_rating, static_rating
-from ..rolling.ball_set import MOST_BALLS, BallSet, ball_mass
+from ..rolling.ball_set import MAX_BALLS, BallSet, ball_mass
 from ..rolling.ring import Ring
 from .entry import Bearing
 
 DEEP_GROOVE, ANGULAR = "deep groove", "angular contact"
-BALL = 0.30  # of the difference of outside diameter and bore
-FILLED = math.radians(186.0)  # by the balls of a deep groove bearing
-SPACING = 1.15  # ball diameters from ball to ball, angular contact
-ANGLE = math.radians(15.0)  # of contact
-SHOULDER = 0.2  # height over ball diameter
+BALL_TO_SECTION = 0.30  # of the difference of outside diameter and bore
+FILL_ANGLE = math.radians(186.0)  # by the balls of a deep groove bearing
+BALL_SPACING = 1.15  # ball diameters from ball to ball, angular contact
+CONTACT_ANGLE = math.radians(15.0)  # of contact
+SHOULDER_HEIGHT = 0.2  # height over ball diameter
 GROOVES = (0.52, 0.53)
-CAGE = 2.0  # balls
-STEEL = 7830.0  # kg/m3
-NORMAL = (  # ISO 5753-1, group N: bores up to (m), radial clearance from and to (m)
+CAGE_MASS_IN_BALLS = 2.0  # balls
+STEEL_DENSITY = 7830.0  # kg/m3
+NORMAL_CLEARANCE = (  # ISO 5753-1, group N: bores up to (m), radial clearance from and to (m)
     *((10e-3, 2e-6, 13e-6), (18e-3, 3e-6, 18e-6), (30e-3, 5e-6, 20e-6), (40e-3, 6e-6, 20e-6)),
     *((50e-3, 6e-6, 23e-6), (65e-3, 8e-6, 28e-6), (80e-3, 10e-6, 30e-6), (100e-3, 12e-6, 36e-6)),
     *((120e-3, 15e-6, 41e-6), (140e-3, 18e-6, 48e-6), (160e-3, 18e-6, 53e-6), (180e-3, 20e-6, 61e-6)),
@@ -81,9 +81,9 @@ def filled_in(
     """
     n = dict(given)
     n.setdefault("rows", 1)
-    n.setdefault("contact_angle", ANGLE if kind == ANGULAR else 0.0)
+    n.setdefault("contact_angle", CONTACT_ANGLE if kind == ANGULAR else 0.0)
     n.setdefault("pitch_diameter", 0.5 * (n["bore"] + n["outside"]))
-    n.setdefault("ball_diameter", BALL * (n["outside"] - n["bore"]))
+    n.setdefault("ball_diameter", BALL_TO_SECTION * (n["outside"] - n["bore"]))
     n.setdefault("balls", _count(kind, n["ball_diameter"], n["pitch_diameter"]))
     n.setdefault("inner_groove", GROOVES[0])
     n.setdefault("outer_groove", GROOVES[1])
@@ -93,7 +93,9 @@ def filled_in(
     n.setdefault("ring_mass", rings.inner)
     n.setdefault("ring_inertia", n["ring_mass"] / rings.inner * rings.inertia)
     n.setdefault("outer_ring_mass", rings.outer)
-    n.setdefault("cage_mass", CAGE * ball_mass(int(n["rows"]), n["ball_diameter"], STEEL))
+    n.setdefault(
+        "cage_mass", CAGE_MASS_IN_BALLS * ball_mass(int(n["rows"]), n["ball_diameter"], STEEL_DENSITY)
+    )
     row = RatedBearing(
         count=int(n["balls"]),
         diameter=n["ball_diameter"],
@@ -110,27 +112,31 @@ def filled_in(
 def _count(kind: str, ball: float, pitch: float) -> int:
     """Balls of a row, from the diameters of ball and pitch (m)."""
     touching = 2.0 * math.asin(min(1.0, ball / pitch))
-    count = FILLED / touching + 1.0 if kind == DEEP_GROOVE else 2.0 * math.pi / (SPACING * touching)
-    return min(max(int(count), 3), MOST_BALLS)
+    count = (
+        FILL_ANGLE / touching + 1.0 if kind == DEEP_GROOVE else 2.0 * math.pi / (BALL_SPACING * touching)
+    )
+    return min(max(int(count), 3), MAX_BALLS)
 
 
 def _normal_play(bore: float) -> float:
     """Radial play (m): half the middle of the normal clearance, that of the largest bore above all."""
-    _, low, high = next((row for row in NORMAL if bore <= row[0] * (1.0 + 1e-9)), NORMAL[-1])
+    _, low, high = next(
+        (row for row in NORMAL_CLEARANCE if bore <= row[0] * (1.0 + 1e-9)), NORMAL_CLEARANCE[-1]
+    )
     return 0.25 * (low + high)
 
 
 def _rings(n: Mapping[str, float]) -> Rings:
     """Steel between bore and shoulder, less the groove: a segment of a circle, turned about the axis."""
     ball, pitch, width = n["ball_diameter"], n["pitch_diameter"], n["width"]
-    height = SHOULDER * ball
+    height = SHOULDER_HEIGHT * ball
     inner, outer = pitch - ball, pitch + ball  # bottoms of the grooves
     shoulders = inner + 2.0 * height, outer - 2.0 * height
     cut_inner = _segment(n["inner_groove"] * ball, height) * math.pi * (inner + height)
     cut_outer = _segment(n["outer_groove"] * ball, height) * math.pi * (outer - height)
     rows, disc = n["rows"], 0.25 * math.pi * width  # rows stand side by side in the width
-    mass_inner = STEEL * (disc * (shoulders[0] ** 2 - n["bore"] ** 2) - rows * cut_inner)
-    mass_outer = STEEL * (disc * (n["outside"] ** 2 - shoulders[1] ** 2) - rows * cut_outer)
+    mass_inner = STEEL_DENSITY * (disc * (shoulders[0] ** 2 - n["bore"] ** 2) - rows * cut_inner)
+    mass_outer = STEEL_DENSITY * (disc * (n["outside"] ** 2 - shoulders[1] ** 2) - rows * cut_outer)
     inertia = 0.125 * mass_inner * (n["bore"] ** 2 + shoulders[0] ** 2)
     return Rings(mass_inner, inertia, mass_outer)
 

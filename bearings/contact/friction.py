@@ -17,7 +17,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import Choices, choice, real
 
 COULOMB = 0
@@ -30,11 +30,13 @@ LAWS = Choices(
 )
 
 # of the search for the peak of Makkar's curve, from 0 to FADED/g3 where all has risen that rises
-FADED = 3.0
-FIRST = 0.01  # sample, over the steeper of both rises
-APART = 1.5  # samples, as a ratio
-MOST_TURNS = 60  # of Newton's method, held in a bracket
-MOST_STATIC = 100.0  # times the static coefficient; a larger g1 stands for a g2 that g3 all but cancels
+MAX_FADED_RATIO = 3.0
+FIRST_SAMPLE = 0.01  # sample, over the steeper of both rises
+SAMPLE_RATIO = 1.5  # samples, as a ratio
+MAX_NEWTON_STEPS = 60  # of Newton's method, held in a bracket
+MAX_STATIC_RATIO = (
+    100.0  # times the static coefficient; a larger g1 stands for a g2 that g3 all but cancels
+)
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,7 @@ def curve(law):
     return Curve(g1, law.g2, law.g3, law.dynamic, extra, faded, law.slope, g6)
 
 
-@woven
+@inlined
 def saturation(x):
     """1 - exp(-x) for a number x >= 0, to 3e-13, from sums and products alone.
 
@@ -108,7 +110,7 @@ class Rises(NamedTuple):
     faded: float  # of static friction
 
 
-@woven
+@inlined
 def rises(speed, law):
     """`Rises` of a `Curve` at a speed (m/s). What a law does not have is not computed."""
     v = abs(speed)
@@ -123,7 +125,7 @@ def rises(speed, law):
     return Rises(last, flat, steep, faded)
 
 
-@woven
+@inlined
 def height_and_slope(speed, risen, law):
     """(Coefficient with its sign, derivative in s/m or zero where the curve falls) of a `Curve` at m/s.
 
@@ -192,18 +194,18 @@ def _rise_and_bend(v, g1, law):
 @kernel
 def _peak(g1, law):
     """Speed (m/s) at which `_height` is largest: the best of samples, and a zero of the rise beside it."""
-    last = FADED / law.g3
+    last = MAX_FADED_RATIO / law.g3
     at, best = last, _height(last, g1, law)
-    v = FIRST / max(law.g2, law.slope)
+    v = FIRST_SAMPLE / max(law.g2, law.slope)
     while v < last:
         height = _height(v, g1, law)
         if height > best:
             at, best = v, height
-        v *= APART
+        v *= SAMPLE_RATIO
     if at == last and _rise_and_bend(last, g1, law)[0] >= 0.0:
         return last
-    low, high, v = at / APART, min(at * APART, last), at
-    for _ in range(MOST_TURNS):
+    low, high, v = at / SAMPLE_RATIO, min(at * SAMPLE_RATIO, last), at
+    for _ in range(MAX_NEWTON_STEPS):
         rise, bend = _rise_and_bend(v, g1, law)
         if rise > 0.0:
             low = v
@@ -226,7 +228,7 @@ def makkar_amplitude(law):
     fall upon the root from above.
     """
     g1 = 0.0
-    for _ in range(MOST_TURNS):
+    for _ in range(MAX_NEWTON_STEPS):
         v = _peak(g1, law)
         lacking = law.static - _height(v, g1, law)
         if g1 == 0.0 and lacking <= 0.0:
@@ -235,7 +237,7 @@ def makkar_amplitude(law):
         g1 += step
         if not abs(step) > 1e-15 * g1:
             break
-    return g1 if g1 <= MOST_STATIC * law.static else math.nan
+    return g1 if g1 <= MAX_STATIC_RATIO * law.static else math.nan
 
 
 @kernel

@@ -20,11 +20,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import kernel
-from ...modelkit.ports import PARTED
+from ...modelkit.ports import PARTING_TOLERANCE
 from ...modelkit.variables import group, real
 from . import friction
 from .laws import damp
-from .pair import INSIDE, STILL, Place, heat, press, slip
+from .pair import INSIDE, NO_KICK, Place, heat, press, slip
 from .peaks import Largest, PeakMemory, watch_peaks
 
 MAX_PROPORTION = 0.5
@@ -80,7 +80,7 @@ def settle(d, p, lighter):
     friction.settle(d.friction)
 
 
-FAR = 1.0  # s; a contact that is farther off is of no account to a macro step
+MAX_REACH = 1.0  # s; a contact that is farther off is of no account to a macro step
 
 
 class Touch(NamedTuple):
@@ -114,7 +114,7 @@ def place_in_bore(journal, ring, journal_radius, clearance):
 def time_to_touch(journal, ring, clearance):
     """Time (s) until a journal touches the bore of `ring`, wider by `clearance` (m); both go straight on.
 
-    journal, ring: Motion (m, m/s). 0 where they touch, `FAR` where that is farther off or never: the
+    journal, ring: Motion (m, m/s). 0 where they touch, `MAX_REACH` where that is farther off or never: the
     positive root of |d + v t| = clearance, d and v the journal's place and velocity in the bore.
     """
     dx, dy = journal.x - ring.x, journal.y - ring.y
@@ -124,10 +124,10 @@ def time_to_touch(journal, ring, clearance):
     root = math.sqrt(max(outwards * outwards + speed2 * gap2, 0.0))
     if gap2 <= 0.0:
         time = 0.0
-    elif outwards + root > gap2 / FAR:
+    elif outwards + root > gap2 / MAX_REACH:
         time = gap2 / (outwards + root)  # the root without a difference of like numbers
     else:
-        time = FAR
+        time = MAX_REACH
     return time
 
 
@@ -150,7 +150,7 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
     if place.indentation <= 0.0:
         _, rate = slip(journal, ring, place, INSIDE)
         return Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
-    pressed = press(journal, ring, place, INSIDE, law, friction, STILL)
+    pressed = press(journal, ring, place, INSIDE, law, friction, NO_KICK)
     return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0))
 
 
@@ -263,7 +263,7 @@ def watch_contact(time, journal, touched, report, memory):
     if indentation >= 0.0:
         memory.touching = time
     if report.first_time >= 0.0:
-        if time - memory.touching > PARTED:
+        if time - memory.touching > PARTING_TOLERANCE:
             memory.over = 1.0
         return
     if indentation >= 0.0:

@@ -30,7 +30,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit import numerics
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import real
 
 
@@ -69,7 +69,7 @@ def damp(law, lighter):
 
 
 @kernel
-def lay_abreast(law, rows):
+def broadcast_law(law, rows):
     """Make `law`, a record, that of `rows` like contacts side by side, that share the load."""
     law.stiffness *= rows
     law.damping *= rows
@@ -85,7 +85,7 @@ def power(x, exponent):
     return x**exponent
 
 
-@woven
+@inlined
 def hertz(indentation, stiffness, damping):
     """(Elastic force (N), damping (N s/m), stiffness at this load (N/m)) of (2.1) and (2.38), zero apart.
 
@@ -127,7 +127,7 @@ def normal_force(indentation, rate, law):
 
 
 EXACT, PRINTED = range(2)  # how the ellipse is found
-MOST_STEPS = 40  # of the search for kappa; six are enough
+MAX_STEPS = 40  # of the search for kappa; six are enough
 ROUNDING = 4e-16  # of ln(kappa)
 
 
@@ -150,7 +150,7 @@ def exact_ellipse(ratio):
     low, high = wanted / 2.0, wanted / 1.5
     at, step, off = high, high, -wanted
     kappa, first, second = 1.0, 0.5 * math.pi, 0.5 * math.pi
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         kappa = math.exp(at)
         complement = 1.0 / (kappa * kappa)
         integrals = numerics.complete((kappa - 1.0) * (kappa + 1.0) * complement, complement)

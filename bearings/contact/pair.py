@@ -27,7 +27,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from .friction import curve, height_and_slope, rises
 from .laws import elastic_and_damping
 from .passivity import NO_BEAT, Beat, passive
@@ -43,7 +43,7 @@ class Kick(NamedTuple):
     rate: float  # m/s, change of the indentation's rate by all other forces
 
 
-STILL = Kick(NO_BEAT, 0.0, 0.0, 0.0, 0.0)
+NO_KICK = Kick(NO_BEAT, 0.0, 0.0, 0.0, 0.0)
 
 
 class Line(NamedTuple):
@@ -60,13 +60,13 @@ class Line(NamedTuple):
 NO_LINE = Line(0.0, 0.0, 6.0)  # of a contact that does not press
 
 
-@woven
+@inlined
 def force_on(line, across, sliding):
     """The force (N) of a contact alone, from its `Line`; across (s/kg), sliding (m/s): as in `Kick`."""
     return (line.start - line.slope * sliding) / (line.base + line.slope * across)
 
 
-@woven
+@inlined
 def damped_normal(elastic, damping, rate, along, others):
     """Mean normal force (N) over a kick, never below zero, of a contact that approaches at `rate` (m/s).
 
@@ -77,19 +77,19 @@ def damped_normal(elastic, damping, rate, along, others):
     return max(force / (6.0 + z * (4.0 + z)), 0.0)
 
 
-@woven
+@inlined
 def steepest(law):
     """Slope (s/m) of a `Curve` at rest."""
     return (law.dynamic + law.extra) * law.slope + law.g1 * (law.g2 - law.g3) + law.g6
 
 
-@woven
+@inlined
 def highest(law):
     """What a `Curve` does not exceed but for its viscous part, nor falls short of by much."""
     return law.dynamic + law.extra + 0.75 * law.g1
 
 
-@woven
+@inlined
 def spot(expected, answer, normal, law):
     """The speed (m/s) where a kick is expected to end under friction that rises linearly to its peak.
 
@@ -100,7 +100,7 @@ def spot(expected, answer, normal, law):
     return end if expected >= 0.0 else -end
 
 
-@woven
+@inlined
 def line_at(speed, risen, sliding, answer, normal, law):
     """Friction of a contact under the force `normal` (N) over a kick, as a `Line`.
 
@@ -112,7 +112,7 @@ def line_at(speed, risen, sliding, answer, normal, law):
     return Line((6.0 + z) * (slope * (speed - sliding) - normal * mu), (3.0 + z) * slope, 6.0 + z)
 
 
-@woven
+@inlined
 def friction_line(sliding, expected, answer, normal, law):
     """`line_at` a kick's own `spot`, for a contact alone."""
     speed = spot(expected, answer, normal, law)
@@ -122,7 +122,7 @@ def friction_line(sliding, expected, answer, normal, law):
 INSIDE = 1.0  # the first body lies in a hollow of the second: it presses outwards
 OUTSIDE = -1.0  # the first body lies on the second
 
-PLENTY = math.inf  # J; a contact that keeps no account can afford what its law asks for
+UNLIMITED_ENERGY = math.inf  # J; a contact that keeps no account can afford what its law asks for
 
 
 class Place(NamedTuple):
@@ -155,7 +155,7 @@ class Press(NamedTuple):
     damped: float  # N, what of the normal force is damping
 
 
-@woven
+@inlined
 def slip(first, second, place, side):
     """(Sliding speed along t, rate of the indentation) in m/s of two bodies (Motion) at `place` (m).
 
@@ -220,7 +220,7 @@ def rubbed(place, side, squeezed, tangential):
     )
 
 
-@woven
+@inlined
 def heat(press, sliding, rate):
     """Heat (W) of a `Press` over a kick that changes its sliding speed and its rate by so much (m/s).
 
@@ -236,7 +236,7 @@ def press(first, second, place, side, law, friction, kick):
     Friction is the law's, -mu N (2.39).
     side: INSIDE or OUTSIDE; law, friction: records. Returns a `Press` (N, N m, m/s).
     """
-    squeezed = squeeze(first, second, place, side, law, kick, PLENTY)
+    squeezed = squeeze(first, second, place, side, law, kick, UNLIMITED_ENERGY)
     expected = squeezed.sliding + kick.sliding
     line = friction_line(squeezed.sliding, expected, kick.across, squeezed.normal, curve(friction))
     return rubbed(place, side, squeezed, force_on(line, kick.across, kick.sliding))

@@ -21,7 +21,7 @@ them: numerical dissipation, which is booked as such. Steps that resolve the hit
 
 Bodies that stay pressed, as balls are by their orbit, would still swing ever harder on what the contact
 holds, where steps vary. So it keeps a reserve while they stay, and gives back at most half of what the law
-asks for while it holds less than most (`KEPT`) of
+asks for while it holds less than most (`ELASTIC_RESERVE`) of
 
     f (d/(n + 1) + delta)        delta: way from the indentation d to the middle of the next drift
 
@@ -36,10 +36,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ...modelkit.kernel import woven
+from ...modelkit.kernel import inlined
 
-KEPT = 0.9  # of the energy by the law; what is stored swings about it by some per cent at h w of 0.8
-NONE = 1e-300  # s, and s/kg; stands for no kick at all, over which nothing is given
+ELASTIC_RESERVE = (
+    0.9  # of the energy by the law; what is stored swings about it by some per cent at h w of 0.8
+)
+MIN_KICK = 1e-300  # s, and s/kg; stands for no kick at all, over which nothing is given
 
 
 class Beat(NamedTuple):
@@ -52,7 +54,7 @@ class Beat(NamedTuple):
 NO_BEAT = Beat(0.0, 0.0)
 
 
-@woven
+@inlined
 def passive(elastic, scale, stored, rate, others, answer, beat):
     """The force (N) of a contact whose law asks for `elastic` (N), over the kick of a `Beat`.
 
@@ -62,16 +64,16 @@ def passive(elastic, scale, stored, rate, others, answer, beat):
     closing = rate + 0.5 * others
     given = elastic * beat.kick * (0.5 * answer * elastic - closing)
     left = elastic * (scale + beat.drift * (rate + others - answer * elastic))
-    reserve = KEPT * max(left, 0.0) if beat.drift > 0.0 else 0.0
+    reserve = ELASTIC_RESERVE * max(left, 0.0) if beat.drift > 0.0 else 0.0
     allowed = min(max(stored, 0.0), max(stored - reserve, 0.5 * given))
     # the two quotients are the same for all contacts of a race, and leave the loop over them
-    gain, inverse = 2.0 * answer / max(beat.kick, NONE), 1.0 / max(answer, NONE)
+    gain, inverse = 2.0 * answer / max(beat.kick, MIN_KICK), 1.0 / max(answer, MIN_KICK)
     root = math.sqrt(max(closing * closing + gain * allowed, 0.0))
     within = max((closing + root) * inverse, 0.0)
     return min(within, elastic) if given > allowed else elastic
 
 
-@woven
+@inlined
 def middle_of(rate, middle, part):
     """Closing speed (m/s) in the middle of a kick that is `part` of the one in which `middle` was found.
 
@@ -80,7 +82,7 @@ def middle_of(rate, middle, part):
     return rate + part * (middle - rate)
 
 
-@woven
+@inlined
 def settled(stored, indentation, taken):
     """(Energy in the account, energy withheld) (J) after a kick in which the contact took `taken` (J).
 

@@ -15,7 +15,9 @@ from typing import NamedTuple
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import group, integer, real
 
-SLIVER = 0.1  # of the step before; over less than that, as at the end of a macro step, no slope is taken
+MIN_STEP_RATIO = (
+    0.1  # of the step before; over less than that, as at the end of a macro step, no slope is taken
+)
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,9 @@ def crest(samples, time, value, place):
     its place in the record `samples` (`Samples`).
     """
     top = value
-    if samples.time_before < 0.0 or time - samples.time > SLIVER * (samples.time - samples.time_before):
+    if samples.time_before < 0.0 or time - samples.time > MIN_STEP_RATIO * (
+        samples.time - samples.time_before
+    ):
         same = samples.place_before == samples.place and samples.place == place
         if same and samples.last > samples.before > 0.0 and samples.last >= value > 0.0:
             top = vertex(samples, time, value)

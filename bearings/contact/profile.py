@@ -27,9 +27,9 @@ from ...modelkit.kernel import kernel
 from ...modelkit.variables import SWITCH, choice, integer, real
 from .pair import Place
 
-SAMPLES = 20_000  # around a race, for the check of its curvature
+RACE_SAMPLES = 20_000  # around a race, for the check of its curvature
 DENT_SAMPLES = 801  # across a worn dent; odd: one is its middle
-ROOM = 1.02  # radii of curvature of race and ball must differ by this factor where they nest
+MIN_CURVATURE_RATIO = 1.02  # radii of curvature of race and ball must differ by this factor where they nest
 
 
 @dataclass(frozen=True)
@@ -85,8 +85,8 @@ def sharpest(radius, profile, dent):
     A dent may be narrower than the samples around are apart; the others as for `radius_and_slopes`.
     """
     most = -math.inf
-    for i in range(SAMPLES):
-        most = max(most, dent * curvature(2.0 * math.pi / SAMPLES * i, radius, profile, dent))
+    for i in range(RACE_SAMPLES):
+        most = max(most, dent * curvature(2.0 * math.pi / RACE_SAMPLES * i, radius, profile, dent))
     if profile.wear != 0.0:
         for i in range(DENT_SAMPLES):
             off = profile.wear_width * (8.0 / (DENT_SAMPLES - 1) * i - 4.0)
@@ -124,7 +124,7 @@ def problem(profile, radius, ball_radius, dent, told):
         told[0], told[1], told[2] = profile.amplitude, profile.wear, radius
         return 1
     most = sharpest(radius, profile, dent)
-    if most * ball_radius * ROOM < 1.0:
+    if most * ball_radius * MIN_CURVATURE_RATIO < 1.0:
         return 0
     worn = profile.wear / (profile.wear_width * profile.wear_width)
     lobed = abs(profile.amplitude) * profile.lobes * profile.lobes
@@ -136,9 +136,11 @@ def problem(profile, radius, ball_radius, dent, told):
     return 3
 
 
-MOST_ITERATIONS = 20
-CLOSE = 1e-10  # rad, last Newton step; what it leaves is of its square, and rounding stays well below
-AROUND = 256  # points of the cold search, each time
+MAX_ITERATIONS = 20
+NEWTON_TOLERANCE = (
+    1e-10  # rad, last Newton step; what it leaves is of its square, and rounding stays well below
+)
+COLD_SEARCH_POINTS = 256  # points of the cold search, each time
 
 
 class Point(NamedTuple):
@@ -210,7 +212,7 @@ def newton(sp, sq, ball, race, profile, dent):
     """
     bx, by, rb = ball
     rx, ry, angle, radius = race
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         p = on_circle(sp, bx, by, rb)
         q = on_race(sq, rx, ry, angle, radius, profile, dent)
         dx, dy = q.x - p.x, q.y - p.y
@@ -229,7 +231,7 @@ def newton(sp, sq, ball, race, profile, dent):
             break
         sp -= step_p
         sq -= step_q
-        if abs(step_p) + abs(step_q) < CLOSE:
+        if abs(step_p) + abs(step_q) < NEWTON_TOLERANCE:
             return sp, sq, True
     return sp, sq, False
 
@@ -260,13 +262,13 @@ def cold_start(ball, race, profile, dent):
     best, nearest, width = math.inf, 0.0, 2.0 * math.pi
     for _ in range(2):  # all around, then between the neighbours of the nearest: lobes may be many
         middle = nearest
-        for i in range(AROUND):
-            s = middle + width * (i / AROUND - 0.5)
+        for i in range(COLD_SEARCH_POINTS):
+            s = middle + width * (i / COLD_SEARCH_POINTS - 0.5)
             q = on_race(s, rx, ry, angle, radius, profile, dent)
             distance = (q.x - bx) ** 2 + (q.y - by) ** 2
             if distance < best:
                 best, nearest = distance, s
-        width *= 2.0 / AROUND
+        width *= 2.0 / COLD_SEARCH_POINTS
     q = on_race(nearest, rx, ry, angle, radius, profile, dent)
     return math.atan2(q.y - by, q.x - bx), nearest
 

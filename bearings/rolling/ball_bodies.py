@@ -25,7 +25,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import Motion
 from ...modelkit.variables import array
 from .. import seat
@@ -34,7 +34,7 @@ from ..contact.pair import INSIDE, OUTSIDE, Place, damped_normal, slip
 from ..contact.passivity import Beat, middle_of, passive, settled
 from ..contact.profile import Disc, Outline, active, race_place
 from . import ring
-from .ball_set import MOST_BALLS, inner_radius
+from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
 from .friction import Answers, Inner, RubbedRace
 from .micro_step import beat_of, missed, withhold
@@ -52,7 +52,7 @@ def ball_motion(q, b, m):
     return Motion(q[i + X * n], q[i + Y * n], q[i + VX * n], q[i + VY * n], q[i + SPIN * n])
 
 
-@woven
+@inlined
 def balls_of(q, m):
     """`Balls` (m, m/s, rad/s): views of all balls in the state q."""
     at, velocity = (part(q, X, m), part(q, Y, m)), (part(q, VX, m), part(q, VY, m))
@@ -80,7 +80,7 @@ def place(q, m):
     m.s.outer_starts[:] = math.nan
 
 
-@woven
+@inlined
 def drift(trial, q, mid, h, m):
     """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     seat.drift(trial, q, mid, h, m)
@@ -94,7 +94,7 @@ def drift(trial, q, mid, h, m):
         trial[i + ANGLE] = q[i + ANGLE] + h * mid[i + SPIN]
 
 
-@woven
+@inlined
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s
@@ -156,16 +156,16 @@ def set_weights(m):
 class Contacts(RubbedRace):
     """One contact of each ball, at the last evaluation; places as in `bearings.contact.pair.Place`."""
 
-    nx: tuple = array(MOST_BALLS)
-    ny: tuple = array(MOST_BALLS)
-    indentation: tuple = array(MOST_BALLS)
-    second: tuple = array(MOST_BALLS)
-    across: tuple = array(MOST_BALLS)
-    stiffness: tuple = array(MOST_BALLS)
-    rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
-    middle: tuple = array(MOST_BALLS)  # m/s, in the middle of the kick
-    damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
-    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
+    nx: tuple = array(MAX_BALLS)
+    ny: tuple = array(MAX_BALLS)
+    indentation: tuple = array(MAX_BALLS)
+    second: tuple = array(MAX_BALLS)
+    across: tuple = array(MAX_BALLS)
+    stiffness: tuple = array(MAX_BALLS)
+    rate: tuple = array(MAX_BALLS)  # m/s, of the indentation, before the kick
+    middle: tuple = array(MAX_BALLS)  # m/s, in the middle of the kick
+    damped: tuple = array(MAX_BALLS)  # N, what of the normal force is damping
+    stored: tuple = array(MAX_BALLS)  # J, as `bearings.contact.passivity`
 
 
 class Balls(NamedTuple):
@@ -258,7 +258,7 @@ class Squeezed(NamedTuple):
     rate: float  # m/s
 
 
-@woven
+@inlined
 def _squeeze(b, balls, ring, place, race, before, last, stored):
     """Ball `b` at its `Place` on a race, `Squeezed`.
 
@@ -275,7 +275,7 @@ def _squeeze(b, balls, ring, place, race, before, last, stored):
     return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
 
 
-@woven
+@inlined
 def press_circle(balls, ring, race, before, places, forces):
     """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion), and their `forces`.
 
@@ -295,7 +295,7 @@ def press_circle(balls, ring, race, before, places, forces):
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
 
-@woven
+@inlined
 def press_curve(balls, ring, race, before, places, forces):
     """Set the `forces` (n,) of all `balls` on any race, whose `places` were found (`find_on_curve`).
 
@@ -309,7 +309,7 @@ def press_curve(balls, ring, race, before, places, forces):
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
 
-@woven
+@inlined
 def pressing(contacts, side, count):
     """The `Total` (N, N m) of normal forces that `count` balls on that `side` of a race exert on it."""
     fx, fy, moment = 0.0, 0.0, 0.0
@@ -321,7 +321,7 @@ def pressing(contacts, side, count):
     return Total(fx, fy, moment, 0.0)
 
 
-@woven
+@inlined
 def with_friction(pressed, contacts, count):
     """`Total` (N, N m, W) on a race that is `pressed` (Total) and rubbed by `count` balls."""
     fx, fy, moment, loss = pressed.fx, pressed.fy, pressed.moment, 0.0
@@ -333,7 +333,7 @@ def with_friction(pressed, contacts, count):
     return Total(fx, fy, moment, loss)
 
 
-@woven
+@inlined
 def settle_race(contacts, side, count, kick, part, vx, vy):
     """Settle the accounts of `count` balls on that `side` of a race after a `kick` (s).
 
@@ -351,7 +351,7 @@ def settle_race(contacts, side, count, kick, part, vx, vy):
     return withheld
 
 
-@woven
+@inlined
 def press_races(q, m):
     """Both races press all balls in the state q; sets their accelerations in m.s.faster, with gravity."""
     p, d, s = m.p, m.d, m.s
@@ -370,7 +370,7 @@ def press_races(q, m):
     _accelerate(m)
 
 
-@woven
+@inlined
 def _one_race(balls, body, angle, race, before, profile, starts, contacts, m):
     """All balls press the race of `body` (Motion), turned by `angle` (rad)."""
     n = rounded(m.p.balls.count)
@@ -382,7 +382,7 @@ def _one_race(balls, body, angle, race, before, profile, starts, contacts, m):
         press_circle(balls, body, race, before, places, forces)
 
 
-@woven
+@inlined
 def _accelerate(m):
     """Accelerations in m.s.faster of the balls that both races press, and under gravity."""
     gravity, inner, outer, faster, by_mass = m.p.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
@@ -392,7 +392,7 @@ def _accelerate(m):
         faster.spin[b] = 0.0
 
 
-@woven
+@inlined
 def rub_races(q, dq, m):
     """Friction at both races and in the bore, when all else on the balls is in m.s.faster; sets them in dq.
 
@@ -415,7 +415,7 @@ def rub_races(q, dq, m):
     return journal, on_inner, on_outer
 
 
-@woven
+@inlined
 def _drive(m):
     """How all but friction at races changes the sliding speeds over the kick."""
     s, inner, outer, rb, h, faster = m.s, m.s.inner, m.s.outer, m.d.ball_radius, m.s.kick, m.s.faster
@@ -427,7 +427,7 @@ def _drive(m):
         s.cross[b] = outer.nx[b] * inner.nx[b] + outer.ny[b] * inner.ny[b]
 
 
-@woven
+@inlined
 def _rub(moved, m):
     """Add friction at both races to the balls' accelerations, and the heat of damping to that of friction.
 
@@ -451,7 +451,7 @@ def _rub(moved, m):
         inner.loss[b] += inner.damped[b] * inner.middle[b]
 
 
-@woven
+@inlined
 def _hand_over(q, dq, m):
     """Set the balls' derivatives in dq (m.n,), component by component: each loop is vector code."""
     n, faster = m.p.balls.count, m.s.faster

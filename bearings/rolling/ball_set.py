@@ -15,9 +15,9 @@ from ...modelkit.kernel import kernel
 from ...modelkit.variables import SWITCH, Choices, choice, integer, real
 from ..contact import journal
 from ..contact.journal import out_of_proportion
-from ..contact.laws import EXACT, damp, in_series, lay_abreast, race_contact_stiffness
+from ..contact.laws import EXACT, broadcast_law, damp, in_series, race_contact_stiffness
 
-MOST_BALLS = 32  # room in the state vector
+MAX_BALLS = 32  # room in the state vector
 INTEGRALS = Choices("EllipticIntegrals", ("exact", "printed"), ("", "as the source prints them (2.46)"))
 
 
@@ -30,7 +30,7 @@ class BallSet:
     contact stiffness and forces are stated per ball.
     """
 
-    count: int = integer(9, "number of balls in a row", minimum=3, maximum=MOST_BALLS)
+    count: int = integer(9, "number of balls in a row", minimum=3, maximum=MAX_BALLS)
     rows: int = integer(1, "rows of balls side by side that share the load alike", minimum=1, maximum=8)
     diameter: float = real(6.4e-3, "m", "ball diameter", above=0.0)
     pitch_diameter: float = real(31e-3, "m", "pitch diameter", above=0.0)
@@ -61,7 +61,7 @@ class FreeBallSet(BallSet):
     its pitch diameter corrected to 28.5 mm.
     """
 
-    count: int = integer(17, "number of balls", minimum=3, maximum=MOST_BALLS)
+    count: int = integer(17, "number of balls", minimum=3, maximum=MAX_BALLS)
     diameter: float = real(4.8e-3, "m", "ball diameter", above=0.0)
     pitch_diameter: float = real(28.5e-3, "m", "pitch diameter", above=0.0)
     play: float = real(0.0, "m", "radial play between balls and races; negative: preload")
@@ -132,7 +132,7 @@ class RaceStiffness:
     series: float = real(0.0, "N/m^n", "inner to outer ring through a ball, n = 1.5", constant=True)
 
 
-EVEN = 1.0  # spread
+EVEN_SPREAD = 1.0  # spread
 ROUNDING = 1e-12  # of a full turn of balls
 
 
@@ -207,7 +207,7 @@ def set_race_law(law, b, stiffness, mass):
     law.stiffness, law.exponent = stiffness, 1.5
     law.damping, law.dissipation, law.viscous, law.mass = b.damping, 0.0, 0.0, 0.0
     law.damping_ratio, law.expected_indentation = b.damping_ratio, b.expected_indentation
-    lay_abreast(law, b.rows)
+    broadcast_law(law, b.rows)
     damp(law, mass)
 
 

@@ -14,11 +14,13 @@ from ...modelkit.kernel import kernel
 from ..contact.peaks import Largest, watch_peaks
 from .ball_set import outer_share, start_angle
 
-MOST_STEPS = 100  # of Newton's method; ten are enough where balls hold the ring
-MOST_HALVINGS = 40
-FLAT = 1e-12  # determinant over squared trace below which the springs hold the ring along one line only
+MAX_STEPS = 100  # of Newton's method; ten are enough where balls hold the ring
+MAX_HALVINGS = 40
+SINGULAR_RATIO = (
+    1e-12  # determinant over squared trace below which the springs hold the ring along one line only
+)
 ROUNDING = 2e-16  # of all lengths
-AT_BOTTOM = 1e-9  # rad, how near to the bottom a ball is exactly below
+BOTTOM_ANGLE = 1e-9  # rad, how near to the bottom a ball is exactly below
 
 
 class Springs(NamedTuple):
@@ -63,17 +65,17 @@ def _balance(x, y, springs, weight):
 def _step_from(at, weight, far):
     """Step (m, m) to where the gradient of a `Balance` vanishes; `far` (m) where no spring holds the ring.
 
-    Within `AT_BOTTOM` of the direction of the weight (N) it does not slide off.
+    Within `BOTTOM_ANGLE` of the direction of the weight (N) it does not slide off.
     """
     trace, det = at.xx + at.yy, at.xx * at.yy - at.xy * at.xy
-    if det > FLAT * trace * trace:
+    if det > SINGULAR_RATIO * trace * trace:
         return (at.xy * at.y - at.yy * at.x) / det, (at.xy * at.x - at.xx * at.y) / det
     if trace == 0.0:
         return 0.0, -far
     dx, dy = -(at.xx * at.x + at.xy * at.y) / trace, -(at.xy * at.x + at.yy * at.y) / trace
     x, y = at.x + dx, at.y + dy  # of the gradient, what is across the springs
     across = math.sqrt(x * x + y * y)
-    slide = far / across if across > AT_BOTTOM * weight else 0.0
+    slide = far / across if across > BOTTOM_ANGLE * weight else 0.0
     return dx / trace - slide * x, dy / trace - slide * y
 
 
@@ -91,7 +93,7 @@ def _first_guess(springs, sunk):
     off = (gaps - math.floor(gaps) - 0.5) * 2.0 * half_gap  # of the bottom from the middle of its gap
     # a ball exactly below: in the middle, on that ball
     direction, reach = -0.5 * math.pi, max(springs.play, 0.0) + sunk
-    if abs(abs(off) - half_gap) >= AT_BOTTOM:  # in the corner of the play between the two lowest balls
+    if abs(abs(off) - half_gap) >= BOTTOM_ANGLE:  # in the corner of the play between the two lowest balls
         direction, reach = direction - off, reach / math.cos(half_gap)
     return reach * math.cos(direction), reach * math.sin(direction)
 
@@ -109,12 +111,12 @@ def resting_place(springs, weight, out):
     sunk = (weight / springs.stiffness) ** (1.0 / 1.5)
     x, y = _first_guess(springs, sunk)
     at = _balance(x, y, springs, weight)
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         dx, dy = _step_from(at, weight, out)
         if not abs(dx) + abs(dy) > ROUNDING * (abs(x) + abs(y) + abs(springs.play)):
             break
         tried = _balance(x + dx, y + dy, springs, weight)
-        for _ in range(MOST_HALVINGS):
+        for _ in range(MAX_HALVINGS):
             if _is_lower(tried, at):
                 break
             dx, dy = 0.5 * dx, 0.5 * dy

@@ -21,7 +21,7 @@ from ..contact.profile import RaceProfile, SearchReport
 from . import declarations
 from .ball_bodies import Contacts, ball_motion
 from .ball_set import (
-    MOST_BALLS,
+    MAX_BALLS,
     BallContacts,
     ball_inertia,
     ball_mass,
@@ -87,7 +87,7 @@ class BallBodiesOutputs(RollingOutputs):
     inner: BallContacts = group(BallContacts)
     outer: BallContacts = group(BallContacts)
     hardest: HardestHit = group(HardestHit)
-    ball: tuple = groups(Ball, MOST_BALLS)
+    ball: tuple = groups(Ball, MAX_BALLS)
 
 
 @dataclass(frozen=True)
@@ -105,17 +105,17 @@ class BallBodiesDerived(RollingDerived):
     resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
     searched: int = integer(0, "1: contacts with races are searched for")
     cage_answer: float = real(0.0, "1/kg", "answer of the cage to a force in a pocket")
-    x: tuple = array(MOST_BALLS)  # where the balls start, from the middle
-    y: tuple = array(MOST_BALLS)
+    x: tuple = array(MAX_BALLS)  # where the balls start, from the middle
+    y: tuple = array(MAX_BALLS)
 
 
 @dataclass(frozen=True)
 class BallRates:
     """Accelerations of all balls, on their way through an evaluation."""
 
-    x: tuple = array(MOST_BALLS)  # m/s2
-    y: tuple = array(MOST_BALLS)
-    spin: tuple = array(MOST_BALLS)  # rad/s2
+    x: tuple = array(MAX_BALLS)  # m/s2
+    y: tuple = array(MAX_BALLS)
+    spin: tuple = array(MAX_BALLS)  # rad/s2
 
 
 @dataclass(frozen=True)
@@ -130,11 +130,11 @@ class BallBodiesMemory(RollingMemory, KickMemory):
     inner_peaks: PeakMemory = group(PeakMemory)
     outer_peaks: PeakMemory = group(PeakMemory)
     side_peaks: PeakMemory = group(PeakMemory)
-    cross: tuple = array(MOST_BALLS)  # of the directions along both races at a ball
+    cross: tuple = array(MAX_BALLS)  # of the directions along both races at a ball
     outer_spin: float = real(0.0, "rad/s", "of the outer ring, where its rotation is not eliminated")
     outer_moment: float = real(0.0, "N.m", "of the balls on the outer ring, about its centre")
-    inner_starts: tuple = array(2 * MOST_BALLS)
-    outer_starts: tuple = array(2 * MOST_BALLS)
+    inner_starts: tuple = array(2 * MAX_BALLS)
+    outer_starts: tuple = array(2 * MAX_BALLS)
     search: SearchReport = group(SearchReport)
 
 

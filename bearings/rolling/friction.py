@@ -27,14 +27,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import array
 from ..contact.friction import Rises, rises
 from ..contact.pair import NO_LINE, line_at, spot
-from .ball_set import MOST_BALLS
+from .ball_set import MAX_BALLS
 
 LANES = 8  # contacts that are computed at once, as vectors of 8 or two of 4
-ROOM = 2 * MOST_BALLS  # a multiple of it
+ROOM = 2 * MAX_BALLS  # a multiple of it
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class FrictionLines:
     base: tuple = array(ROOM)
 
 
-@woven
+@inlined
 def gather(k, count, answer, race, lines):
     """Put those of `count` contacts at a `race` (Rubbed) that press behind the first `k` of `lines`.
 
@@ -68,7 +68,7 @@ def gather(k, count, answer, race, lines):
     return k
 
 
-@woven
+@inlined
 def draw(count, law, lines):
     """Set start, slope and base of `count` lines; law: a `Curve`."""
     for k in range(count):
@@ -83,7 +83,7 @@ def draw(count, law, lines):
         lines.start[k], lines.slope[k], lines.base[k] = line.start, line.slope, line.base
 
 
-@woven
+@inlined
 def hand_back(k, count, race, lines):
     """Set the lines of `count` contacts at a `race` (Rubbed), which begin behind the first `k` of `lines`.
 
@@ -108,17 +108,17 @@ def in_full_lanes(count):
 class RubbedRace:
     """All balls at one race, at the last evaluation, and their friction on its way through a kick."""
 
-    normal: tuple = array(MOST_BALLS)  # N
-    tangential: tuple = array(MOST_BALLS)  # N, friction on the ball along t
-    loss: tuple = array(MOST_BALLS)  # W, heat
-    sliding: tuple = array(MOST_BALLS)  # m/s, of the ball over the race, before the kick
-    driven: tuple = array(MOST_BALLS)  # m/s, its change by all but friction at races
-    expected: tuple = array(MOST_BALLS)  # m/s, at which the kick would end but for its own friction
-    start: tuple = array(MOST_BALLS)  # N, of the `Line` of its friction
-    slope: tuple = array(MOST_BALLS)  # N s/m
-    base: tuple = array(MOST_BALLS)
-    held: tuple = array(MOST_BALLS)  # N, friction as the ring keeps its velocity
-    gain: tuple = array(MOST_BALLS)  # N s/m, and for each m/s by which its race runs ahead
+    normal: tuple = array(MAX_BALLS)  # N
+    tangential: tuple = array(MAX_BALLS)  # N, friction on the ball along t
+    loss: tuple = array(MAX_BALLS)  # W, heat
+    sliding: tuple = array(MAX_BALLS)  # m/s, of the ball over the race, before the kick
+    driven: tuple = array(MAX_BALLS)  # m/s, its change by all but friction at races
+    expected: tuple = array(MAX_BALLS)  # m/s, at which the kick would end but for its own friction
+    start: tuple = array(MAX_BALLS)  # N, of the `Line` of its friction
+    slope: tuple = array(MAX_BALLS)  # N s/m
+    base: tuple = array(MAX_BALLS)
+    held: tuple = array(MAX_BALLS)  # N, friction as the ring keeps its velocity
+    gain: tuple = array(MAX_BALLS)  # N s/m, and for each m/s by which its race runs ahead
 
 
 class Rubbed(NamedTuple):
@@ -205,7 +205,7 @@ def over_ring(nx, ny, lever, moved):
     return moved.y * nx - moved.x * ny + lever * moved.spin
 
 
-@woven
+@inlined
 def _draw_lines(count, law, answers, moved, at, outer, inner, lines):
     """Set `held` and `gain` (n,) of both races with `count` balls.
 
@@ -219,7 +219,7 @@ def _draw_lines(count, law, answers, moved, at, outer, inner, lines):
     _join(answers, at, outer, inner)
 
 
-@woven
+@inlined
 def _expect(answers, moved, at, outer, inner):
     """Set the speeds (n,) at which the kick is expected to end but for each contact's own friction."""
     for b in range(len(at.nx)):
@@ -230,7 +230,7 @@ def _expect(answers, moved, at, outer, inner):
         inner.expected[b] = inner.sliding[b] + inner.driven[b] + w_io * outer.tangential[b] - ahead
 
 
-@woven
+@inlined
 def _join(answers, at, outer, inner):
     """Set `held` and `gain` (n,) of both races from the lines of their contacts."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
@@ -249,7 +249,7 @@ def _join(answers, at, outer, inner):
         inner.gain[b] = d_o * slope_i * inverse
 
 
-@woven
+@inlined
 def _settle(answers, moved, at, outer, inner):
     """Set the friction (n,) at both races, and its heat; moved: `Moved` in this kick."""
     w_oo, w_ii = answers.outer + answers.spin, answers.inner + answers.spin
@@ -266,7 +266,7 @@ def _settle(answers, moved, at, outer, inner):
         inner.loss[b] = -f_i * (inner.sliding[b] + 0.5 * ds_i)
 
 
-@woven
+@inlined
 def _turn_ring(h, count, around, at, inner):
     """`Moved`: what a kick of h (s) does to the ring, with `count` balls; around: `Around`."""
     push, bore = around.push, around.bore
@@ -303,7 +303,7 @@ def _solved(h, xx, xy, yy, xw, yw, ww, fx, fy, moment):
     return Moved(h * x, h * y, h * spin)
 
 
-@woven
+@inlined
 def rub(h, count, law, answers, around, at, outer, inner, lines):
     """Friction of `count` balls at both races and of the journal in the bore over a kick of h (s).
 

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.integrators import verlet
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import array, group, real
 from .. import seat
 from ..contact.passivity import Beat
 from . import ring
-from .ring import MOST_STATES
+from .ring import MAX_STATES
 
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
 MICRO_STEP = 2.5e-6  # s, the default
 RESOLUTION = 0.8  # rad of the fastest contact, at most a step, at the default
-STEPS_A_HIT = 0.2  # of the duration of a hit, at most a step, at the default
+HIT_RESOLUTION = 0.2  # of the duration of a hit, at most a step, at the default
 
 
 @dataclass(frozen=True)
@@ -43,13 +43,13 @@ class KickMemory:
     drift: float = real(0.0, "s", "half of the drift that follows it; 0: the span ends")
     lately: float = real(0.0, "rad/s", "frequency of the fastest contact of late")
     rubbed: float = real(0.0, "N", "friction on the journal in the kick before")
-    before: tuple = array(MOST_STATES)  # derivative of the state then
+    before: tuple = array(MAX_STATES)  # derivative of the state then
     withheld: float = real(0.0, "J", "what contacts kept from the bodies so far, to be passive")
     brake: Brake = group(Brake)
     ahead: tuple = array(len(COPIES))  # m/s, by which the velocities of the copies are forecast; rad/s
 
 
-@woven
+@inlined
 def forecast(trial, dq, h, kick, m):
     """Velocities of the copies in `trial` at the end of a micro-step of h (s), before a `kick` (s).
 
@@ -145,4 +145,4 @@ def step_in_hit(longest, law, mass):
     """
     power = 1.0 / (law.exponent + 1.0)
     depth = (0.5 * (law.exponent + 1.0) * mass * seat.VELOCITY_SCALE**2.0 / law.stiffness) ** power
-    return refined(longest) * STEPS_A_HIT * 3.0 * depth / seat.VELOCITY_SCALE
+    return refined(longest) * HIT_RESOLUTION * 3.0 * depth / seat.VELOCITY_SCALE

@@ -22,12 +22,12 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import integer, real
 from ..contact.friction import coefficient
 from ..contact.pair import damped_normal
 
-REVERSAL = 0.05  # m/s; a ball's speed along the race around which rolling resistance changes its sign
+REVERSAL_SPEED = 0.05  # m/s; a ball's speed along the race around which rolling resistance changes its sign
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Meeting(NamedTuple):
     outer: float  # of the outer race over the ball, m/s
 
 
-@woven
+@inlined
 def meet(gap, c, s, orbit, spin, way):
     """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
     indentation = gap.ex * c + gap.ey * s - way.play
@@ -121,26 +121,26 @@ def meet(gap, c, s, orbit, spin, way):
     return Meeting(indentation, gap.ux * c + gap.uy * s, radius, lever, inner, -(v + around))
 
 
-@woven
+@inlined
 def rolling_drag(speed):
     """Rolling resistance over its full value, with the sign of a ball's `speed` along the race (m/s)."""
-    return speed / math.sqrt(speed * speed + REVERSAL * REVERSAL)
+    return speed / math.sqrt(speed * speed + REVERSAL_SPEED * REVERSAL_SPEED)
 
 
-@woven
+@inlined
 def across_of(gap, c, s):
     """How far the ring lies off the middle along t (m), at a ball at the angle of cosine c and sine s."""
     return gap.ey * c - gap.ex * s
 
 
-@woven
+@inlined
 def elastic_at(at, way):
     """Elastic force (N) between the rings at a ball that lies `at` (Meeting)."""
     depth = max(at.indentation, 0.0)
     return way.stiffness * (depth * math.sqrt(depth))
 
 
-@woven
+@inlined
 def squeeze_ball(at, elastic, across, orbit, way, along, others):
     """`Squeezed` (N) of a ball that lies `at` (Meeting), orbits (rad/s) and is pressed by `elastic` (N).
 

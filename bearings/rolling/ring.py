@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import Motion
 from ...modelkit.variables import real
 from .. import seat
@@ -23,7 +23,7 @@ from ..contact.journal import note, place_in_bore, time_to_touch, touch, touch_o
 from ..contact.laws import elastic_energy, elastic_force
 from ..contact.pair import INSIDE, friction_line, heat, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled
-from .ball_set import MOST_BALLS
+from .ball_set import MAX_BALLS
 from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from .pitch_circle import Gap
 
@@ -80,14 +80,14 @@ def journal_on_ring(q, m):
     return t
 
 
-@woven
+@inlined
 def moved_before(m):
     """`Moved` (m/s, rad/s): what a kick as long as this one does to the ring at its last acceleration."""
     h, a = m.s.kick, m.s.before
     return Moved(h * a[RVX], h * a[RVY], h * a[RW])
 
 
-@woven
+@inlined
 def meet_journal(q, m):
     """(`Place` of the journal in the bore (m), its `Kick`, the ring answering alone, its `Squeeze`).
 
@@ -102,7 +102,7 @@ def meet_journal(q, m):
     return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick, s.ring.stored)
 
 
-@woven
+@inlined
 def bore_line(at, kick, squeezed, m):
     """`Bore`: the journal's friction `at` a place of the bore over a `kick`, if `squeezed`."""
     if squeezed.normal <= 0.0:
@@ -112,7 +112,7 @@ def bore_line(at, kick, squeezed, m):
     return Bore(at.nx, at.ny, at.second, line.start / line.base, line.slope / line.base)
 
 
-@woven
+@inlined
 def push_on(at, squeezed, balls, m):
     """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
     p, n = m.p, squeezed.normal
@@ -120,7 +120,7 @@ def push_on(at, squeezed, balls, m):
     return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
 
 
-@woven
+@inlined
 def rub_journal(at, squeezed, friction, moved, m):
     """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
 
@@ -141,7 +141,7 @@ def rub_journal(at, squeezed, friction, moved, m):
     return t
 
 
-@woven
+@inlined
 def rub_races(q, pressed, answers, inner, m):
     """Friction of all balls at both races and of the journal in the bore, over the kick m.s.kick.
 
@@ -208,7 +208,7 @@ def accelerate(q, dq, m, journal, balls):
     dq[RW] = (journal.ring_moment + balls.moment) / m.p.ring.inertia
 
 
-@woven
+@inlined
 def drift(trial, q, mid, h):
     """The ring's position in the state `trial`: that in q and h (s) times its velocity in `mid`."""
     trial[RX] = q[RX] + h * mid[RVX]
@@ -274,8 +274,8 @@ def set_weights(weight):
 
 BALLS = NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
-SPARE = 2  # balls left over that are quicker alone than with company
-MOST_STATES = BALLS + 6 * (MOST_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
+MAX_LEFTOVER_BALLS = 2  # balls left over that are quicker alone than with company
+MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
 
 
 @kernel
@@ -287,12 +287,12 @@ def part(q, component, m):
 
 @kernel
 def rounded(count):
-    """How many balls the loops run over for `count`; all arrays have room for `MOST_BALLS`."""
+    """How many balls the loops run over for `count`; all arrays have room for `MAX_BALLS`."""
     left = count % LANES
-    return count if left <= SPARE else count - left + LANES
+    return count if left <= MAX_LEFTOVER_BALLS else count - left + LANES
 
 
-@woven
+@inlined
 def drift_balls(trial, q, mid, h, place, rate, n):
     """Set n places in the state `trial`: those in q and h (s) times their rates in `mid`.
 
@@ -303,7 +303,7 @@ def drift_balls(trial, q, mid, h, place, rate, n):
         to[b] = start[b] + h * by[b]
 
 
-@woven
+@inlined
 def copy(given, to):
     """Set `to` (n,) to what is `given` (n,)."""
     for b in range(len(to)):

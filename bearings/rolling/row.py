@@ -23,7 +23,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.numerics import cosine_and_sine
 from ...modelkit.ports import Motion
 from ...modelkit.variables import array
@@ -33,7 +33,7 @@ from ..contact.laws import elastic_energy
 from ..contact.pair import OUTSIDE, Place
 from ..contact.passivity import Beat, middle_of, passive, settled
 from . import ring
-from .ball_set import MOST_BALLS
+from .ball_set import MAX_BALLS
 from .balls import Total
 from .friction import Answers, Inner, rubbed_of
 from .micro_step import beat_of, missed, withhold
@@ -42,30 +42,30 @@ from .ring import BALLS, LANES, part, rounded
 from .sides import after, fill_sides, heat_of, link, part_ways, press_of, rub_sides, settle_sides, share
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
-MOST_STATES = BALLS + 3 * MOST_BALLS + LANES  # and room to run past the last ball
+MAX_STATES = BALLS + 3 * MAX_BALLS + LANES  # and room to run past the last ball
 
 
 @dataclass(frozen=True)
 class RaceBalls:
     """Each ball between the races, at the last evaluation."""
 
-    cosine: tuple = array(MOST_BALLS)
-    sine: tuple = array(MOST_BALLS)
-    elastic: tuple = array(MOST_BALLS)  # N, between the rings
-    indentation: tuple = array(MOST_BALLS)
-    lever: tuple = array(MOST_BALLS)  # m, of the inner contact from the ring's centre
-    cross: tuple = array(MOST_BALLS)  # of the directions along both races: they are one
-    radius: tuple = array(MOST_BALLS)  # m, on which the ball's centre runs
-    along: tuple = array(MOST_BALLS)  # m/s2, along the race, but for friction and neighbours
-    rate: tuple = array(MOST_BALLS)  # m/s, at which the rings approach, before the kick
-    across: tuple = array(MOST_BALLS)  # m, how far the ring lies off the middle along the ball's race
-    closing: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick: the ball's orbit, too
-    middle: tuple = array(MOST_BALLS)  # m/s, likewise in the middle of the kick
-    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
-    damped: tuple = array(MOST_BALLS)  # N, what of the force between the rings is damping
-    drag: tuple = array(MOST_BALLS)  # N, rolling resistance
-    faster: tuple = array(MOST_BALLS)  # rad/s2, of the orbit, on its way through an evaluation
-    turning: tuple = array(MOST_BALLS)  # rad/s2, of the spin, likewise
+    cosine: tuple = array(MAX_BALLS)
+    sine: tuple = array(MAX_BALLS)
+    elastic: tuple = array(MAX_BALLS)  # N, between the rings
+    indentation: tuple = array(MAX_BALLS)
+    lever: tuple = array(MAX_BALLS)  # m, of the inner contact from the ring's centre
+    cross: tuple = array(MAX_BALLS)  # of the directions along both races: they are one
+    radius: tuple = array(MAX_BALLS)  # m, on which the ball's centre runs
+    along: tuple = array(MAX_BALLS)  # m/s2, along the race, but for friction and neighbours
+    rate: tuple = array(MAX_BALLS)  # m/s, at which the rings approach, before the kick
+    across: tuple = array(MAX_BALLS)  # m, how far the ring lies off the middle along the ball's race
+    closing: tuple = array(MAX_BALLS)  # m/s, of the indentation, before the kick: the ball's orbit, too
+    middle: tuple = array(MAX_BALLS)  # m/s, likewise in the middle of the kick
+    stored: tuple = array(MAX_BALLS)  # J, as `bearings.contact.passivity`
+    damped: tuple = array(MAX_BALLS)  # N, what of the force between the rings is damping
+    drag: tuple = array(MAX_BALLS)  # N, rolling resistance
+    faster: tuple = array(MAX_BALLS)  # rad/s2, of the orbit, on its way through an evaluation
+    turning: tuple = array(MAX_BALLS)  # rad/s2, of the spin, likewise
 
 
 class Course(NamedTuple):
@@ -111,7 +111,7 @@ def place(q, count, angles):
         q[BALLS + b + count], q[BALLS + b + 2 * count] = 0.0, 0.0
 
 
-@woven
+@inlined
 def drift(trial, q, mid, h, m):
     """Positions in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     seat.drift(trial, q, mid, h, m)
@@ -138,14 +138,14 @@ def _loads_of(s, n):
     return Loads(s.elastic[:n], s.indentation[:n], *ways, s.rate[:n], s.damped[:n], s.drag[:n], *account)
 
 
-@woven
+@inlined
 def _directions(angle, cosine, sine):
     """Set (n,) cosines and sines of the attitude angles (rad)."""
     for b in range(len(cosine)):
         cosine[b], sine[b] = cosine_and_sine(angle[b])
 
 
-@woven
+@inlined
 def _press_all(gap, way, before, gravity, course, loads, inner, outer):
     """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
 
@@ -173,7 +173,7 @@ def _press_all(gap, way, before, gravity, course, loads, inner, outer):
         loads.rate[b], loads.damped[b], loads.drag[b] = at.rate, ball.force - ball.elastic, ball.drag
 
 
-@woven
+@inlined
 def _crowd(m):
     """By how much more than one ball's force its mates' move the ring, so that much damping is stable.
 
@@ -185,7 +185,7 @@ def _crowd(m):
     return max(1.0, 0.5 * loaded)
 
 
-@woven
+@inlined
 def press_balls(q, m):
     """Both races press all balls in the state q; sets their accelerations, gravity included."""
     s, at = m.s, m.s.balls
@@ -264,7 +264,7 @@ def rubbing(dq, m):
     return loss
 
 
-@woven
+@inlined
 def rub_balls(q, dq, m):
     """Friction at both races and in the bore, when all else on the balls is in m.s.balls; sets them in dq.
 
@@ -289,7 +289,7 @@ def rub_balls(q, dq, m):
     return journal, balls
 
 
-@woven
+@inlined
 def _drive(m):
     """How all but friction at races changes the sliding speeds over the kick."""
     s, rb, h = m.s, m.d.ball_radius, m.s.kick
@@ -299,7 +299,7 @@ def _drive(m):
         s.inner.driven[b] = h * (along - around)
 
 
-@woven
+@inlined
 def _rub(q, share, moved, m):
     """Add friction at both races to the balls' accelerations, and all other heat to that of friction.
 
@@ -317,7 +317,7 @@ def _rub(q, share, moved, m):
         s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
 
 
-@woven
+@inlined
 def _hand_over(q, dq, m):
     """Set the balls' derivatives in dq (m.n,), component by component: each loop is vector code."""
     n, at = m.p.balls.count, m.s.balls
@@ -326,7 +326,7 @@ def _hand_over(q, dq, m):
     ring.copy(at.turning[:n], part(dq, SPIN, m))
 
 
-@woven
+@inlined
 def _pressing(m):
     """`Total` (N, N m) of the forces of all balls on the ring but for friction."""
     fx, fy, at = 0.0, 0.0, m.s.balls
@@ -336,7 +336,7 @@ def _pressing(m):
     return Total(fx, fy, 0.0, 0.0)
 
 
-@woven
+@inlined
 def _with_friction(pressed, m):
     """`Total` (N, N m, W) on the ring that is `pressed` (Total) and rubbed."""
     fx, fy, moment, heat, at, s = pressed.fx, pressed.fy, 0.0, 0.0, m.s.balls, m.s
@@ -373,7 +373,7 @@ def fill_accounts(m):
     m.s.ring.stored = elastic_energy(m.s.ring.indentation, m.d.contact)
 
 
-@woven
+@inlined
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s = m.d, m.s

@@ -27,14 +27,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import array, integer
 from ..contact.friction import curve
 from ..contact.laws import elastic_and_damping, elastic_energy, elastic_force
 from ..contact.pair import OUTSIDE, Line, Place, Squeeze, force_on, kick_of, rubbed, slip
 from ..contact.passivity import middle_of, passive, settled
 from ..contact.peaks import Largest
-from .ball_set import MOST_BALLS
+from .ball_set import MAX_BALLS
 from .balls import largest
 from .friction import draw, in_full_lanes
 from .micro_step import beat_of
@@ -51,7 +51,7 @@ def rub_sides(contacts, count, friction, lines):
         _hand_back(contacts, count, lines)
 
 
-@woven
+@inlined
 def _gather(contacts, count, lines):
     """Put those of `count` contacts that touch first in `lines`; returns how many there are."""
     k = 0
@@ -62,7 +62,7 @@ def _gather(contacts, count, lines):
     return k
 
 
-@woven
+@inlined
 def _hand_back(contacts, count, lines):
     """Set the friction (N) of those of `count` contacts that touch from their lines."""
     k = 0
@@ -77,22 +77,22 @@ def _hand_back(contacts, count, lines):
 class SideContacts:
     """Contact of each ball with the next, or with the cage, at the last evaluation."""
 
-    normal: tuple = array(MOST_BALLS)
-    highest: tuple = array(MOST_BALLS)  # N, of the normal force in the kick; `normal` is its mean
-    tangential: tuple = array(MOST_BALLS)
-    indentation: tuple = array(MOST_BALLS)
-    stiffness: tuple = array(MOST_BALLS)
-    nx: tuple = array(MOST_BALLS)  # where it lies, as `bearings.contact.pair.Place`
-    ny: tuple = array(MOST_BALLS)
-    first: tuple = array(MOST_BALLS)
-    second: tuple = array(MOST_BALLS)
-    sliding: tuple = array(MOST_BALLS)  # m/s, before the kick
-    rate: tuple = array(MOST_BALLS)  # m/s, of the indentation, before the kick
-    middle: tuple = array(MOST_BALLS)  # m/s, in the middle of the kick
-    stored: tuple = array(MOST_BALLS)  # J, as `bearings.contact.passivity`
-    damped: tuple = array(MOST_BALLS)  # N, what of the normal force is damping
-    driven: tuple = array(MOST_BALLS)  # m/s, change of the sliding speed by all but its own friction
-    across: tuple = array(MOST_BALLS)  # s/kg, as `bearings.contact.kick.Kick.across`
+    normal: tuple = array(MAX_BALLS)
+    highest: tuple = array(MAX_BALLS)  # N, of the normal force in the kick; `normal` is its mean
+    tangential: tuple = array(MAX_BALLS)
+    indentation: tuple = array(MAX_BALLS)
+    stiffness: tuple = array(MAX_BALLS)
+    nx: tuple = array(MAX_BALLS)  # where it lies, as `bearings.contact.pair.Place`
+    ny: tuple = array(MAX_BALLS)
+    first: tuple = array(MAX_BALLS)
+    second: tuple = array(MAX_BALLS)
+    sliding: tuple = array(MAX_BALLS)  # m/s, before the kick
+    rate: tuple = array(MAX_BALLS)  # m/s, of the indentation, before the kick
+    middle: tuple = array(MAX_BALLS)  # m/s, in the middle of the kick
+    stored: tuple = array(MAX_BALLS)  # J, as `bearings.contact.passivity`
+    damped: tuple = array(MAX_BALLS)  # N, what of the normal force is damping
+    driven: tuple = array(MAX_BALLS)  # m/s, change of the sliding speed by all but its own friction
+    across: tuple = array(MAX_BALLS)  # s/kg, as `bearings.contact.kick.Kick.across`
     touching: int = integer(0, "how many of them touch")
 
 
@@ -201,10 +201,10 @@ def stored(contacts, law, count):
 class Chain:
     """Contacts of each ball with the next on their way through a kick."""
 
-    elastic: tuple = array(MOST_BALLS)  # N
-    base: tuple = array(MOST_BALLS)  # of the equation above: what is before N_i
-    pull: tuple = array(MOST_BALLS)  # p_i; then what N_i gains with N_(i+1)
-    free: tuple = array(MOST_BALLS)  # N, the right-hand side; then N_i without N_(i+1)
+    elastic: tuple = array(MAX_BALLS)  # N
+    base: tuple = array(MAX_BALLS)  # of the equation above: what is before N_i
+    pull: tuple = array(MAX_BALLS)  # p_i; then what N_i gains with N_(i+1)
+    free: tuple = array(MAX_BALLS)  # N, the right-hand side; then N_i without N_(i+1)
 
 
 @kernel

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...modelkit.kernel import kernel, woven
+from ...modelkit.kernel import inlined, kernel
 from ...modelkit.model import memory_layout
 from ...modelkit.ports import (
     ACCELERATION,
@@ -39,7 +39,7 @@ INSIDE = 23  # first component of what is inside the bearing
 # of a mode of unit inv_m to the load alone.
 ZX, ZY, ZVX, ZVY, QX, QY, PX, PY = range(8)
 PER_MODE = 8
-ROOM = PER_MODE * MODES  # in the state vector
+MODES_SIZE = PER_MODE * MODES  # in the state vector
 
 POSITION_SCALE = 1e-5  # m; an indentation
 VELOCITY_SCALE = 0.1  # m/s; a landing
@@ -78,7 +78,7 @@ def bearing_memory(
     inputs: type = BearingInputs,
 ) -> np.dtype:
     """Memory of a bearing whose state, with the copies, has up to `size` components."""
-    return memory_layout(parameters, inputs, outputs, size + ROOM, derived, hidden)
+    return memory_layout(parameters, inputs, outputs, size + MODES_SIZE, derived, hidden)
 
 
 @kernel
@@ -214,7 +214,7 @@ def _mode_rates(q, dq, m, load):
     return back_x, back_y
 
 
-@woven
+@inlined
 def drift(trial, q, mid, h, m):
     """The copies' positions in the state `trial`: those in q and h (s) times the velocities in `mid`."""
     moves = 1.0 if m.p.interface.order >= VELOCITY else 0.0  # a held copy stays
@@ -227,7 +227,7 @@ def drift(trial, q, mid, h, m):
     _drift_modes(trial, q, mid, h, m)
 
 
-@woven
+@inlined
 def _drift_modes(trial, q, mid, h, m):
     """`drift` of the elastic modes, in the states `trial`, q and `mid` (m.n,)."""
     for n in range(m.s.seat.modes):
@@ -238,7 +238,7 @@ def _drift_modes(trial, q, mid, h, m):
         trial[i + QY] = q[i + QY] + h * mid[i + PY]
 
 
-@woven
+@inlined
 def forecast(trial, dq, h):
     """Take the copies' velocities in `trial` from the middle of a micro-step of h (s) to its end.
 

@@ -59,8 +59,10 @@ from .copies import (
     take_modes,
 )
 
-STIFFEST = 3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load
-OF_BODIES = 10  # numbers of the load on journal and housing; each mode has four more
+MAX_HALF_PERIODS = (
+    3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load
+)
+BODY_LOAD_SIZE = 10  # numbers of the load on journal and housing; each mode has four more
 
 
 @kernel
@@ -78,7 +80,7 @@ def hand_over(q, m, step):
     _hand_modes_over(q, m, step)
     h = m.o.housing
     u = m.u.housing
-    if max(step * math.sqrt(u.k_over_m), step * u.c_over_m) < STIFFEST:
+    if max(step * math.sqrt(u.k_over_m), step * u.c_over_m) < MAX_HALF_PERIODS:
         response = numerics.step(u.k_over_m, u.c_over_m, step)
         h.fx, h.dfx = numerics.load_for(response, q[HFX], q[HFVX])
         h.fy, h.dfy = numerics.load_for(response, q[HFY], q[HFVY])
@@ -112,11 +114,11 @@ def hand_now(m, load):
 def handed_over(m):
     """The load as it stands in m.o, in its units: (10 + 4 modes,) on journal, housing and modes."""
     j, h = m.o.journal, m.o.housing
-    load = np.empty(OF_BODIES + 4 * m.s.seat.modes)
+    load = np.empty(BODY_LOAD_SIZE + 4 * m.s.seat.modes)
     load[0], load[1], load[2], load[3], load[4], load[5] = j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz
     load[6], load[7], load[8], load[9] = h.fx, h.fy, h.dfx, h.dfy
     for k in range(m.s.seat.modes):
-        i, z = OF_BODIES + 4 * k, j.mode[k]
+        i, z = BODY_LOAD_SIZE + 4 * k, j.mode[k]
         load[i], load[i + 1], load[i + 2], load[i + 3] = z.qx, z.qy, z.px, z.py
     return load
 
@@ -128,7 +130,7 @@ def hand_instead(m, load):
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load[0], load[1], load[2], load[3], load[4], load[5]
     h.fx, h.fy, h.dfx, h.dfy = load[6], load[7], load[8], load[9]
     for k in range(m.s.seat.modes):
-        i, z = OF_BODIES + 4 * k, j.mode[k]
+        i, z = BODY_LOAD_SIZE + 4 * k, j.mode[k]
         z.qx, z.qy, z.px, z.py = load[i], load[i + 1], load[i + 2], load[i + 3]
 
 

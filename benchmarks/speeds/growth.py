@@ -11,7 +11,7 @@ from pathlib import Path
 import touchdown
 from speeds.measured import Block, Spread, exponent, in_turns
 from speeds.scenes import recorded
-from touchdown.bearings.rolling.ball_set import MOST_BALLS
+from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.master.coupling.simulation import opened, simulate
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
@@ -138,7 +138,7 @@ def all_of(duration: float, repeat: int, quick: bool) -> list[Grown]:
     rotor = load_scene("rotor1-9000").set(timed)
     many = "s per simulated s"
     plans = [
-        ("balls, detailed cageless", many, cageless, balls, (9, 12, 17, 24, MOST_BALLS), per_second),
+        ("balls, detailed cageless", many, cageless, balls, (9, 12, 17, 24, MAX_BALLS), per_second),
         ("modes per plane, rotor I", many, rotor, modes, (2, 5, 10, 20, 40), per_second),
         ("simulated time [s]", "s", disk, simulated, [duration * k for k in (0.5, 1, 2, 4)], total),
         ("macro step [s]", many, disk, macro_step, (5e-6, 1e-5, 2e-5, 5e-5, 1e-4), per_second),

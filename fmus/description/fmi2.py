@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality
 from .variables import (
-    SET,
+    STARTED_CAUSALITIES,
     Making,
     add_surroundings,
     add_units,
@@ -70,7 +70,7 @@ def _variable(slot: Slot) -> Element:
     named = {"name": slot.variable.name, "valueReference": str(slot.index)}
     scalar = Element("ScalarVariable", named | roles(slot))
     spec, details = slot.variable.spec, values(slot)
-    if causality(slot)[0] in SET:
+    if causality(slot)[0] in STARTED_CAUSALITIES:
         details["start"] = written(spec, slot.variable.default)
     SubElement(scalar, fmi_type(spec), details)
     return scalar

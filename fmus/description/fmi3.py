@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality, Scalar, Spec
 from .variables import (
-    SET,
+    STARTED_CAUSALITIES,
     Array,
     Making,
     add_surroundings,
@@ -81,7 +81,7 @@ def fmi_type(spec: Spec) -> str:
 def _variable(array: Array) -> Element:
     spec, named = array.first.variable.spec, {"name": array.name, "valueReference": str(array.first.index)}
     attributes = named | roles(array.first) | values(array.first)
-    if causality(array.first)[0] in SET:
+    if causality(array.first)[0] in STARTED_CAUSALITIES:
         attributes["start"] = " ".join(written(spec, slot.variable.default) for slot in array.elements)
     element = Element(fmi_type(spec), attributes)
     if array.dimension is not None:

@@ -19,7 +19,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from ...modelkit.kernel import source_hash
 from ...modelkit.model import Model, Slot, slots
-from ...modelkit.units import DISPLAYED, display_unit, per_display
+from ...modelkit.units import DISPLAY_UNITS, display_unit, per_display
 from ...modelkit.variables import Causality, Choices, Scalar, Spec, Variability
 from ..version import RELEASED, VERSION
 
@@ -69,14 +69,14 @@ def add_units(root: Element, exposed: Sequence[Slot], more: Iterable[str] = ()) 
         exponents = base_unit(unit)
         if exponents is not None:
             SubElement(element, "BaseUnit", {k: str(v) for k, v in exponents.items()})
-        for shown in DISPLAYED.get(unit, ()):
+        for shown in DISPLAY_UNITS.get(unit, ()):
             if shown != unit:
                 factor = repr(per_display(unit, shown))
                 SubElement(element, "DisplayUnit", {"name": shown, "factor": factor})
 
 
-SEVERAL = ("mode", "ball", "node")  # groups whose members become arrays, and elements of those again
-_ELEMENT = re.compile(rf"((?:.*\.)?(?:{'|'.join(SEVERAL)}))\[\d+\]\.(\w+)")
+ARRAY_GROUPS = ("mode", "ball", "node")  # groups whose members become arrays, and elements of those again
+_ELEMENT = re.compile(rf"((?:.*\.)?(?:{'|'.join(ARRAY_GROUPS)}))\[\d+\]\.(\w+)")
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def element(array: str, index: tuple[int, ...]) -> str:
     """Name of an array's element: x[2], x[1,2], mode[2].x of mode.x, as in FMI 2.0; of a scalar: ()."""
     counted = f"[{','.join(map(str, index))}]" if index else ""
     group, _, member = array.rpartition(".")
-    if group.rpartition(".")[2] in SEVERAL:
+    if group.rpartition(".")[2] in ARRAY_GROUPS:
         return f"{group}{counted}.{member}"
     return f"{array}{counted}"
 
@@ -176,7 +176,7 @@ def add_surroundings(root: Element, log_categories: Mapping[str, str]) -> None:
     SubElement(root, "DefaultExperiment", {"startTime": "0.0", "stopTime": "0.1", "stepSize": "2e-05"})
 
 
-SET = (Causality.PARAMETER, Causality.INPUT)  # what has a start value
+STARTED_CAUSALITIES = (Causality.PARAMETER, Causality.INPUT)  # what has a start value
 
 
 def scalars(model: Model) -> dict[str, Slot]:

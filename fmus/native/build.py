@@ -26,7 +26,7 @@ from ..variants import refusal
 from ..version import VERSION
 from .compiler import SOURCE, NativeError, Target, chosen, command, library
 from .in_c import ENTRIES, InC, sources
-from .interfaces import FMI_2, Face
+from .interfaces import FMI_2, Interface
 from .kernels import bitcode
 from .tables import Choice, Held, header, source
 
@@ -44,7 +44,7 @@ class Native:
     targets: tuple[Target, ...]
     modes: tuple[int, ...] = MODES
     lenient: bool = True
-    face: Face = FMI_2
+    face: Interface = FMI_2
 
     def check(self) -> None:
         """Raise NativeError where the compiler for a target is not there."""
@@ -104,7 +104,7 @@ def cached(recipe: Recipe) -> Path:
     return kept_sound(recipe.name, f"{content}-native", lambda folder: build(recipe, folder, native))
 
 
-def _code(model: Model, identity: str, held: Held, face: Face) -> tuple[bytes | None, dict[str, str]]:
+def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[bytes | None, dict[str, str]]:
     """What a library is made of: kernels as bitcode, if they are not in C, and sources in C by name."""
     side = (SOURCE / face.source).read_text(encoding="utf-8")
     texts = {face.source: side, "texts.h": header()}
@@ -133,7 +133,7 @@ def _held(model: Model, native: Native) -> Held:
     return Held(tuple(held))
 
 
-def _identity(model: Model, held: Held, face: Face) -> str:
+def _identity(model: Model, held: Held, face: Interface) -> str:
     """GUID of a native FMU: another one than that of the model's FMU in Python, whose states are others."""
     digest = hashlib.sha256(f"{guid(model)} native {_sources()} {held} {face.version}".encode()).hexdigest()
     return f"{digest[:8]}-{digest[8:12]}-{digest[12:16]}-{digest[16:20]}-{digest[20:32]}"

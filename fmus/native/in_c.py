@@ -40,7 +40,7 @@ int64_t advance(double *words, double *scratch, double time, double step)
 """
 
 
-TAKEN = ("fmi2.c", "fmi3.c", "model.c", "numba.c")  # names of the other sources
+OTHER_SOURCES = ("fmi2.c", "fmi3.c", "model.c", "numba.c")  # names of the other sources
 
 
 class InC:
@@ -129,7 +129,7 @@ def sources(model: Model) -> dict[str, str]:
     """The C files of a model in C: its own, and the header that declares its memory."""
     assert isinstance(model.advance, InC)
     own = model.advance.source
-    name = own.name if own.suffix == ".c" and own.name not in TAKEN else "kernels.c"
+    name = own.name if own.suffix == ".c" and own.name not in OTHER_SOURCES else "kernels.c"
     return {name: _text(own), "memory.h": _header(model.memory)}
 
 

@@ -16,7 +16,7 @@ from .tables import access, by_word, hidden
 
 
 @dataclass(frozen=True)
-class Face:
+class Interface:
     """A version of FMI."""
 
     version: int
@@ -68,8 +68,8 @@ def _arrays(model: Model) -> dict[str, str]:
     }
 
 
-FMI_2 = Face(2, "fmi2.c", Fmi2Slave.log_categories, scalars, slots, fmi2.describe, places, _scalars)
-FMI_3 = Face(
+FMI_2 = Interface(2, "fmi2.c", Fmi2Slave.log_categories, scalars, slots, fmi2.describe, places, _scalars)
+FMI_3 = Interface(
     3,
     "fmi3.c",
     {"logStatusDiscard": "A smaller step may be possible.", "logStatusError": "What went wrong."},
@@ -79,4 +79,4 @@ FMI_3 = Face(
     places_3,
     _arrays,
 )
-FACES = {face.version: face for face in (FMI_2, FMI_3)}
+INTERFACES = {face.version: face for face in (FMI_2, FMI_3)}

@@ -5,7 +5,7 @@ wrappers that speak Python. So this module runs as a program of its own, in whic
 processor is a plain one, and each function's code is put aside before numba makes machine code of it, which
 leaves intrinsics of the machine behind. Entries take plain pointers. They have numba's own calling
 convention, which is no public one (`numba.core.callconv.CPUCallConv`: status = f(&result, &exception,
-arguments...)): hence `tried.NUMBA`, the versions it was tried with.
+arguments...)): hence `front_end.NUMBA_RANGE`, the versions it was tried with.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any, cast
 from ...modelkit.integrators import dopri
 from ...modelkit.kernel import source_hash
 from ...modelkit.kernel.cache_folder import own_folder, put
-from ...modelkit.kernel.front_end import NUMBA
+from ...modelkit.kernel.front_end import NUMBA_RANGE
 from ...modelkit.kernel.linked import KernelDispatcher
 from ...modelkit.kernel.machine_code import KernelCache, plain_processor, sealed, unsealed
 from ...modelkit.model import Model
@@ -78,8 +78,8 @@ def _state_size(model: Model) -> int:
 def _require_numba() -> None:
     found = version("numba")
     numbers = tuple(int(part) for part in found.split(".")[:2])
-    first, last = (".".join(map(str, limit)) for limit in NUMBA)
-    if not NUMBA[0] <= numbers <= NUMBA[1]:
+    first, last = (".".join(map(str, limit)) for limit in NUMBA_RANGE)
+    if not NUMBA_RANGE[0] <= numbers <= NUMBA_RANGE[1]:
         tried = first if first == last else f"{first} to {last}"
         raise NativeError(
             f"native FMUs are built with numba {tried}, this is {found}; "

@@ -12,11 +12,11 @@ import numpy as np
 from ...modelkit import messages as steps
 from ...modelkit import status
 from ...modelkit.instance import FIRST_STEP, Instance
-from ...modelkit.integrators.control import MOST_STEPS
+from ...modelkit.integrators.control import MAX_STEPS
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality, Scalar, as_tuple, layout
 from .. import messages as calls
-from ..slave import LATE
+from ..slave import TIME_TOLERANCE
 from .compiler import NativeError
 from .kernels import PREFIX, scratch_words
 
@@ -79,8 +79,8 @@ def _templates(module: object) -> dict[str, str]:
 
 
 def _numbers() -> Iterator[str]:
-    yield f"#define LATE {LATE!r} /* of a step: how far it may begin from the end of the last one */"
-    yield f"#define MOST_STEPS {MOST_STEPS}u"
+    yield f"#define TIME_TOLERANCE {TIME_TOLERANCE!r} /* of a step, between begin and last end */"
+    yield f"#define MAX_STEPS {MAX_STEPS}u"
     for name in ("BAD_INPUT", "BAD_LOAD", "TOO_MANY_STEPS"):
         yield f"#define {name} {getattr(status, name)}"
 

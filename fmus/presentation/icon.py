@@ -12,7 +12,7 @@ import numpy as np
 from ...modelkit.model import Model, slots
 
 SIZE, SMALL = 64, 16  # pixels
-FINER = 4  # sub-pixels along each side, for smooth edges
+SUBPIXELS = 4  # sub-pixels along each side, for smooth edges
 PALETTE = np.array(
     [[255, 255, 255], [52, 73, 94], [231, 146, 60], [189, 199, 209], [38, 122, 176]], dtype=np.uint8
 )
@@ -45,11 +45,11 @@ def dot() -> bytes:
 
 def _picture(size: int, draw: Callable[[np.ndarray, np.ndarray, np.ndarray], None]) -> bytes:
     """PNG of size x size pixels; draw(picture, x, y) paints it, x and y run from -1 to 1."""
-    n = size * FINER
+    n = size * SUBPIXELS
     across = (np.arange(n) + 0.5) / n * 2.0 - 1.0
     picture = np.full((n, n), WHITE)
     draw(picture, across[None, :], -across[:, None])
-    fine = PALETTE[picture].reshape(size, FINER, size, FINER, 3).astype(float)
+    fine = PALETTE[picture].reshape(size, SUBPIXELS, size, SUBPIXELS, 3).astype(float)
     return _png(fine.mean(axis=(1, 3)).round().astype(np.uint8))
 
 

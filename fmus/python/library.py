@@ -52,8 +52,8 @@ def with_categories(library: bytes) -> bytes:
     return changed
 
 
-THROWN = b"_ZTIN9pythonfmu11fatal_errorE"  # as the compiler names types
-BASE = b"_ZTISt13runtime_error"
+EXCEPTION_TYPE = b"_ZTIN9pythonfmu11fatal_errorE"  # as the compiler names types
+EXCEPTION_BASE = b"_ZTISt13runtime_error"
 _SECTION = struct.Struct("<2I4Q2I2Q")  # of a table of sections: name, type, ..., offset, size, link, ...
 _SYMBOL = struct.Struct("<I2BH2Q")
 _RELOCATION = struct.Struct("<QQq")  # place, symbol and type, addend
@@ -73,10 +73,10 @@ def with_errors(library: bytes) -> bytes:
     sections = [_SECTION.unpack_from(library, table + i * size) for i in range(count)]
     tables = [s for s in sections if s[1] == _DYNSYM]
     names = _names(library, tables[0], sections[tables[0][6]]) if tables else []
-    if THROWN not in names or BASE not in names:
+    if EXCEPTION_TYPE not in names or EXCEPTION_BASE not in names:
         return library
-    thrown = names.index(THROWN) << 32 | _GLOB_DAT
-    base = names.index(BASE) << 32 | _GLOB_DAT
+    thrown = names.index(EXCEPTION_TYPE) << 32 | _GLOB_DAT
+    base = names.index(EXCEPTION_BASE) << 32 | _GLOB_DAT
     changed = bytearray(library)
     for section in (s for s in sections if s[1] == _RELA):
         for at in range(section[4], section[4] + section[5], _RELOCATION.size):

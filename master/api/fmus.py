@@ -12,7 +12,7 @@ from ...fmus.native.build import MODES, Native, prepare
 from ...fmus.native.build import build as build_native
 from ...fmus.native.compiler import NativeError, chosen
 from ...fmus.native.in_c import recipe_in_c
-from ...fmus.native.interfaces import FACES, FMI_2, Face
+from ...fmus.native.interfaces import FMI_2, INTERFACES, Interface
 from ...fmus.python.link import LinkError, interpreter
 from ...fmus.recipes import Recipe, names
 from ...fmus.variants import ALL, RIGID, told_of
@@ -67,7 +67,7 @@ def built_one_by_one(
     """`build`, each file when it is there."""
     if native and link_python:
         raise TouchdownError("an FMU is native or linked to a Python; choose one")
-    if fmi not in FACES:
+    if fmi not in INTERFACES:
         raise TouchdownError(f"there is no FMI {fmi} to build for; choose 2 or 3")
     if fmi != FMI_2.version and not native:
         raise TouchdownError("pythonfmu's FMUs are of FMI 2.0; add --native for FMI 3.0")
@@ -76,7 +76,7 @@ def built_one_by_one(
         counts = None if modes is None else tuple(modes)
         recipes = _for_modes([_recipe(os.fspath(fmu), native) for fmu in given], counts, native)
         make = (
-            _native(recipes, targets, counts, FACES[fmi])
+            _native(recipes, targets, counts, INTERFACES[fmi])
             if native
             else partial(_in_python, linked=link_python)
         )
@@ -114,7 +114,7 @@ def _for_modes(recipes: list[Recipe], modes: tuple[int, ...] | None, native: boo
 
 
 def _native(
-    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None, face: Face
+    recipes: Sequence[Recipe], targets: Iterable[str], modes: tuple[int, ...] | None, face: Interface
 ) -> Callable[[Recipe, Path], Path]:
     """How to build each of `recipes`, whose kernels are compiled beside each other first."""
     native = Native(chosen(list(several(targets))), modes or MODES, modes is None, face)

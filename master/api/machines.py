@@ -16,7 +16,7 @@ from ..results.result import Result
 from ..scene.scene import Scene
 from ..studies.machine.bearings import known
 from ..studies.machine.new import CLEARANCE, UNITS, Wanted, machine, write
-from ..studies.sweep.definition import FILE as SWEEP
+from ..studies.sweep.definition import DEFINITION_FILE as SWEEP
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.results import read as read_sweep
 from .run import PathLike, load, open_result

@@ -20,7 +20,7 @@ from ...rotor.imports.formats import Places
 from ...rotor.modal.modes import fullest
 from ...rotor.modal.supported import log_decrements
 from ...rotor.modal.whirl_speeds import Held, critical_speeds
-from ...rotor.properties import Portrait
+from ...rotor.properties import RotorProperties
 from ..common.errors import TouchdownError
 from ..common.files import keep_other, writing_to
 from ..scene.scene import Scene
@@ -211,10 +211,10 @@ class Rotor(Shaft):
         array([ 96.6,  97.3, 102.7, 119.2])
         """
         shaft = supported(self, supports or {})
-        portrait = described(shaft, speed, MODES)
-        if portrait.held is None:
+        properties = described(shaft, speed, MODES)
+        if properties.held is None:
             raise TouchdownError(f"{self.title} has no supports to be held by; give some")
-        return InBearings(portrait.held, f"{self.title} {on_supports(portrait)}")
+        return InBearings(properties.held, f"{self.title} {on_supports(properties)}")
 
     @staticmethod
     def in_scene(scene: PathLike | Scene, speed: float | None = None, load: float = 1.0) -> InScene:
@@ -231,7 +231,7 @@ class Rotor(Shaft):
         array([48.2, 51.1, 57.2, 63.3])
         """
         found = described_in(as_scene(scene), speed, MODES, load)
-        held = {one.name: InBearings(one.held, title_of(found, one)) for one in found.situations}
+        held = {one.name: InBearings(one.held, title_of(found, one)) for one in found.support_conditions}
         return InScene(held.get("levitated"), held.get("resting"), lambda: scene_text(found))
 
     def whirl(self, speed: float, modes: int = MODES) -> tuple[np.ndarray, np.ndarray]:
@@ -239,8 +239,8 @@ class Rotor(Shaft):
 
         Raises TouchdownError where there are not so many modes.
         """
-        portrait = described(self, speed, modes)
-        return portrait.backward[0], portrait.forward[0]
+        properties = described(self, speed, modes)
+        return properties.backward[0], properties.forward[0]
 
     @property
     def plot(self) -> RotorPlot:
@@ -307,22 +307,22 @@ def _written(path: Path, content: bytes) -> Path:
 class RotorPlot:
     """Pictures of a rotor, drawn on a figure or a part of one; without, pyplot makes one."""
 
-    def __init__(self, portrait: Callable[[], Portrait]) -> None:
-        self._portrait = portrait
+    def __init__(self, properties: Callable[[], RotorProperties]) -> None:
+        self._properties = properties
 
     def modes(self, figure: FigureBase | None = None) -> list[Axes]:
         """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
         from ..results.figures.style import drawable
         from ..studies.rotor.figure import modes
 
-        return modes(drawable(figure), self._portrait())
+        return modes(drawable(figure), self._properties())
 
     def campbell(self, figure: FigureBase | None = None) -> list[Axes]:
         """Whirl frequencies of the free rotor [Hz] over speed [rpm]."""
         from ..results.figures.style import drawable
         from ..studies.rotor.figure import campbell
 
-        return campbell(drawable(figure), self._portrait())
+        return campbell(drawable(figure), self._properties())
 
     def critical(self, figure: FigureBase | None = None) -> list[Axes]:
         """Undamped critical speeds [rpm] over the stiffness of its supports [N/m], its own ones marked.
@@ -332,10 +332,10 @@ class RotorPlot:
         from ..results.figures.style import drawable
         from ..studies.rotor.figure import critical
 
-        portrait = self._portrait()
-        if not portrait.critical:
+        properties = self._properties()
+        if not properties.critical:
             raise TouchdownError("this picture needs stations at two nodes or more, to hold the rotor")
-        return critical(drawable(figure), portrait)
+        return critical(drawable(figure), properties)
 
     def rest(self, figure: FigureBase | None = None) -> list[Axes]:
         """How it lies on its seats: deflection [µm] and bending stress [MPa].
@@ -346,7 +346,7 @@ class RotorPlot:
         from ..studies.rotor.figure import rest
         from ..studies.rotor.report import TO_REST
 
-        portrait = self._portrait()
-        if portrait.rest is None:
+        properties = self._properties()
+        if properties.rest is None:
             raise TouchdownError(f"this picture {TO_REST}")
-        return rest(drawable(figure), portrait)
+        return rest(drawable(figure), properties)

@@ -13,9 +13,9 @@ from pathlib import Path, PurePosixPath
 from ...modelkit.kernel.cache_folder import is_own
 from .errors import TouchdownError
 
-LARGEST = 512 * 1024**2  # bytes, unpacked; VARIABLE says otherwise
+MAX_BYTES = 512 * 1024**2  # bytes, unpacked; VARIABLE says otherwise
 VARIABLE = "TOUCHDOWN_LARGEST_FMU"
-MOST = 20_000  # entries
+MAX_ENTRIES = 20_000  # entries
 UNPORTABLE = {"\\": "backslash", ":": "colon"}  # folders, drives and streams for some, letters for others
 _SIZE = re.compile(r"\s*([0-9.]+(?:e[0-9]+)?)\s*(|k|M|G|T)(i?)B?\s*")
 _PIECE = 2**20  # bytes read at a time
@@ -25,7 +25,7 @@ def largest() -> int:
     """How many bytes an archive may unpack to. Raises TouchdownError for a setting that is no size."""
     asked = os.environ.get(VARIABLE)
     if not asked:
-        return LARGEST
+        return MAX_BYTES
     found = _SIZE.fullmatch(asked)
     try:
         number, prefix, binary = found.groups() if found else ("", "", "")
@@ -54,8 +54,8 @@ def refuse_hostile(path: Path, archive: zipfile.ZipFile) -> None:
         if stat.S_ISLNK(entry.external_attr >> 16):
             raise TouchdownError(f"{path} holds a link, {name!r}; refused")
     refuse_large(sum(entry.file_size for entry in entries), f"{path} would unpack to")
-    if len(entries) > MOST:
-        raise TouchdownError(f"{path} holds {len(entries)} entries, more than {MOST}; refused")
+    if len(entries) > MAX_ENTRIES:
+        raise TouchdownError(f"{path} holds {len(entries)} entries, more than {MAX_ENTRIES}; refused")
 
 
 def refuse_large(size: int, what: str) -> None:

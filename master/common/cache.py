@@ -15,12 +15,12 @@ from pathlib import Path
 
 from ...modelkit.kernel.cache_folder import KINDS, TAG, is_cache, user_cache
 
-AGE = 30.0  # days without use after which an entry goes
-LIMIT = 2 * 1024**3  # bytes, of all entries
-RECENT = 1.0  # days within which an entry is taken to be in use
-PAUSE = 3600.0  # s between two looks at the whole cache, unasked
+MAX_AGE_DAYS = 30.0  # days without use after which an entry goes
+MAX_BYTES = 2 * 1024**3  # bytes, of all entries
+IN_USE_DAYS = 1.0  # days within which an entry is taken to be in use
+LOOK_INTERVAL_S = 3600.0  # s between two looks at the whole cache, unasked
 DAY = 86400.0  # s
-ABOUT = {  # of the kinds, for people
+DESCRIPTIONS = {  # of the kinds, for people
     "machine-code": "compiled kernels, by version",
     "fmus": "the project's own FMUs, by version",
     "sources": "what these run, by version",
@@ -28,7 +28,10 @@ ABOUT = {  # of the kinds, for people
     "rotors": "rotor files of rotors made in Python",
     "peers": "environments of tests with other tools",
 }
-STAYING = ("rotors", "peers")  # scenes name the files of the first, the others are not of the command
+PERMANENT_KINDS = (
+    "rotors",
+    "peers",
+)  # scenes name the files of the first, the others are not of the command
 
 
 @dataclass(frozen=True)
@@ -71,10 +74,12 @@ def _size(path: Path) -> int:
 
 def made_again(held: Iterable[Entry]) -> list[Entry]:
     """Of `held`, all but STAYING."""
-    return [entry for entry in held if entry.kind not in STAYING]
+    return [entry for entry in held if entry.kind not in PERMANENT_KINDS]
 
 
-def outworn(held: Iterable[Entry], now: float, age: float = AGE, limit: float = LIMIT) -> list[Entry]:
+def outworn(
+    held: Iterable[Entry], now: float, age: float = MAX_AGE_DAYS, limit: float = MAX_BYTES
+) -> list[Entry]:
     """Of `held`, what was not used for `age` (days), and the longest unused above `limit` (bytes) in all.
 
     For the size nothing goes that was used within RECENT days: other processes may be at it. What a process
@@ -86,7 +91,7 @@ def outworn(held: Iterable[Entry], now: float, age: float = AGE, limit: float = 
     for entry in oldest_first:
         days = (now - entry.used) / DAY
         unfinished = entry.path.name.startswith(".")
-        if days > age or (days > RECENT and (unfinished or total > limit)):
+        if days > age or (days > IN_USE_DAYS and (unfinished or total > limit)):
             found.append(entry)
             total -= entry.size
     return found
@@ -108,7 +113,7 @@ def tidy() -> None:
     """Remove what is outworn, quietly and once in a while."""
     try:
         root, now = user_cache(), time.time()
-        if is_cache(root) and now - (root / TAG).stat().st_mtime > PAUSE:
+        if is_cache(root) and now - (root / TAG).stat().st_mtime > LOOK_INTERVAL_S:
             os.utime(root / TAG)
             remove(outworn(entries(root), now))
     except OSError:  # another process is at it

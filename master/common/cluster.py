@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 from .errors import Ended, TouchdownError
 from .pool import TaskOutcome, one_thread, told_as_they_end, tried
 
-PATIENCE = 30.0  # s, for a scheduler to answer
-AHEAD = 2  # tasks that a worker's thread is given at a time: one waits while one runs
+SCHEDULER_TIMEOUT_S = 30.0  # s, for a scheduler to answer
+TASKS_PER_THREAD = 2  # tasks that a worker's thread is given at a time: one waits while one runs
 
 Task = TypeVar("Task")
 Value = TypeVar("Value")
@@ -52,7 +52,7 @@ def _connected(address: str) -> Generator[Any]:
             "a Dask cluster needs the package distributed; install touchdown-cosim[dask]"
         ) from None
     try:
-        client: Any = Client(address, timeout=PATIENCE, set_as_default=False)
+        client: Any = Client(address, timeout=SCHEDULER_TIMEOUT_S, set_as_default=False)
     except (OSError, ValueError) as error:
         raise TouchdownError(
             f"no Dask scheduler answers at {address}: {' '.join(str(error).split())}; "
@@ -61,7 +61,7 @@ def _connected(address: str) -> Generator[Any]:
     try:
         yield client
     finally:
-        client.close(timeout=PATIENCE)
+        client.close(timeout=SCHEDULER_TIMEOUT_S)
 
 
 def _outcomes(
@@ -78,7 +78,7 @@ def _outcomes(
         under_way[future] = place
         return future
 
-    first = max(AHEAD, AHEAD * sum(client.nthreads().values()))
+    first = max(TASKS_PER_THREAD, TASKS_PER_THREAD * sum(client.nthreads().values()))
     ended: Any = as_completed([submit(place) for place in islice(places, first)], loop=client.loop)
     for future in ended:
         place = under_way.pop(future)

@@ -9,7 +9,7 @@ from enum import Enum
 from typing import TypeVar, cast
 
 FAILED = 2  # exit status: it could not be done
-MOST_BEGUN = 8  # names that a name begins, to be told
+MAX_SUGGESTIONS = 8  # names that a name begins, to be told
 STOPPED = 3  # exit status: it began, and stopped on the way
 
 
@@ -28,7 +28,7 @@ def one_of(name: str, known: Iterable[str]) -> str:
     """The tail of a message about an unknown name: those it begins, the nearest, or all there are."""
     known = sorted(known)
     begun = [other for other in known if name and other.startswith(name)]
-    near = begun[:MOST_BEGUN] or get_close_matches(name, known, n=3, cutoff=0.5)
+    near = begun[:MAX_SUGGESTIONS] or get_close_matches(name, known, n=3, cutoff=0.5)
     if near:
         return f"did you mean {' or '.join(near)}"
     listed = ", ".join(known[:12]) + (", ..." if len(known) > 12 else "")

@@ -9,8 +9,8 @@ from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 
 # From people, batch systems and containers, terminals that close, and people again.
-ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
-TOGETHER = 0.3  # s within which signals are one
+ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+SAME_SIGNAL_S = 0.3  # s within which signals are one
 
 
 class Interrupts:
@@ -37,7 +37,7 @@ class Interrupts:
         """
         if not self.is_set():
             self._by, self._at = signal.Signals(number), clock.monotonic()
-        elif number == signal.SIGINT and clock.monotonic() - self._at > TOGETHER:
+        elif number == signal.SIGINT and clock.monotonic() - self._at > SAME_SIGNAL_S:
             raise KeyboardInterrupt
 
 
@@ -58,7 +58,7 @@ def interrupts_noted() -> Generator[Interrupts]:
         return
     _noted = noted = Interrupts()
     try:
-        with _handled(noted.note, (signal.SIGINT, *filter(_free, ENDING[1:]))):
+        with _handled(noted.note, (signal.SIGINT, *filter(_free, ENDING_SIGNALS[1:]))):
             yield noted
     finally:
         _noted = None
@@ -80,7 +80,7 @@ def ended_as_by_ctrl_c() -> Generator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    with _handled(_raise, filter(_free, ENDING[1:])):
+    with _handled(_raise, filter(_free, ENDING_SIGNALS[1:])):
         yield
 
 

@@ -41,9 +41,9 @@ def threads() -> int:
     return max(found, 1)
 
 
-GRACE = 2.0  # s that runs have to end by themselves after Ctrl-C
-TRIES = 2  # of a task whose process is killed: it may be to blame, or the machine
-THREADS = (LIMIT, "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+GRACE_S = 2.0  # s that runs have to end by themselves after Ctrl-C
+MAX_TRIES = 2  # of a task whose process is killed: it may be to blame, or the machine
+THREAD_LIMITS = (LIMIT, "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Of linear algebra and of runs: one each, since processes share the cores, and sums have one order."""
 
 Task = TypeVar("Task")
@@ -239,7 +239,7 @@ class _Crew(Generic[Value]):
             lost = [place, *self._waiting]
             self._waiting.clear()
             yield from ((one, TaskOutcome(None, Ended.DIED, why)) for one in lost)
-        elif self._tries[place] < TRIES:
+        elif self._tries[place] < MAX_TRIES:
             self._waiting.appendleft(place)
         else:
             yield place, TaskOutcome(None, Ended.DIED, f"its process {way_of(code)}, twice")
@@ -257,8 +257,8 @@ class _Crew(Generic[Value]):
 @contextmanager
 def one_thread() -> Generator[None]:
     """Runs and processes started meanwhile have one thread each."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    before = {name: os.environ.get(name) for name in THREAD_LIMITS}
+    os.environ.update(dict.fromkeys(THREAD_LIMITS, "1"))
     try:
         yield
     finally:
@@ -286,6 +286,6 @@ def _end(processes: Sequence[BaseProcess]) -> None:
 
 
 def _join(processes: Sequence[BaseProcess]) -> None:
-    deadline = time.monotonic() + GRACE
+    deadline = time.monotonic() + GRACE_S
     for process in processes:
         process.join(max(0.0, deadline - time.monotonic()))

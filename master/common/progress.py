@@ -22,7 +22,7 @@ def _nothing(*_: object) -> None:
     pass
 
 
-UNSEEN = Progress(_nothing, _nothing)
+SILENT_PROGRESS = Progress(_nothing, _nothing)
 
 
 def bars() -> type[tqdm[NoReturn]]:

@@ -69,7 +69,7 @@ def _units_taken(value: object, unit: str | None) -> str:
     taken = units.units_of(unit) if unit else []
     if not written or len(taken) < 2 or written in taken:
         return ""
-    others = {si for _, si in units.SCALES.values()} | units.SCALES.keys()
+    others = {si for _, si in units.UNIT_SCALES.values()} | units.UNIT_SCALES.keys()
     near = [] if written in others else get_close_matches(written, taken, n=2)
     hertz = "; 1 Hz is 60 rpm" if "rpm" in taken and written.endswith("Hz") else ""
     return f"; did you mean {' or '.join(near)}" if near else f"; write it in {' or '.join(taken)}{hertz}"

@@ -89,7 +89,7 @@ REPORTED = (Causality.OUTPUT, Causality.LOCAL)  # what is recorded
 WHOLE = (Kind.INTEGER, Kind.ENUMERATION)  # FMI 2.0 has one function for both
 NUMBERS = (Kind.REAL, *WHOLE)
 READABLE = (*NUMBERS, Kind.BOOLEAN)  # as numbers; a Boolean is 0 or 1
-EXACT = 2**53  # whole numbers up to it are exchanged as they are
+MAX_EXACT_INTEGER = 2**53  # whole numbers up to it are exchanged as they are
 SETTABLE = (Kind.REAL, Kind.INTEGER, Kind.BOOLEAN, Kind.ENUMERATION)  # an enumeration by its number
 
 

@@ -23,7 +23,7 @@ from .component import Kind, Variable
 from .screening import KINDS_3, STRUCTURAL, refuse_damaged, refuse_definitions, refuse_lies
 from .unpack import unpack
 
-SHOWN = 5  # files named where one is missing
+MAX_LISTED_FILES = 5  # files named where one is missing
 PYTHONFMU = "PythonFMU"  # as it names itself where an FMU says who made it
 
 
@@ -66,7 +66,9 @@ def _purpose(description: Any) -> str:
 def _held(library: Path, folder: Path) -> str:
     """Where the `library` of an FMU that is unpacked in `folder` should be, and which it has instead."""
     held = sorted(str(p.relative_to(folder)) for p in (folder / "binaries").rglob("*") if p.is_file())
-    first = ", ".join(held[:SHOWN]) + (f" and {len(held) - SHOWN} more" if len(held) > SHOWN else "")
+    first = ", ".join(held[:MAX_LISTED_FILES]) + (
+        f" and {len(held) - MAX_LISTED_FILES} more" if len(held) > MAX_LISTED_FILES else ""
+    )
     return f"{library.relative_to(folder)}, and has {first or 'none'}"
 
 

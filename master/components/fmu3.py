@@ -16,7 +16,7 @@ import numpy as np
 from fmpy.fmi3 import FMU3Slave
 
 from ..common.errors import TouchdownError
-from .component import EXACT, READABLE, Call, put
+from .component import MAX_EXACT_INTEGER, READABLE, Call, put
 from .fmu import OK, WARNING, LoadedFmu
 
 CALLS = (  # in the order of FMI 2.0's, `fmu.CALLS`
@@ -167,7 +167,10 @@ class Fmu3Component(LoadedFmu):
     def _refuse_inexact(self, vector: _Vector) -> None:
         """Raise TouchdownError where a whole number has more digits than a number here."""
         values = vector.data[vector.at]
-        beyond = np.flatnonzero((values > EXACT) | (values < (-EXACT if values.dtype.kind == "i" else 0)))
+        beyond = np.flatnonzero(
+            (values > MAX_EXACT_INTEGER)
+            | (values < (-MAX_EXACT_INTEGER if values.dtype.kind == "i" else 0))
+        )
         if len(beyond):
             first = int(beyond[0])
             name = self._names[int(vector.which[first])]

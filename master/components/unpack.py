@@ -30,7 +30,7 @@ class Format:
 
 
 FMU = Format("an FMU", "modelDescription.xml", "`touchdown build` makes the project's own")
-BROKEN = (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, ValueError, zlib.error)
+ARCHIVE_ERRORS = (zipfile.BadZipFile, EOFError, RuntimeError, NotImplementedError, ValueError, zlib.error)
 
 
 def unpack(path: Path, cache: Path, kind: Format = FMU) -> Path:
@@ -67,7 +67,7 @@ def _reading(path: Path, kind: Format) -> Generator[BufferedReader]:
         raise TouchdownError(f"there is no file {path}; {kind.maker}") from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
-    except BROKEN as error:
+    except ARCHIVE_ERRORS as error:
         raise TouchdownError(
             f"{path} is damaged or not {kind.name} ({error}); build or download it again"
         ) from None

@@ -10,7 +10,7 @@ from ...modelkit.model import ModelError
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
 from ..components.component import SETTABLE, Component, check_value, value_of
-from ..scene.plausible import Seat, remarks
+from ..scene.plausible import Seat, plausibility_warnings
 from ..scene.scene import ComponentSpec, Scene
 from ..scene.schemes import Scheme
 from .bonds.bond import found
@@ -27,7 +27,7 @@ from .connections import (
 )
 from .system import System
 
-PLAIN = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
+UNSCALED_UNITS = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -72,7 +72,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     every = {name: spec.every for name, spec in scene.components.items()}
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     components = hear(components, attachments)
-    told = [*left_out, *remarks(seats)]
+    told = [*left_out, *plausibility_warnings(seats)]
     start = scene.run.start_time
     return System(components, attachments, connections, settings, every, told, bonds, start)
 
@@ -88,7 +88,11 @@ def _seat(
     def values(name: str) -> dict[str, float]:
         """Parameters in SI, where they are set or the component says its own."""
         variables = components[name].variables.items()
-        own = {n: v.start for n, v in variables if v.causality is Causality.PARAMETER and v.unit in PLAIN}
+        own = {
+            n: v.start
+            for n, v in variables
+            if v.causality is Causality.PARAMETER and v.unit in UNSCALED_UNITS
+        }
         return {n: settings.get((name, n), start) for n, start in own.items() if start is not None}
 
     chosen = scene.components[a.bearing].preset

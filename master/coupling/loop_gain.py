@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from graphlib import CycleError, TopologicalSorter
 
 from ..common.errors import Ended
-from .observer import BEAT, Moment, Observer
+from .observer import LOOK_INTERVAL_STEPS, Moment, Observer
 from .system import System
 
-STEPS = 12  # successive macro steps that are looked at, at the begin and at every beat
-LEAST_GAIN = 1.05  # what grows more slowly may be a motion
-ALIKE = 0.01  # by how much the factors of successive steps may differ
+OBSERVED_STEPS = 12  # successive macro steps that are looked at, at the begin and at every beat
+MIN_GAIN = 1.05  # what grows more slowly may be a motion
+FACTOR_TOLERANCE = 0.01  # by how much the factors of successive steps may differ
 
 
 class LoopGain(Observer):
@@ -34,14 +34,14 @@ class LoopGain(Observer):
         """Some steps one by one at every beat; never where there is no loop."""
         if not self._names:
             return now.steps
-        return now.done + 1 if now.done % BEAT <= STEPS else now.next_beat
+        return now.done + 1 if now.done % LOOK_INTERVAL_STEPS <= OBSERVED_STEPS else now.next_beat
 
     def stepped(self, now: Moment) -> None:
-        if not self._names or now.done % BEAT > STEPS:
+        if not self._names or now.done % LOOK_INTERVAL_STEPS > OBSERVED_STEPS:
             self._seen.clear()
             return
         self._seen.append([self._system.signal(name) for name in self._names])
-        if len(self._seen) < STEPS:
+        if len(self._seen) < OBSERVED_STEPS:
             return
         for name, values in zip(self._names, zip(*self._seen, strict=True), strict=True):
             gain = _factor(values)
@@ -63,8 +63,10 @@ def _factor(values: Sequence[float]) -> float | None:
         return None
     factors = [after / before for before, after in itertools.pairwise(changes)]
     last = factors[-1]
-    alike = all(abs(factor - last) <= ALIKE * abs(last) for factor in factors[len(factors) // 2 :])
-    return last if alike and abs(last) >= LEAST_GAIN else None
+    alike = all(
+        abs(factor - last) <= FACTOR_TOLERANCE * abs(last) for factor in factors[len(factors) // 2 :]
+    )
+    return last if alike and abs(last) >= MIN_GAIN else None
 
 
 def _single(system: System) -> list[tuple[str, str, str]]:

@@ -10,7 +10,7 @@ from typing import ClassVar
 from ..common.errors import Ended
 from .system import System
 
-BEAT = 64  # macro steps between looks at what needs none at every step
+LOOK_INTERVAL_STEPS = 64  # macro steps between looks at what needs none at every step
 
 
 @dataclass(slots=True)
@@ -40,12 +40,12 @@ class Moment:
         self.done = done
         self.time = self.start + done * step
         self.last = done == self.steps
-        self.beat = self.last or done % BEAT == 0
+        self.beat = self.last or done % LOOK_INTERVAL_STEPS == 0
 
     @property
     def next_beat(self) -> int:
         """The next macro step at which slow looks are taken."""
-        return min(self.steps, (self.done // BEAT + 1) * BEAT)
+        return min(self.steps, (self.done // LOOK_INTERVAL_STEPS + 1) * LOOK_INTERVAL_STEPS)
 
     def keep(self) -> None:
         """Have this moment recorded, whatever the scene's record_every is."""

@@ -12,12 +12,12 @@ from typing import ClassVar
 from ..common.errors import Ended
 from ..components.component import POSITION
 from .connections import Attachment
-from .ledger.auditor import CLEARANCE, told_by_master
+from .ledger.auditor import CLEARANCE, estimated_by_master
 from .observer import Moment, Observer
 from .system import System
 
-DEEP = 2.0  # clearances off the middle of the bore
-LOST = 100.0  # and so many of them where the run ends
+WARN_CLEARANCES = 2.0  # clearances off the middle of the bore
+STOP_CLEARANCES = 100.0  # and so many of them where the run ends
 
 
 class Penetration(Observer):
@@ -33,7 +33,7 @@ class Penetration(Observer):
             for a in system.attachments
             if a.on_journal and _stated(system, a.bearing)
         ]
-        self._deepest = DEEP
+        self._deepest = WARN_CLEARANCES
 
     def stepped(self, now: Moment) -> None:
         for journal, housing in self._seats:
@@ -51,14 +51,14 @@ class Penetration(Observer):
                 f"clearance: that bearing does not hold it; see that its force on the journal points back "
                 "and is in N (`touchdown check FMU --as bearing`), and that its contact is stiff enough"
             )
-            if depth > LOST:
+            if depth > STOP_CLEARANCES:
                 now.stop(self.warning, Ended.STOPPED)
 
 
 def _stated(system: System, bearing: str) -> bool:
     """Whether a bearing states its clearance; what the master heard begins at the first force."""
     variable = system.components[bearing].variables.get(CLEARANCE)
-    return variable is not None and not told_by_master(variable)
+    return variable is not None and not estimated_by_master(variable)
 
 
 def _housing_of(system: System, journal: Attachment) -> Attachment | None:

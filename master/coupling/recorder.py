@@ -75,9 +75,11 @@ def _refuse_taken(components: Iterable[str]) -> None:
             raise TouchdownError(f"a component cannot be called {name} and be recorded; rename it")
 
 
-HELD = 2**20  # numbers held before they are written, at most: 8 MiB
-LOSS = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
-SHARE = 0.05  # of the time that writing takes, at most: with very many columns more is lost instead
+MAX_HELD_NUMBERS = 2**20  # numbers held before they are written, at most: 8 MiB
+MAX_LOSS_S = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
+MAX_WRITING_SHARE = (
+    0.05  # of the time that writing takes, at most: with very many columns more is lost instead
+)
 
 
 class Recorder:
@@ -110,10 +112,10 @@ class Recorder:
         }
         self._resting: dict[str, np.ndarray] = {}  # last values of components that change no more
         width = 1 + len(columns)
-        self._block = np.zeros((max(1, HELD // width), width))
+        self._block = np.zeros((max(1, MAX_HELD_NUMBERS // width), width))
         self._filled = 0
         self._appended = self._written = -np.inf  # s of wall time: the last row, the last time on the disk
-        self._patience = LOSS
+        self._patience = MAX_LOSS_S
         self._failed = False
         begin()
         try:
@@ -190,7 +192,7 @@ class Recorder:
             self._table.close()
             self._squeeze(self._block[:count])
             raise
-        self._patience = max(LOSS, (clock.thread_time() - began) / SHARE)
+        self._patience = max(MAX_LOSS_S, (clock.thread_time() - began) / MAX_WRITING_SHARE)
         self._written = clock.monotonic()
 
     def _squeeze(self, rows: np.ndarray) -> None:

@@ -16,20 +16,20 @@ from ..components.component import Component
 from ..components.loading import Stepping, load_component
 from ..scene.scene import Scene
 from .assembly import assemble
-from .bonds.description import exchange, unjoined
+from .bonds.description import exchange, uncoupled_warning
 from .ledger import Balance, Judge, Ledger, Shortening
 from .ledger.auditor import heard
 from .loop.compiled import MacroSteps, Stretches
 from .loop.span import Retirement, Values, named_zero, span, swapped_away
 from .loop_gain import LoopGain
-from .observer import BEAT, Moment, Observer
+from .observer import LOOK_INTERVAL_STEPS, Moment, Observer
 from .penetration import Penetration
 from .recorder import Recorder
 from .steppers import stepper
 from .steppers.stepper import Stepper
 from .system import System
 
-MOST_STEPS = 10**9  # macro steps of a run; days of work
+MAX_MACRO_STEPS = 10**9  # macro steps of a run; days of work
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Outcome:
     ended: Ended = Ended.COMPLETED
     reason: str = ""  # why, where it did not complete
     exchange: str = ""  # how everything that is exchanged crosses
-    unjoined: str = ""  # what is to be said where the scheme has nothing to act on
+    uncoupled_warning: str = ""  # what is to be said where the scheme has nothing to act on
     coupling: dict[str, float] = field(default_factory=dict[str, float])  # what the scheme says of itself
 
     @property
@@ -169,7 +169,7 @@ def simulate(
         start_up=start_up + compiling,
         divided_in_impacts=one_by_one.impacts.divided,
         exchange=exchange(coupling),
-        unjoined=unjoined(coupling),
+        uncoupled_warning=uncoupled_warning(coupling),
         coupling=coupling.figures,
     )
 
@@ -216,10 +216,10 @@ def macro_steps(duration: float, step: float) -> int:
 
 def refuse_endless(duration: float, step: float) -> None:
     """Raise TouchdownError where `duration` (s) takes more than MOST_STEPS macro steps of `step` (s)."""
-    if duration > MOST_STEPS * step:
+    if duration > MAX_MACRO_STEPS * step:
         raise TouchdownError(
-            f"{duration:g} s by macro steps of {step:g} s are more than {MOST_STEPS:g} of them; ask for "
-            "less time, or for longer steps"
+            f"{duration:g} s by macro steps of {step:g} s are more than {MAX_MACRO_STEPS:g} of them; ask "
+            "for less time, or for longer steps"
         )
 
 
@@ -306,7 +306,7 @@ class _Progress(Observer):
         self._tell, self._told = tell, 0
 
     def stepped(self, now: Moment) -> None:
-        if now.last or now.done >= self._told + BEAT:
+        if now.last or now.done >= self._told + LOOK_INTERVAL_STEPS:
             self._told = now.done
             self._tell(now)
 

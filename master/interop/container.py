@@ -51,7 +51,7 @@ class Making:
             raise TouchdownError("an FMU is native or linked to a Python; choose one")
 
 
-AS_IN_SCENE = Making()
+SCENE_SETTINGS = Making()
 
 
 def start_values(system: System, name: str) -> dict[str, float]:
@@ -125,7 +125,7 @@ SEQUENTIAL = {"gauss-seidel": True, "jacobi": False}  # how a container steps, b
 DESCRIPTION = "modelDescription.xml"
 
 
-def write_container(scene: Scene, path: Path, making: Making = AS_IN_SCENE) -> Path:
+def write_container(scene: Scene, path: Path, making: Making = SCENE_SETTINGS) -> Path:
     """Write `scene` to `path` (.fmu); returns it. Raises TouchdownError where it cannot."""
     sequence = scene.run.scheme.sequence
     if sequence not in SEQUENTIAL:

@@ -28,7 +28,7 @@ from ..components.description import describe
 from ..components.unpack import unpack
 from . import trial
 
-PATIENCE = 600.0  # s; a first step compiles for a minute at most
+TIMEOUT_S = 600.0  # s; a first step compiles for a minute at most
 
 
 @dataclass(frozen=True)
@@ -126,13 +126,13 @@ def why_not(path: Path) -> str:
                 cwd=elsewhere,
                 capture_output=True,
                 text=True,
-                timeout=PATIENCE,
+                timeout=TIMEOUT_S,
                 check=False,
             )
         except TouchdownError as error:
             return str(error)
         except subprocess.TimeoutExpired:
-            return f"{path} did not end within {PATIENCE:g} s"
+            return f"{path} did not end within {TIMEOUT_S:g} s"
     return _verdict(path, done)
 
 

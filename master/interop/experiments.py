@@ -28,8 +28,8 @@ MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"
 ROLES = ("experiment", "experiment/smoke-test", "experiment/validation")
 TYPES = ("application/x-ma-ls-experiments", "application/x-ma-hs-experiments")
 TOLERANCE = 1e-3  # where an experiment states none
-MOST_STEPS = 1_000_000
-LARGEST = 64 * 2**20  # bytes of a table
+MAX_STEPS = 1_000_000
+MAX_TABLE_BYTES = 64 * 2**20  # bytes of a table
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _experiment(element: Element, folder: Path, where: str) -> Experiment:
     start = xml.number(element, "startTime", what, float(references.times[0]))
     stop = xml.number(element, "stopTime", what, float(references.times[-1]))
     step = xml.number(element, "stepSize", what, float(np.diff(references.times).max(initial=0.0)))
-    if not (step > 0.0 and 0.5 <= (stop - start) / step <= MOST_STEPS):
+    if not (step > 0.0 and 0.5 <= (stop - start) / step <= MAX_STEPS):
         raise TouchdownError(f"{what} runs from {start:g} s to {stop:g} s in steps of {step:g} s")
     return Experiment(
         name=name,
@@ -155,8 +155,8 @@ def _table(element: Element | None, folder: Path, where: str) -> Table | None:
         )
     source = _beside(where, element)
     path = xml.inside(folder, source, where)
-    if path.stat().st_size > LARGEST:
-        raise TouchdownError(f"{source} has more than {LARGEST >> 20} MiB")
+    if path.stat().st_size > MAX_TABLE_BYTES:
+        raise TouchdownError(f"{source} has more than {MAX_TABLE_BYTES >> 20} MiB")
     try:
         head, *rows = csv.reader(path.read_text(encoding="utf-8").splitlines())
         values = np.array([[float(cell) for cell in row] for row in rows if row])

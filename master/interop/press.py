@@ -17,12 +17,19 @@ from ..components.component import FORCE, POSITION, Component
 from .contract import Report
 
 STEP = 1e-5  # s
-MOVING, RESTING = 10, 40  # steps between two places, and at the one where the force is read
-NEAREST, FARTHEST, GROWTH = 10e-6, 5e-3, 1.15  # m from the middle; from one place to the next
-DEEPER = 5e-6  # m, between the two places that the stiffness is read from
-LEAST_FORCE = 0.1  # N; less is no contact
+MOVING_STEPS, RESTING_STEPS = 10, 40  # steps between two places, and at the one where the force is read
+FIRST_DISTANCE, MAX_DISTANCE, DISTANCE_RATIO = (
+    10e-6,
+    5e-3,
+    1.15,
+)  # m from the middle; from one place to the next
+SLOPE_DISTANCE = 5e-6  # m, between the two places that the stiffness is read from
+MIN_FORCE = 0.1  # N; less is no contact
 DIRECTIONS = (-90.0, 30.0, 150.0)  # degrees
-USUAL = (1e5, 1e11)  # N/m; magnetic bearings lie at the lower end, steel on steel a tenth of the upper
+USUAL_STIFFNESS = (
+    1e5,
+    1e11,
+)  # N/m; magnetic bearings lie at the lower end, steel on steel a tenth of the upper
 PORT = "journal"
 VELOCITY = ("vx", "vy")
 
@@ -50,10 +57,10 @@ class _Rig:
     def force(self) -> np.ndarray:
         """Mean force (2,) (N) on the journal that rests where it is."""
         total = np.zeros(2)
-        for _ in range(RESTING):
+        for _ in range(RESTING_STEPS):
             self._step(self._place, np.zeros(2))
             total += self._component.read([f"{PORT}.{suffix}" for suffix in FORCE])
-        return total / RESTING
+        return total / RESTING_STEPS
 
     def _step(self, place: np.ndarray, velocity: np.ndarray) -> None:
         suffixes: tuple[str, ...] = (*POSITION, *VELOCITY)
@@ -78,15 +85,15 @@ def press(component: Component, report: Report) -> None:
 def _pressed(rig: _Rig, angle: float) -> tuple[float, float, float] | None:
     """Where the journal met a force (m), the force outwards (N) and the stiffness (N/m); None: nowhere."""
     outwards = np.array([math.cos(angle), math.sin(angle)])
-    rig.move(0.0 * outwards, MOVING)
-    count = math.ceil(math.log(FARTHEST / NEAREST, GROWTH))
-    for distance in NEAREST * GROWTH ** np.arange(count + 1):
-        rig.move(distance * outwards, MOVING)
+    rig.move(0.0 * outwards, MOVING_STEPS)
+    count = math.ceil(math.log(MAX_DISTANCE / FIRST_DISTANCE, DISTANCE_RATIO))
+    for distance in FIRST_DISTANCE * DISTANCE_RATIO ** np.arange(count + 1):
+        rig.move(distance * outwards, MOVING_STEPS)
         force = rig.force()
-        if math.hypot(*force) >= LEAST_FORCE:
-            rig.move((distance + DEEPER) * outwards, MOVING)
+        if math.hypot(*force) >= MIN_FORCE:
+            rig.move((distance + SLOPE_DISTANCE) * outwards, MOVING_STEPS)
             along, deeper = float(force @ outwards), float(rig.force() @ outwards)
-            return float(distance), along, (along - deeper) / DEEPER
+            return float(distance), along, (along - deeper) / SLOPE_DISTANCE
     return None
 
 
@@ -94,7 +101,7 @@ def _judge(found: Sequence[tuple[float, float, float] | None], report: Report) -
     met = [one for one in found if one is not None]
     if not met:
         report.problems.append(
-            f"it gave no force on a journal up to {1e3 * FARTHEST:g} mm off its middle; see that "
+            f"it gave no force on a journal up to {1e3 * MAX_DISTANCE:g} mm off its middle; see that "
             f"{PORT}.x and {PORT}.y are read in m"
         )
         return
@@ -108,10 +115,10 @@ def _judge(found: Sequence[tuple[float, float, float] | None], report: Report) -
         return
     stiffness = float(np.median([one[2] for one in met]))
     text = f"a journal {1e6 * met[0][0]:.3g} um off the middle is pushed back, at {stiffness:.2g} N/m"
-    if USUAL[0] <= stiffness <= USUAL[1]:
+    if USUAL_STIFFNESS[0] <= stiffness <= USUAL_STIFFNESS[1]:
         report.lines.append(text)
     else:
         report.lines.append(
-            f"warning: {text}; touchdown bearings have {USUAL[0]:g} to {USUAL[1]:g} N/m: see that its "
-            "forces are in N and its lengths in m"
+            f"warning: {text}; touchdown bearings have {USUAL_STIFFNESS[0]:g} to {USUAL_STIFFNESS[1]:g} "
+            "N/m: see that its forces are in N and its lengths in m"
         )

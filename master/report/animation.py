@@ -32,14 +32,14 @@ from ..results.recording import NotRecordedError
 from .blocks import Absent
 from .subject import Subject
 
-RATE = 25  # frames a second
-FALL = 0.02  # s before the first contact with which a film begins at most
-STRETCHES = ((100.0, -0.001), (850.0, 0.006), (18.0, 0.4))
+FRAMES_PER_S = 25  # frames a second
+LEAD_TIME = 0.02  # s before the first contact with which a film begins at most
+TIME_STRETCHES = ((100.0, -0.001), (850.0, 0.006), (18.0, 0.4))
 """Of a film: how many times slower it goes, and up to when of the run (s from the first contact)."""
-VISIBLE = 0.16  # of the journal's radius: how large a clearance is drawn
-PUSH = 0.5  # of the journal's radius: the arrow of the largest force
+DRAWN_CLEARANCE = 0.16  # of the journal's radius: how large a clearance is drawn
+FORCE_ARROW = 0.5  # of the journal's radius: the arrow of the largest force
 ORBITING = ("speed.cage", "speed.orbit")  # m/s, of the balls' middles, the first that there is
-ROUND = 4  # decimals on a page, of lengths over the journal's radius and of angles
+DECIMALS = 4  # decimals on a page, of lengths over the journal's radius and of angles
 
 
 @dataclass(frozen=True)
@@ -89,14 +89,14 @@ class Motion:
         moved = np.array([s.magnified / unit, s.magnified / unit, 1.0])
         values = {
             "title": s.title,
-            "rate": RATE,
+            "rate": FRAMES_PER_S,
             "bore": s.bore / unit,
             "pitch": (s.pitch + s.beyond) / unit if s.pitch else 0.0,
             "ball": s.ball / unit,
             "caged": s.caged,
             "magnified": s.magnified,
             "largest": self.largest_force,
-            "push": PUSH,
+            "push": FORCE_ARROW,
             "time": [round(1e3 * float(t), 3) for t in self.time],
             "slower": [round(float(v), 1) for v in self.slower],
             "journal": _rounded(self.journal * moved),
@@ -110,7 +110,7 @@ class Motion:
 
 
 def _rounded(values: np.ndarray) -> list[list[float]]:
-    return np.round(values, ROUND).tolist()
+    return np.round(values, DECIMALS).tolist()
 
 
 def motions(subject: Subject) -> tuple[list[Motion], list[str]]:
@@ -158,12 +158,12 @@ def frames(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
     if subject.first_contact is None:
         raise Absent("nothing touched.")
     time = subject.run.recording.time
-    start = max(float(time[0]), subject.first_contact - FALL)
+    start = max(float(time[0]), subject.first_contact - LEAD_TIME)
     times, slower = [], []
-    for factor, after in STRETCHES:
+    for factor, after in TIME_STRETCHES:
         end = min(float(time[-1]), subject.first_contact + after)
         if end > start:
-            count = math.ceil(factor * (end - start) * RATE)
+            count = math.ceil(factor * (end - start) * FRAMES_PER_S)
             times.append(np.linspace(start, end, count, endpoint=False))
             slower.append(np.full(count, factor))
             start = end
@@ -174,7 +174,7 @@ def _shape(subject: Subject, a: Attachment) -> Shape:
     journal, clearance = (subject.setting(a, name) for name in ("journal_radius", "clearance"))
     if journal is None or not clearance or clearance < 0.0:
         raise Absent(f"{a.bearing} states no journal radius and clearance.")
-    magnified = max(1.0, VISIBLE * journal / clearance)
+    magnified = max(1.0, DRAWN_CLEARANCE * journal / clearance)
     title = f"{subject.name(a)} ({a.bearing})"
     pitch, ball = (subject.setting(a, f"balls.{d}") for d in ("pitch_diameter", "diameter"))
     if not pitch or not ball:
@@ -224,11 +224,14 @@ def _forces(subject: Subject, a: Attachment, time: np.ndarray) -> np.ndarray:
 
 
 CORE, SLEEVE, EDGE, FORCE, BODY = "#c8d3dc", "#e6d9bd", "#6f7a84", "#a5260b", "#f5f6f8"
-INCH, DOTS = 4.8, 100  # of a bearing's panel, and per inch: an even number of points, as codecs want it
-HEIGHT, BELOW = 5.8, 0.35  # inch, of a film, and of what is told below the panels
-GROOVE = 0.8  # of a ball's radius: where the rings' shoulders are
+PANEL_INCHES, DOTS_PER_INCH = (
+    4.8,
+    100,
+)  # of a bearing's panel, and per inch: an even number of points, as codecs want it
+FILM_INCHES, CAPTION_INCHES = 5.8, 0.35  # inch, of a film, and of what is told below the panels
+SHOULDER_RATIO = 0.8  # of a ball's radius: where the rings' shoulders are
 SUFFIXES = (".mp4", ".gif")
-THINNED = {".mp4": 1, ".gif": 2}  # of how many frames one is kept: a GIF is large
+FRAME_STRIDE = {".mp4": 1, ".gif": 2}  # of how many frames one is kept: a GIF is large
 
 
 def write_film(motions: Sequence[Motion], title: str, path: Path, progress: Callable[[], object]) -> Path:
@@ -243,7 +246,7 @@ def write_film(motions: Sequence[Motion], title: str, path: Path, progress: Call
     with writing_to(path.parent), replacing(path) as part:
         whole = part.with_name(part.name + path.suffix.lower())  # writers go by the suffix
         try:
-            with writer.saving(stage.figure, str(whole), DOTS):
+            with writer.saving(stage.figure, str(whole), DOTS_PER_INCH):
                 for frame in film_frames(motions, path.suffix.lower()):
                     stage.show(frame)
                     writer.grab_frame()
@@ -256,7 +259,7 @@ def write_film(motions: Sequence[Motion], title: str, path: Path, progress: Call
 
 def film_frames(motions: Sequence[Motion], suffix: str) -> range:
     """The frames that a film of that suffix has."""
-    return range(0, len(motions[0].time), THINNED[suffix])
+    return range(0, len(motions[0].time), FRAME_STRIDE[suffix])
 
 
 def checked_suffix(path: Path) -> None:
@@ -267,7 +270,7 @@ def checked_suffix(path: Path) -> None:
 def _writer(suffix: str) -> animation.AbstractMovieWriter:
     if suffix not in SUFFIXES:
         raise TouchdownError(f"a film ends in .mp4 or .gif, not in {suffix!r}; {one_of(suffix, SUFFIXES)}")
-    rate = RATE // THINNED[suffix]
+    rate = FRAMES_PER_S // FRAME_STRIDE[suffix]
     if suffix == ".gif":
         return animation.PillowWriter(fps=rate)
     import matplotlib as mpl
@@ -296,7 +299,7 @@ class Stage:
     """The figure of a film: a panel for each bearing, whose parts are moved from frame to frame."""
 
     def __init__(self, motions: Sequence[Motion], title: str) -> None:
-        self.figure = Figure(figsize=(INCH * len(motions), HEIGHT))
+        self.figure = Figure(figsize=(PANEL_INCHES * len(motions), FILM_INCHES))
         FigureCanvasAgg(self.figure)
         self.figure.text(0.5, 0.965, title, ha="center", va="center", fontsize=11, parse_math=False)
         self._clock = self.figure.text(0.5, 0.925, "", ha="center", va="center", fontsize=9.5)
@@ -304,7 +307,9 @@ class Stage:
         self._panels = [_Panel(self._axes(k, len(motions)), m) for k, m in enumerate(motions)]
 
     def _axes(self, k: int, count: int) -> Axes:
-        axes = self.figure.add_axes((k / count, BELOW / HEIGHT, 1.0 / count, (INCH - 0.2) / HEIGHT))
+        axes = self.figure.add_axes(
+            (k / count, CAPTION_INCHES / FILM_INCHES, 1.0 / count, (PANEL_INCHES - 0.2) / FILM_INCHES)
+        )
         axes.set_axis_off()
         axes.set_aspect("equal")
         return axes
@@ -345,7 +350,7 @@ class _Panel:
 
     def _draw_bearing(self, axes: Axes) -> None:
         s = self._size
-        groove = s.pitch + GROOVE * s.ball
+        groove = s.pitch + SHOULDER_RATIO * s.ball
         axes.add_patch(Annulus((0, 0), s.outer, s.outer - groove, fc=CORE, ec=EDGE, lw=0.8))
         for radius, colour in ((s.shoulder, CORE), (s.bore, "#ffffff")):
             self._ring.append(Circle((0, 0), radius, fc=colour, ec=EDGE, lw=0.8))
@@ -384,7 +389,7 @@ class _Panel:
         size = float(np.hypot(*force))
         direction = force / size if size else np.zeros(2)
         self._arrow.set_offsets([[x - direction[0], y - direction[1]]])
-        self._arrow.set_UVC(*(PUSH * size / (m.largest_force or 1.0) * direction))
+        self._arrow.set_UVC(*(FORCE_ARROW * size / (m.largest_force or 1.0) * direction))
         rpm = m.speeds[frame] * 30.0 / math.pi
         ring = f", ring {rpm[1]:.0f} rpm" if self._size.ball else ""
         self._told.set_text(f"rotor {rpm[0]:.0f} rpm{ring}, force {size:.0f} N")
@@ -409,7 +414,7 @@ class _Size:
     @property
     def shoulder(self) -> float:
         """Of the inner ring."""
-        return self.pitch - GROOVE * self.ball
+        return self.pitch - SHOULDER_RATIO * self.ball
 
     @property
     def outer(self) -> float:

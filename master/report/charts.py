@@ -45,7 +45,7 @@ STYLE: dict[Any, Any] = {
     "path.simplify_threshold": 0.5,  # px, of lines with thousands of points
     "agg.path.chunksize": 0,
 }
-PAINTS = {  # colour of a picture: word of the page's style
+PAGE_COLOURS = {  # colour of a picture: word of the page's style
     BLACK: "ink",
     "#ffffff": "paper",
     BLUE: "blue",
@@ -167,13 +167,20 @@ def _themed(element: ElementTree.Element) -> None:
 
 
 def _paint(colour: str) -> str:
-    word = PAINTS.get(colour)
+    word = PAGE_COLOURS.get(colour)
     return f"var(--{word})" if word else colour
 
 
-INKS = {"blue": BLUE, "orange": ORANGE, "green": GREEN, "purple": PURPLE, "grey": GREY, "ink": BLACK}
+COLOUR_NAMES = {
+    "blue": BLUE,
+    "orange": ORANGE,
+    "green": GREEN,
+    "purple": PURPLE,
+    "grey": GREY,
+    "ink": BLACK,
+}
 WIDTH = 0.9  # pt
-MOST = 3000  # points of a line: about two for each pixel
+MAX_LINE_POINTS = 3000  # points of a line: about two for each pixel
 
 
 def curves(figure: Figure, chart: Chart) -> None:
@@ -185,8 +192,8 @@ def curves(figure: Figure, chart: Chart) -> None:
     for axes, span in zip(panels, spans, strict=True):
         shown = within(chart.time, span)
         for line in chart.lines:
-            points = thinned(chart.time[shown], line.values[shown], MOST)
-            axes.plot(*points, color=INKS[line.colour], lw=WIDTH, label=line.label)
+            points = thinned(chart.time[shown], line.values[shown], MAX_LINE_POINTS)
+            axes.plot(*points, color=COLOUR_NAMES[line.colour], lw=WIDTH, label=line.label)
         axes.set_xlim(*span)
         axes.set_xlabel(TIME)
         axes.grid(alpha=0.4, lw=0.5)

@@ -17,8 +17,8 @@ from ..results.figures.style import BLACK, BLUE, GREY, ORANGE, PURPLE, TIME, beg
 from ..studies.rotor.figure import AXIS, CORE, EDGE, MM, SLEEVE, side_view
 
 SECTORS = 72  # of the bore
-MOMENTS = 240  # of the run
-DECADES = 3.0  # of force shown at most
+TIME_BINS = 240  # of the run
+FORCE_DECADES = 3.0  # of force shown at most
 COLOURS = "viridis"
 
 
@@ -36,12 +36,12 @@ class Presses:
 
         The field is (SECTORS, MOMENTS), masked where nothing pressed.
         """
-        moments = np.linspace(beginning(self.time), float(self.time[-1]), MOMENTS + 1)
+        moments = np.linspace(beginning(self.time), float(self.time[-1]), TIME_BINS + 1)
         sectors = np.linspace(-180.0, 180.0, SECTORS + 1)
         degrees = (np.degrees(self.angle) + 90.0 + 180.0) % 360.0 - 180.0
-        when = np.clip(np.searchsorted(moments, self.time, "right") - 1, 0, MOMENTS - 1)
+        when = np.clip(np.searchsorted(moments, self.time, "right") - 1, 0, TIME_BINS - 1)
         where = np.clip(np.searchsorted(sectors, degrees, "right") - 1, 0, SECTORS - 1)
-        field = np.zeros((SECTORS, MOMENTS))
+        field = np.zeros((SECTORS, TIME_BINS))
         pressed = (self.force > 0.0) & (self.time >= moments[0])
         np.maximum.at(field, (where[pressed], when[pressed]), self.force[pressed])
         return moments, sectors, np.ma.masked_less_equal(field, 0.0)
@@ -51,7 +51,7 @@ def contact_map(figure: Figure, bores: list[Presses]) -> None:
     """Place over time, the colour telling the largest force there [N]."""
     fields = [bore.largest() for bore in bores]
     top = max(float(field.max()) for _, _, field in fields if field.count())
-    norm = LogNorm(top * 10.0**-DECADES, top, clip=True)
+    norm = LogNorm(top * 10.0**-FORCE_DECADES, top, clip=True)
     panels = sized(figure, 9.4, 0.6 + 2.1 * len(bores)).subplots(len(bores), 1, squeeze=False, sharex=True)
     for axes, bore, (moments, sectors, field) in zip(panels[:, 0], bores, fields, strict=True):
         mesh = axes.pcolormesh(moments, sectors, field, norm=norm, cmap=COLOURS, rasterized=True)
@@ -63,10 +63,10 @@ def contact_map(figure: Figure, bores: list[Presses]) -> None:
     figure.colorbar(mesh, ax=list(panels[:, 0]), label="largest contact force [N]", pad=0.015, aspect=14)
 
 
-MOST_COLUMNS = 3
+MAX_COLUMNS = 3
 REACH = 1.08  # of the largest distance drawn
 UM = 1e6
-MOST = 12_000  # points of an orbit
+MAX_ORBIT_POINTS = 12_000  # points of an orbit
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,9 @@ class Orbit:
 
 def orbits(figure: Figure, shown: list[Orbit]) -> None:
     """Orbits side by side [µm]; the first impact in another colour, a dot at the end."""
-    columns = min(len(shown), MOST_COLUMNS)
+    columns = min(len(shown), MAX_COLUMNS)
     rows = -(-len(shown) // columns)
-    side = 4.5 if columns < MOST_COLUMNS else 3.1
+    side = 4.5 if columns < MAX_COLUMNS else 3.1
     panels = sized(figure, side * columns, (side + 0.1) * rows).subplots(rows, columns, squeeze=False)
     reach = UM * max(_reach(orbit) for orbit in shown)
     for axes, orbit in zip(panels.flat, shown, strict=False):
@@ -112,7 +112,7 @@ def _draw(axes: Axes, orbit: Orbit) -> None:
         angle = np.linspace(0.0, 2.0 * np.pi, 361)
         radius = UM * orbit.clearance
         axes.plot(x0 + radius * np.cos(angle), y0 + radius * np.sin(angle), "--", color=GREY, lw=1.0)
-    stride = -(-len(orbit.x) // MOST)
+    stride = -(-len(orbit.x) // MAX_ORBIT_POINTS)
     x, y = x0 + UM * orbit.x, y0 + UM * orbit.y
     axes.plot(x[::stride], y[::stride], color=BLUE, lw=0.6)
     axes.plot(x[orbit.landing], y[orbit.landing], color=ORANGE, lw=1.3)
@@ -125,8 +125,8 @@ def _draw(axes: Axes, orbit: Orbit) -> None:
     axes.set_ylabel("y [µm]")
 
 
-SYMBOL = 0.45  # of the rotor's largest radius: how tall a support is drawn that states no size
-FLATTEST, HIGHEST = 0.16, 0.5  # height over width of a side view
+SUPPORT_HEIGHT = 0.45  # of the rotor's largest radius: how tall a support is drawn that states no size
+MIN_ASPECT, MAX_ASPECT = 0.16, 0.5  # height over width of a side view
 
 
 @dataclass(frozen=True)
@@ -178,8 +178,8 @@ def draw_side(figure: Figure, view: SideView) -> None:
     radius = MM * view.radius
     tallest = max([radius, *(MM * _span(view, s)[1] for s in view.supports)])
     reach = 1.5 * tallest
-    half = max(0.53 * (end - begin), reach / HIGHEST)
-    reach = max(reach, FLATTEST * half)
+    half = max(0.53 * (end - begin), reach / MAX_ASPECT)
+    reach = max(reach, MIN_ASPECT * half)
     middle = 0.5 * (begin + end)
     axes = sized(figure, 9.4, 0.9 + 8.6 * reach / half).subplots()
     side_view(axes, view.shaft, named=False)
@@ -201,7 +201,7 @@ def _draw_unbalances(axes: Axes, view: SideView) -> None:
 def _span(view: SideView, s: Support) -> tuple[float, float]:
     """Radii between which a support is drawn (m); where it states no size, those of a symbol."""
     inner = 0.5 * s.inner or view.surface(s.position)
-    return inner, 0.5 * s.outer or inner + SYMBOL * view.radius
+    return inner, 0.5 * s.outer or inner + SUPPORT_HEIGHT * view.radius
 
 
 def _draw_support(axes: Axes, s: Support, view: SideView, radius: float) -> None:

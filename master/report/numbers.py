@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-HANDY = {  # SI unit: factors into other units, largest unit first
+UNIT_SCALES = {  # SI unit: factors into other units, largest unit first
     "m": ((1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
     "N": ((1e3, "kN"), (1.0, "N"), (1e-3, "mN")),
@@ -17,7 +17,7 @@ HANDY = {  # SI unit: factors into other units, largest unit first
     "rad": ((math.pi / 180.0, "deg"),),
     "kg": ((1.0, "kg"), (1e-3, "g")),
 }
-WORDED = {"1": "", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s/m2": "N s/m²", "m/s2": "m/s²", "N.m": "N m",
+UNIT_NAMES = {"1": "", "kg.m2": "kg m²", "N.s/m": "N s/m", "N.s/m2": "N s/m²", "m/s2": "m/s²", "N.m": "N m",
           "kg/m3": "kg/m³", "N/m^n": "N/mⁿ", "N.m.s/rad": "N m s/rad", "1/(kg.m2)": "1/(kg m²)",
           "1/s2": "1/s²"}  # fmt: skip
 RPM = 60.0 / (2.0 * math.pi)
@@ -51,9 +51,9 @@ def quantity(value: float | None, unit: str, count: int = 4) -> str:
 
 
 def _handy(value: float, unit: str) -> tuple[float, str]:
-    sizes = HANDY.get(unit)
+    sizes = UNIT_SCALES.get(unit)
     if sizes is None or not math.isfinite(value):
-        return 1.0, WORDED.get(unit, unit)
+        return 1.0, UNIT_NAMES.get(unit, unit)
     fitting = (size for size in sizes if abs(value) >= 0.9999 * size[0])
     return next(fitting, sizes[-1] if value else sizes[0])
 
@@ -75,7 +75,7 @@ def listed(words: list[str]) -> str:
 
 SEAT = re.compile(r"whirl_(?P<seat>.+?)(?P<tail>|_trend|_revolutions|_radius_um|_frequency_Hz"
                   r"|_largest_force_N|_force_phase_deg|_most_turns_one_way|_episodes)")  # fmt: skip
-WORDS = {  # key without its component: words, and the unit of the value
+FIGURE_NAMES = {  # key without its component: words, and the unit of the value
     "first_contact_time_s": ("First contact, after the shutdown", "s"),
     "first_contact_speed_m_s": ("Speed of the first contact", "m/s"),
     "peak_contact_force_N": ("Largest contact force", "N"),
@@ -107,7 +107,7 @@ WORDS = {  # key without its component: words, and the unit of the value
     "peak_shear_stress_node": ("Largest shear stress", "node"),
     "peak_shear_stress_time_s": ("Largest shear stress, after the shutdown", "s"),
 }
-OF_SEAT = {
+SEAT_FIGURE_NAMES = {
     "": ("Verdict", ""),
     "_trend": ("How the whirl goes on", ""),
     "_revolutions": ("Turns of the whirl", ""),
@@ -144,10 +144,10 @@ class Label:
 def label(key: str, components: Iterable[str]) -> Label | None:
     """The label of a figure; None for one that has none, such as what programs alone ask for."""
     if (seat := SEAT.fullmatch(key)) is not None:
-        words, unit = OF_SEAT[seat["tail"]]
+        words, unit = SEAT_FIGURE_NAMES[seat["tail"]]
         return Label(words, unit, seat["seat"])
     for component in ("", *components):
         base = key.removesuffix(f"_{component}") if component else key
-        if base in WORDS and (base != key or not component):
-            return Label(*WORDS[base], component)
+        if base in FIGURE_NAMES and (base != key or not component):
+            return Label(*FIGURE_NAMES[base], component)
     return None

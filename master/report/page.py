@@ -33,7 +33,7 @@ BROWSERS = (
     "chrome",
     "microsoft-edge",
 )
-QUIET = (  # a browser that looks at one file and asks nobody anything
+BROWSER_FLAGS = (  # a browser that looks at one file and asks nobody anything
     *("--headless", "--disable-gpu", "--no-first-run", "--disable-extensions", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update", "--disable-default-apps"),
 )
@@ -69,7 +69,7 @@ def print_page(page: Path, path: Path) -> Path:
         done = _run(
             [
                 command,
-                *QUIET,
+                *BROWSER_FLAGS,
                 *alone(),
                 f"--user-data-dir={own}/profile",
                 "--no-pdf-header-footer",
@@ -91,8 +91,8 @@ def _run(command: list[str]) -> subprocess.CompletedProcess[str]:
         raise TouchdownError(f"{command[0]} printed no PDF: {error}") from None
 
 
-HERE = Path(__file__).parent
-TEMPLATES, ASSETS = HERE / "templates", HERE / "assets"
+REPORT_FOLDER = Path(__file__).parent
+TEMPLATES, ASSETS = REPORT_FOLDER / "templates", REPORT_FOLDER / "assets"
 PAGE = "report.html"
 SUFFIXES = (".html", ".htm")
 ORDER = "Chapters 2 to 15 follow the order of the scope of ISO 14839-5:2022 (touchdown bearings)."

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MOST_ROWS = 16_000
+MAX_ROWS = 16_000
 IMPACT_ROWS = 5_000  # of them for the first impact
-BEFORE = 0.02  # of these, before the first contact
+MARGIN_BEFORE_CONTACT = 0.02  # of these, before the first contact
 
 
 @dataclass(frozen=True)
@@ -64,13 +64,13 @@ def chosen_rows(time: np.ndarray, columns: Sequence[np.ndarray], first: float | 
     first: s, of the first contact, whose surroundings are kept whole; None: there is none.
     """
     count = len(time)
-    if count <= MOST_ROWS:
+    if count <= MAX_ROWS:
         return np.arange(count)
     whole = np.arange(0)
     if first is not None:
-        start = max(0, int(np.searchsorted(time, first)) - int(BEFORE * IMPACT_ROWS))
+        start = max(0, int(np.searchsorted(time, first)) - int(MARGIN_BEFORE_CONTACT * IMPACT_ROWS))
         whole = np.arange(start, min(start + IMPACT_ROWS, count))
-    size = -(-2 * len(columns) * count // (MOST_ROWS - IMPACT_ROWS))
+    size = -(-2 * len(columns) * count // (MAX_ROWS - IMPACT_ROWS))
     kept = [whole, np.array([0, count - 1])]
     for column in columns:
         kept += _extremes(column, size)

@@ -16,7 +16,7 @@ from ..common.errors import TouchdownError
 from ..coupling.connections import Attachment
 from ..coupling.loop.span import origin_of, zero_of
 from ..results.ending import Finished
-from ..results.first_impact import FIRST_IMPACT
+from ..results.first_impact import FIRST_IMPACT_PREFIX
 from ..results.result import Result
 from ..results.summary import SPREAD, seat_name, touchdown_seats
 from ..results.whirl.evidence import CONTACT as FIRST_CONTACT
@@ -284,8 +284,8 @@ class Subject:
         if isinstance(spread, dict) and (one := spread["figures"].get(key)) is not None:
             ends = f"{digits(one['least'], 4)} to {digits(one['most'], 4)}"
             return f"{ends}, median {digits(one['median'], 4)}, with {spread['siblings']} siblings"
-        first = FIRST_IMPACT + key.removeprefix("peak_")
-        if key.startswith(FIRST_IMPACT) or self.summary.get(first, object()) == self.summary[key]:
+        first = FIRST_IMPACT_PREFIX + key.removeprefix("peak_")
+        if key.startswith(FIRST_IMPACT_PREFIX) or self.summary.get(first, object()) == self.summary[key]:
             return "in the first impact"
         return "one draw of a chaotic drop"
 

@@ -43,10 +43,10 @@ from .subject import number
 
 FIRST_FORCE = "first_impact_contact_force_N"
 FORCE, STRESS = "peak_contact_force_N", "peak_bending_stress_MPa"
-DRAWN = "random"  # drops that stand for all that may be; those of other samples hang on each other
-MOST_ROWS = 300  # of the table of drops
-WORST = 10  # drops that are listed by their force
-MOST_DIGITS = 8
+RANDOM_SAMPLE = "random"  # drops that stand for all that may be; those of other samples hang on each other
+MAX_ROWS = 300  # of the table of drops
+WORST_DROPS = 10  # drops that are listed by their force
+MAX_DIGITS = 8
 MAPS = {
     "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
     "force": "Largest contact force of the drops at each place.",
@@ -124,7 +124,7 @@ def _reach(values: Sequence[float], unit: str) -> str:
 
 def _is_sample(about: str) -> bool:
     """Whether drops are drawn one by one; each point of a product with phases, say, has several."""
-    return DRAWN in about.lower() and "; " not in about
+    return RANDOM_SAMPLE in about.lower() and "; " not in about
 
 
 def _done(sweep: Sweep) -> list[Member]:
@@ -269,17 +269,17 @@ def _counts(found: Sequence[float]) -> str:
 def _quartiles(found: Sequence[float]) -> list[str]:
     """Least, quartiles and most, with so many digits that they can be told apart."""
     size, spread = max(map(abs, found)), max(found) - min(found)
-    count = min(max(4, math.ceil(math.log10(size / spread)) + 2), MOST_DIGITS)
+    count = min(max(4, math.ceil(math.log10(size / spread)) + 2), MAX_DIGITS)
     return [digits(float(value), count) for value in np.percentile(found, [0, 25, 50, 75, 100])]
 
 
 def _drops(sweep: Sweep) -> list[Block]:
     figures, _ = picked(sweep.members, ())
-    hardest = sorted(_done(sweep), key=lambda m: -(largest(m.summary, FORCE) or 0.0))[:WORST]
+    hardest = sorted(_done(sweep), key=lambda m: -(largest(m.summary, FORCE) or 0.0))[:WORST_DROPS]
     if not hardest:
         raise Absent("no drop ran to its end.")
-    every = list(_rows(sweep, sweep.members[:MOST_ROWS], figures))
-    of = f"the first {MOST_ROWS} of {len(sweep)} drops" if len(sweep) > MOST_ROWS else "All drops"
+    every = list(_rows(sweep, sweep.members[:MAX_ROWS], figures))
+    of = f"the first {MAX_ROWS} of {len(sweep)} drops" if len(sweep) > MAX_ROWS else "All drops"
     components = sweep.definition.scene["components"]
     labels = [known.head if (known := label(key, components)) else key for key in figures]
     head = ["Drop", *hardest[0].settings, *labels]

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...modelkit.ports import PARTED
+from ...modelkit.ports import PARTING_TOLERANCE
 from .ending import Readable
 from .recording import Recording
 from .stresses import KINDS, MPA, stressed
 
-FIRST_IMPACT = "first_impact_"  # begins the keys of its figures
-COARSE = 1e-3  # s; of rows farther apart, one may lie beyond the next impact
+FIRST_IMPACT_PREFIX = "first_impact_"  # begins the keys of its figures
+COARSE_ROWS = 1e-3  # s; of rows farther apart, one may lie beyond the next impact
 
 
 @dataclass(frozen=True)
@@ -36,9 +36,9 @@ def over_after(time: np.ndarray, force: np.ndarray, first: float) -> int | None:
     never parts; None where rows are too far apart to tell.
     """
     apart = float(np.median(np.diff(time))) if len(time) > 1 else np.inf
-    if apart > COARSE or first > time[-1]:
+    if apart > COARSE_ROWS or first > time[-1]:
         return None
-    free = PARTED + apart  # between two loaded rows
+    free = PARTING_TOLERANCE + apart  # between two loaded rows
     loaded = np.flatnonzero((force > 0.0) & (time >= first))
     begin = min(int(np.searchsorted(time, first)), len(time) - 1)
     if len(loaded) == 0 or time[loaded[0]] > first + free:
@@ -80,7 +80,7 @@ def stresses_at(row: int | None, system: Readable, recording: Recording) -> dict
     """The largest stresses in rotors up to a row (MPa)."""
     names = stressed(system)
     return {
-        f"{FIRST_IMPACT}{kind}_stress_MPa{f'_{name}' if len(names) > 1 else ''}": _value(
+        f"{FIRST_IMPACT_PREFIX}{kind}_stress_MPa{f'_{name}' if len(names) > 1 else ''}": _value(
             recording, f"{name}.stress.peak_{kind}", row, MPA
         )
         for name in names

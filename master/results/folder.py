@@ -21,11 +21,11 @@ from .ending import Ending, LastValues
 from .recording import Recording
 from .result import RECORDING, Result
 
-LOCK = ".touchdown.lock"
-SUMMARY, SCENE, TABLE = "summary.json", "scene.json", "result.csv"
-ENDING = "ending.json"  # the components as they ended
-MADE_OF_IT = ("report.html", "report.pdf", "drop.gif", "drop.mp4")  # by other commands, as they name it
-RESERVE = 2**14  # bytes kept for the summary of a run that fills the disk
+LOCK_FILE = ".touchdown.lock"
+SUMMARY_FILE, SCENE, TABLE_FILE = "summary.json", "scene.json", "result.csv"
+ENDING_FILE = "ending.json"  # the components as they ended
+DERIVED_FILES = ("report.html", "report.pdf", "drop.gif", "drop.mp4")  # by other commands, as they name it
+RESERVED_BYTES = 2**14  # bytes kept for the summary of a run that fills the disk
 
 
 class ResultsFolder:
@@ -44,7 +44,7 @@ class ResultsFolder:
     def finish(self, summary: Mapping[str, object]) -> None:
         """Write the summary, which says that all else is there. Raises OSError."""
         os.ftruncate(self._lock, 0)
-        replace_text(self.path / SUMMARY, json.dumps(summary, indent=2) + "\n")
+        replace_text(self.path / SUMMARY_FILE, json.dumps(summary, indent=2) + "\n")
 
 
 @contextmanager
@@ -56,14 +56,14 @@ def claimed(path: Path) -> Generator[ResultsFolder]:
     """
     with writing_to(path):
         path.mkdir(parents=True, exist_ok=True)
-        lock = _locked(path / LOCK)
+        lock = _locked(path / LOCK_FILE)
     try:
         with writing_to(path):
-            os.pwrite(lock, bytes(RESERVE), 0)
+            os.pwrite(lock, bytes(RESERVED_BYTES), 0)
         yield ResultsFolder(path, lock)
     finally:
         with suppress(OSError):
-            (path / LOCK).unlink()
+            (path / LOCK_FILE).unlink()
         os.close(lock)
 
 
@@ -88,14 +88,18 @@ def _locked(path: Path) -> int:
 
 def _left(folder: Path) -> Iterator[Path]:
     """Files that a run may have left, the summary first: without it nobody takes the others for whole."""
-    made_of_it = MADE_OF_IT if (folder / ENDING).is_file() else ()  # else such pages are somebody's
+    made_of_it = DERIVED_FILES if (folder / ENDING_FILE).is_file() else ()  # else such pages are somebody's
     pictures = list(_pictures(folder))
-    yield folder / SUMMARY
+    yield folder / SUMMARY_FILE
     yield from pictures
-    yield from (folder / name for name in (TABLE, ENDING, *made_of_it))
+    yield from (folder / name for name in (TABLE_FILE, ENDING_FILE, *made_of_it))
     recording = (folder / RECORDING).resolve()  # a link stays
     yield recording
-    for path in (*(folder / name for name in (SUMMARY, SCENE, TABLE, ENDING)), recording, *pictures):
+    for path in (
+        *(folder / name for name in (SUMMARY_FILE, SCENE, TABLE_FILE, ENDING_FILE)),
+        recording,
+        *pictures,
+    ):
         yield partial(path)
 
 
@@ -129,7 +133,7 @@ def write_ending(folder: Path, ending: Ending, warnings: Iterable[str]) -> None:
         "connections": [list(vars(c).values()) for c in ending.connections],
         "warnings": list(warnings),
     }
-    replace_text(folder / ENDING, json.dumps(values, separators=(",", ":")) + "\n")
+    replace_text(folder / ENDING_FILE, json.dumps(values, separators=(",", ":")) + "\n")
 
 
 def _rows(component: LastValues) -> list[list[object]]:
@@ -175,24 +179,24 @@ def reopened(folder: Path) -> Result:
     Raises TouchdownError where there is no run, it was killed or goes on, or another version left it.
     """
     if os.path.isfile(folder):
-        if is_scene_file(folder) and not (folder.parent / SUMMARY).exists():
+        if is_scene_file(folder) and not (folder.parent / SUMMARY_FILE).exists():
             raise TouchdownError(
                 f"{folder} is a scene; `touchdown run {folder}` first, and give the folder it names"
             )
         raise TouchdownError(f"{folder} is a file; give the folder that it lies in, {folder.parent}")
     if not os.path.isdir(folder):
         raise TouchdownError(f"there is no folder {folder}; give the one that `touchdown run` wrote to")
-    if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY).exists():
+    if (folder / SCENE_FILE).is_file() and not (folder / SUMMARY_FILE).exists():
         raise TouchdownError(
             f"{folder} is a machine's folder; `touchdown run {folder}` first, and give the folder it names"
         )
-    runs = sorted(path.parent for path in folder.glob(f"*/{SUMMARY}"))
-    if runs and not (folder / SUMMARY).exists():
+    runs = sorted(path.parent for path in folder.glob(f"*/{SUMMARY_FILE}"))
+    if runs and not (folder / SUMMARY_FILE).exists():
         raise TouchdownError(
             f"{folder} is no run's folder, it holds {len(runs)} of them; give one, such as {runs[0]}"
         )
-    summary = _values(folder, SUMMARY, "it is no run's, or its run was killed or goes on")
-    told = _values(folder, ENDING, "an earlier version left it; run the scene again")
+    summary = _values(folder, SUMMARY_FILE, "it is no run's, or its run was killed or goes on")
+    told = _values(folder, ENDING_FILE, "an earlier version left it; run the scene again")
     scene = _values(folder, SCENE, "run the scene again")
     if not (folder / RECORDING).is_file():
         raise TouchdownError(f"{folder / RECORDING} is missing; run the scene again")
@@ -200,7 +204,7 @@ def reopened(folder: Path) -> Result:
         ending, warnings = read_ending(told)
         ran = restored(scene)
         if ran.components.keys() != ending.components.keys():
-            raise ValueError(f"{SCENE} has other components than {ENDING}")
+            raise ValueError(f"{SCENE} has other components than {ENDING_FILE}")
         return Result(
             ran,
             Recording(folder / RECORDING),

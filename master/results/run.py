@@ -19,7 +19,7 @@ from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .ending import Finished, ending
-from .folder import TABLE, ResultsFolder, claimed, write_ending
+from .folder import TABLE_FILE, ResultsFolder, claimed, write_ending
 from .recording import Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .summary import summarise
@@ -140,7 +140,7 @@ def _warnings(outcome: Outcome) -> list[str]:
     """What is to be said of a run beside its figures; where it stopped, only why."""
     if outcome.ended is Ended.STOPPED:
         return []
-    said = [outcome.unjoined] if outcome.unjoined else []
+    said = [outcome.uncoupled_warning] if outcome.uncoupled_warning else []
     said += [f"not audited: {connection}" for connection in outcome.unaudited]
     if outcome.warning and outcome.ended is Ended.COMPLETED:
         said.append(outcome.warning)
@@ -150,7 +150,7 @@ def _warnings(outcome: Outcome) -> list[str]:
 def _show(run: Finished, folder: Path, csv: bool, pictures: Pictures) -> list[Path]:
     """On request result.csv and pictures, which are returned."""
     if csv:
-        write_csv(run.recording, folder / TABLE)
+        write_csv(run.recording, folder / TABLE_FILE)
     if not pictures or len(run.recording.time) < 2:  # broken off before its first step
         return []
     from .figures.plot import draw_all  # matplotlib is slow to import

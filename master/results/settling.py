@@ -41,11 +41,11 @@ from scipy.special import stdtrit
 from .whirl.contacts import FOLLOWED, GRAVITY, TURN, Orbit, wrapped
 from .whirl.verdict import Episode, Whirl, over, still
 
-LEAST = 4  # sizes; through fewer a line says nothing
+MIN_SIZES = 4  # sizes; through fewer a line says nothing
 MAX_TURNS = 40  # turns, the last ones: what comes before them is past
-PART = 0.5  # of a whirl's turns, the last ones: it takes the first to come up
+WHIRL_SHARE = 0.5  # of a whirl's turns, the last ones: it takes the first to come up
 TOLERANCE = 0.05  # of the mean, over all the sizes
-PLAIN = 0.25  # of the mean: wider, and it is anybody's guess
+MAX_INTERVAL = 0.25  # of the mean: wider, and it is anybody's guess
 CONFIDENCE = 0.95
 
 
@@ -77,14 +77,14 @@ def change(sizes: np.ndarray) -> tuple[float, float]:
 
 def trend(sizes: np.ndarray) -> Trend:
     """Of sizes (n,), not below zero, in their order."""
-    if len(sizes) < LEAST:
+    if len(sizes) < MIN_SIZES:
         return Trend.UNTOLD
     if not np.any(sizes):
         return Trend.STEADY
     risen, reach = change(sizes)
     if abs(risen) > max(TOLERANCE, reach):
         return Trend.GROWING if risen > 0.0 else Trend.DECAYING
-    return Trend.STEADY if abs(risen) + reach <= PLAIN else Trend.UNTOLD
+    return Trend.STEADY if abs(risen) + reach <= MAX_INTERVAL else Trend.UNTOLD
 
 
 def together(trends: Sequence[Trend]) -> Trend:
@@ -116,7 +116,7 @@ def turn_by_turn(
     if len(steps) == 0 or np.max(np.abs(steps)) >= FOLLOWED:
         return ()
     left = np.abs(np.sum(steps) - np.concatenate([[0.0], np.cumsum(steps)])) / TURN
-    count = min(MAX_TURNS, max(LEAST, int(PART * left[0])), int(left[0]))
+    count = min(MAX_TURNS, max(MIN_SIZES, int(WHIRL_SHARE * left[0])), int(left[0]))
     turn = np.minimum(left.astype(int), count)  # from the end; what lies before is the last, left out
     shown = [np.hypot(x, y) / orbit.clearance] + ([] if force is None else [force[part]])
     return tuple(_means(values, turn, count) for values in shown)
@@ -129,11 +129,13 @@ def _means(values: np.ndarray, turn: np.ndarray, count: int) -> np.ndarray:
     return (sums / np.maximum(rows, 1))[::-1]
 
 
-BEAT = 4  # periods; two modes of a pendulum on two seats are 20 to 40 % apart
+BEAT_PERIODS = 4  # periods; two modes of a pendulum on two seats are 20 to 40 % apart
 MAX_BEATS = 8  # times BEAT periods
-REST = 0.087  # of the clearance: a swing of 5 degrees to either side, half of what makes a pendulum
-BAND = 0.1  # of the clearance
-FORCES = 0.25  # of the mean force
+REST_AMPLITUDE = (
+    0.087  # of the clearance: a swing of 5 degrees to either side, half of what makes a pendulum
+)
+AMPLITUDE_BAND = 0.1  # of the clearance
+FORCE_BAND = 0.25  # of the mean force
 
 
 @dataclass(frozen=True)
@@ -174,22 +176,24 @@ def settling(orbit: Orbit, force: np.ndarray | None, first_contact: float, whirl
     end, length = float(orbit.time[-1]), period(orbit.clearance)
     count = max(0, int((end - first_contact) / length))
     sizes, forces = _periods(orbit, force, count)
-    rests = whirl is None and count >= LEAST and bool(np.all(sizes[-LEAST:] <= REST))
+    rests = whirl is None and count >= MIN_SIZES and bool(np.all(sizes[-MIN_SIZES:] <= REST_AMPLITUDE))
     if whirl is None and not rests:
         sizes, forces = _over_beats(sizes, np.max), _over_beats(forces, np.mean)
-        whole = min(MAX_BEATS, max(LEAST, int(PART * count / BEAT)), count // BEAT)
-        told = [trend(values[::-BEAT][:whole][::-1]) for values in (sizes, forces)]
-        now, recent = together(told[: 1 if force is None else 2]), whole * BEAT
+        whole = min(
+            MAX_BEATS, max(MIN_SIZES, int(WHIRL_SHARE * count / BEAT_PERIODS)), count // BEAT_PERIODS
+        )
+        told = [trend(values[::-BEAT_PERIODS][:whole][::-1]) for values in (sizes, forces)]
+        now, recent = together(told[: 1 if force is None else 2]), whole * BEAT_PERIODS
     else:
-        now, recent = whirl or Trend.STEADY, LEAST
-    if count < LEAST or now is not Trend.STEADY:
+        now, recent = whirl or Trend.STEADY, MIN_SIZES
+    if count < MIN_SIZES or now is not Trend.STEADY:
         return Settling(None, now, whirl is not None)
-    off = _off(sizes, recent, BAND)
+    off = _off(sizes, recent, AMPLITUDE_BAND)
     if not rests and force is not None:
-        off |= _off(forces, recent, FORCES * float(np.mean(forces[-recent:])))
+        off |= _off(forces, recent, FORCE_BAND * float(np.mean(forces[-recent:])))
     left = np.flatnonzero(off)
     alike = count - 1 - int(left[-1]) if len(left) else count
-    if alike < LEAST:
+    if alike < MIN_SIZES:
         return Settling(None, now, whirl is not None)
     since = first_contact if alike == count else end - length * alike
     return Settling(since, now, whirl is not None, rests)
@@ -211,7 +215,7 @@ def _periods(orbit: Orbit, force: np.ndarray | None, count: int) -> tuple[np.nda
 
 def _over_beats(values: np.ndarray, of: Callable[[np.ndarray], float]) -> np.ndarray:
     """Of each period and those before it, BEAT in all."""
-    return np.array([of(values[max(0, k + 1 - BEAT) : k + 1]) for k in range(len(values))])
+    return np.array([of(values[max(0, k + 1 - BEAT_PERIODS) : k + 1]) for k in range(len(values))])
 
 
 def _off(values: np.ndarray, recent: int, band: float) -> np.ndarray:
@@ -219,9 +223,14 @@ def _off(values: np.ndarray, recent: int, band: float) -> np.ndarray:
     return np.abs(values - np.mean(values[-recent:])) > band
 
 
-HOW = {one: one.value for one in Trend} | {Trend.UNTOLD: "whether it grows or decays cannot be told"}
-LONGER, MAX_LONGER = 2.0, 4.0  # times the run, to be proposed where nothing says for how long; at most
-MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to die out, too
+TREND_NAMES = {one: one.value for one in Trend} | {
+    Trend.UNTOLD: "whether it grows or decays cannot be told"
+}
+LONGER_FACTOR, MAX_LONGER = (
+    2.0,
+    4.0,
+)  # times the run, to be proposed where nothing says for how long; at most
+TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to die out, too
 
 
 @dataclass(frozen=True)
@@ -242,15 +251,15 @@ class Course:
             return self.whirl.words
         if not episode.goes_on:
             return over(episode.verdict, episode.start, episode.end)
-        return still(episode.verdict, self.end, HOW[self.trend or Trend.UNTOLD])
+        return still(episode.verdict, self.end, TREND_NAMES[self.trend or Trend.UNTOLD])
 
     @property
     def duration(self) -> float | None:
         """To be proposed for a run (s, to the end it should have): None where it has settled."""
         if self.settling is None or self.settling.time is not None or self.end <= 0.0:
             return None
-        wanted = LONGER * self.end if self.left is None else MARGIN * (self.end + self.left)
-        return _rounded_up(min(max(wanted, MARGIN * self.end), MAX_LONGER * self.end))
+        wanted = LONGER_FACTOR * self.end if self.left is None else TIME_MARGIN * (self.end + self.left)
+        return _rounded_up(min(max(wanted, TIME_MARGIN * self.end), MAX_LONGER * self.end))
 
 
 def course(

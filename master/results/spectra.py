@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-BEGIN = 1.0  # s after the shutdown, when the landing has died down
+WINDOW_START_S = 1.0  # s after the shutdown, when the landing has died down
 POINTS = 262_144
-LENGTH = POINTS / 200e3  # s of one window: the source's points at its 200 kHz
-SLACK = 1e-3  # of an interval, for times that are sums of steps
-APART = 4  # lines of a spectrum; nearer to a taller line stand that line's own side lobes
+WINDOW_S = POINTS / 200e3  # s of one window: the source's points at its 200 kHz
+INTERVAL_TOLERANCE = 1e-3  # of an interval, for times that are sums of steps
+SIDE_LOBE_LINES = 4  # lines of a spectrum; nearer to a taller line stand that line's own side lobes
 
 
 def hann(count: int) -> np.ndarray:
@@ -23,7 +23,7 @@ def interval(time: np.ndarray) -> float:
 
 def landed(time: np.ndarray) -> float:
     """When the landing has died down (s): BEGIN from the shutdown, or from a start after that."""
-    return BEGIN + max(0.0, float(time[0]))
+    return WINDOW_START_S + max(0.0, float(time[0]))
 
 
 def windows(time: np.ndarray) -> list[float]:
@@ -31,8 +31,8 @@ def windows(time: np.ndarray) -> list[float]:
     if len(time) < 2:
         return []
     begin = landed(time)
-    whole = (float(time[-1]) + SLACK * interval(time) - begin) / LENGTH
-    return [begin + k * LENGTH for k in range(int(whole))] if whole >= 1.0 else []
+    whole = (float(time[-1]) + INTERVAL_TOLERANCE * interval(time) - begin) / WINDOW_S
+    return [begin + k * WINDOW_S for k in range(int(whole))] if whole >= 1.0 else []
 
 
 def samples(time: np.ndarray, length: float) -> int:
@@ -53,7 +53,7 @@ def velocity_spectrum(
     """
     step = interval(time)
     count = samples(time, length)
-    first = int(np.searchsorted(time, start - SLACK * step))
+    first = int(np.searchsorted(time, start - INTERVAL_TOLERANCE * step))
     velocity = np.diff(position[first : first + count + 1]) / step
     if len(velocity) < count:
         raise ValueError(f"the recording ends before the window from {start:g} s for {length:g} s does")
@@ -85,7 +85,7 @@ def waterfall(
     frequencies), in the unit of `values`; a sine of amplitude A has the height A. Nothing is resampled:
     raises ValueError where the values (at `time`, s) do not come at `rate` (Hz), or are too few.
     """
-    if len(time) < 2 or not np.allclose(np.diff(time), 1.0 / rate, rtol=SLACK, atol=0.0):
+    if len(time) < 2 or not np.allclose(np.diff(time), 1.0 / rate, rtol=INTERVAL_TOLERANCE, atol=0.0):
         raise ValueError(f"the recording must have the rate {rate:g} Hz throughout; {_found_rate(time)}")
     from scipy.signal import get_window  # slow to import
 
@@ -128,7 +128,7 @@ def lines(
     for k in tops[np.argsort(-amplitude[tops], kind="stable")].tolist():
         if len(chosen) == count:
             break
-        if all(abs(k - other) >= APART for other in chosen):
+        if all(abs(k - other) >= SIDE_LOBE_LINES for other in chosen):
             chosen.append(k)
     return [_refined(frequencies, amplitude, k) for k in chosen]
 

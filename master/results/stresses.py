@@ -13,12 +13,12 @@ from .ending import Readable, Teller
 
 MPA = 1e-6
 KINDS = ("bending", "shear")
-SIGN = "stress.peak_bending"  # a component with this variable reports stresses
+STRESS_VARIABLE = "stress.peak_bending"  # a component with this variable reports stresses
 
 
 def stressed(system: Readable) -> list[str]:
     """Names of the components that report stresses."""
-    return [name for name, component in system.components.items() if SIGN in component.variables]
+    return [name for name, component in system.components.items() if STRESS_VARIABLE in component.variables]
 
 
 def kept_instant(component: Teller) -> float | None:

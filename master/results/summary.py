@@ -12,11 +12,11 @@ import numpy as np
 from ...modelkit.variables import Causality
 from ..common.errors import Ended
 from ..coupling.connections import Attachment
-from ..coupling.ledger.auditor import told_by_master
+from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
 from ..scene.scene import Scene
 from .ending import Readable, housing_port
-from .first_impact import FIRST_IMPACT, Reported, latest, over_at, stresses_at, values_at
+from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .recording import NotRecordedError, Recording
 from .settling import Course, course, proposed, settled_at
 from .spectra import hann
@@ -24,7 +24,7 @@ from .stresses import stress_figures
 from .whirl.contacts import Orbit
 from .whirl.verdict import Episode, Verdict, Whirl, classify, force_phase
 
-STANDS_OUT = 5.0  # a line over the median of its band
+MIN_PROMINENCE = 5.0  # a line over the median of its band
 RPM = 60.0 / (2.0 * math.pi)
 
 
@@ -54,7 +54,7 @@ FIGURES = (
     Figure("loaded_balls_end", "balls.loaded"),
 )
 FIRST_IMPACTS = tuple(  # what peaks were when it was over; of a ball's force the bearing tells by itself
-    Figure(FIRST_IMPACT + figure.key.removeprefix("peak_"), figure.variable, figure.factor)
+    Figure(FIRST_IMPACT_PREFIX + figure.key.removeprefix("peak_"), figure.variable, figure.factor)
     for figure in FIGURES
     if figure.key.startswith("peak_") and figure.key != "peak_ball_force_N"
 )
@@ -78,7 +78,7 @@ def touchdown_seats(system: Readable) -> list[Attachment]:
 
 def is_heard(system: Readable, a: Attachment) -> bool:
     """Whether it is the master that tells of contact in the bearing, which tells nothing of it."""
-    return told_by_master(system.components[a.bearing].variables["contact.first_time"])
+    return estimated_by_master(system.components[a.bearing].variables["contact.first_time"])
 
 
 def seat_name(a: Attachment, seats: list[Attachment]) -> str:
@@ -333,7 +333,7 @@ def dominant_frequency(
     if len(band) < 3:
         return None
     peak = int(band[np.argmax(spectrum[band])])
-    alone = spectrum[peak] > STANDS_OUT * np.median(spectrum[band])
+    alone = spectrum[peak] > MIN_PROMINENCE * np.median(spectrum[band])
     if peak in (band[0], band[-1]) or not alone or frequency[peak] * (time[-1] - time[0]) < 4.0:
         return None
     a, b, c = np.log(spectrum[peak - 1 : peak + 2] + 1e-300)

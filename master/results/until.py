@@ -15,9 +15,9 @@ from .recording import NotRecordedError, Recording
 from .settling import settled_at
 from .summary import course_at, touchdown_seats
 
-LOOK = 0.05  # s from one look to the next, at least: a swing or two
-LATER = 0.05  # of the time that has passed, so that looks at long recordings stay rare
-SAID = f'run.until = "{SETTLED}"'
+LOOK_INTERVAL_S = 0.05  # s from one look to the next, at least: a swing or two
+LOOK_SHARE = 0.05  # of the time that has passed, so that looks at long recordings stay rare
+UNTIL_SETTLED = f'run.until = "{SETTLED}"'
 
 
 class UntilSettled(Observer):
@@ -33,7 +33,8 @@ class UntilSettled(Observer):
         self._next = 1
         if not any("clearance" in system.components[a.bearing].variables for a in self._seats):
             raise TouchdownError(
-                f"{SAID}: no touchdown bearing states its clearance, so that nothing is known to settle; "
+                f"{UNTIL_SETTLED}: no touchdown bearing states its clearance, so that nothing is known to "
+                "settle; "
                 'take "end"'
             )
 
@@ -45,8 +46,8 @@ class UntilSettled(Observer):
         if now.last or now.done < self._next:
             return
         step = (now.time - now.start) / now.done
-        self._next = now.done + math.ceil(max(LOOK, LATER * now.since_zero) / step)
-        if now.since_zero > LOOK and self._settled(now):
+        self._next = now.done + math.ceil(max(LOOK_INTERVAL_S, LOOK_SHARE * now.since_zero) / step)
+        if now.since_zero > LOOK_INTERVAL_S and self._settled(now):
             now.stop("all seats have settled", Ended.AS_WANTED)
 
     def _settled(self, now: Moment) -> bool:
@@ -55,7 +56,7 @@ class UntilSettled(Observer):
         try:
             courses = [course_at(self._system, a, recording, now.zero) for a in self._seats]
         except NotRecordedError as error:
-            raise TouchdownError(f"{SAID}: {error}") from None
+            raise TouchdownError(f"{UNTIL_SETTLED}: {error}") from None
         finally:
             recording.close()
         known = [one for one in courses if one is not None]

@@ -68,15 +68,15 @@ from .tables import (
 )
 
 SCENE_FILE = "scene.toml"  # of a folder that is a machine
-LEFT = "scene.json"  # what a run leaves
+RECORDED_SCENE = "scene.json"  # what a run leaves
 TABLES = (".csv", ".tsv", ".txt")
-LARGEST = 16_000_000  # bytes of a TOML file
-SHIPPED = Path(__file__).parent / "shipped"
+MAX_FILE_BYTES = 16_000_000  # bytes of a TOML file
+SHIPPED_FOLDER = Path(__file__).parent / "shipped"
 
 
 def shipped() -> dict[str, Path]:
     """Files of the scenes that come with the project, by name."""
-    return {path.stem: path for path in sorted(SHIPPED.rglob("*.toml"), key=lambda path: path.stem)}
+    return {path.stem: path for path in sorted(SHIPPED_FOLDER.rglob("*.toml"), key=lambda path: path.stem)}
 
 
 def load_scene(name: str) -> Scene:
@@ -110,8 +110,8 @@ def _mistaken(path: Path) -> str:
             f"{path} is a table, no scene; `touchdown import-rotor {path}` makes a rotor's file of it, and "
             "`touchdown new` a machine with that"
         )
-    if os.path.isfile(path / LEFT):
-        return f"{path} is what a run left; give {path / LEFT}, the scene as it was run"
+    if os.path.isfile(path / RECORDED_SCENE):
+        return f"{path} is what a run left; give {path / RECORDED_SCENE}, the scene as it was run"
     return ""
 
 
@@ -260,13 +260,15 @@ def _toml(path: Path, what: str) -> dict[str, Any]:
     where = f"{what} {path}"
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
+            content = file.read(MAX_FILE_BYTES + 1)
     except OSError as error:
         raise TouchdownError(f"cannot read {where}: {error.strerror}") from None
     except ValueError as error:  # of a path that no file can have
         raise TouchdownError(f"cannot read {what} {str(path)!r}: {error}") from None
-    if len(content) > LARGEST:
-        raise TouchdownError(f"{where} is larger than {LARGEST / 1e6:.0f} MB; it must be something else")
+    if len(content) > MAX_FILE_BYTES:
+        raise TouchdownError(
+            f"{where} is larger than {MAX_FILE_BYTES / 1e6:.0f} MB; it must be something else"
+        )
     try:
         text = content.decode("utf-8-sig")  # some editors begin files with a mark
     except ValueError as error:

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from ..common.errors import TouchdownError
 
 RPM = 2.0 * math.pi / 60.0
-MOST_BORE_SPEED = 1e3  # m rpm, bore times speed: what grease-lubricated ball bearings run
-FAST = 1.5  # times the speed of a rule; above, it is said
-WIDE = 0.1  # clearance over the journal's radius; usual is 0.01 to 0.03
-LOOSE = 0.7  # of the bore that journal and clearance fill at least, where no sleeve is between
-ROUGH = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
-NO_FRICTION = 5.0  # above which nothing rubs
+MAX_BORE_SPEED = 1e3  # m rpm, bore times speed: what grease-lubricated ball bearings run
+SPEED_RATIO_LIMIT = 1.5  # times the speed of a rule; above, it is said
+WIDE_CLEARANCE = 0.1  # clearance over the journal's radius; usual is 0.01 to 0.03
+MIN_BORE_FILL = 0.7  # of the bore that journal and clearance fill at least, where no sleeve is between
+HIGH_FRICTION = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
+MAX_FRICTION = 5.0  # above which nothing rubs
 BALLS = "balls."  # begins the names of what a ball bearing says of its balls
 COEFFICIENTS = ("friction.dynamic", "friction.static")
 
@@ -41,7 +41,7 @@ class Seat:
         return self.bore or (None if radius is None else 2.0 * radius)
 
 
-def remarks(seats: Iterable[Seat]) -> list[str]:
+def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
     """What the user is to know of a machine before it runs, a line each.
 
     Raises TouchdownError for what cannot be.
@@ -67,7 +67,7 @@ def _fit(seat: Seat) -> Iterator[str]:
             "of the journal that belongs to it"
         )
     filled = 2.0 * (radius + seat.values.get("clearance", 0.0))
-    if filled < LOOSE * bore:
+    if filled < MIN_BORE_FILL * bore:
         yield (
             f"{what} and its clearance fill {_mm(filled)} of the bore of {seat.designation}, {_mm(bore)}; "
             "a sleeve is taken to fill the rest"
@@ -76,7 +76,7 @@ def _fit(seat: Seat) -> Iterator[str]:
 
 def _clearance(seat: Seat) -> Iterator[str]:
     radius, clearance = seat.values.get("journal_radius"), seat.values.get("clearance")
-    if radius and clearance and clearance > WIDE * radius:
+    if radius and clearance and clearance > WIDE_CLEARANCE * radius:
         yield (
             f"{seat.bearing}.clearance = {_mm(clearance)} is {100.0 * clearance / radius:.0f} % of the "
             f"journal's radius of {_mm(radius)}, and most are 1 to 3 %; it is radial, and a number without "
@@ -88,12 +88,12 @@ def _friction(seat: Seat) -> Iterator[str]:
     for name in COEFFICIENTS:
         value = seat.values.get(name, 0.0)
         what = f"{seat.bearing}.{name} = {value:g}"
-        if value > NO_FRICTION:
+        if value > MAX_FRICTION:
             raise TouchdownError(
                 f"{what} is no coefficient of friction: dry steel has 0.1 to 0.5; write "
                 f'"{value:g} %" where per cent are meant'
             )
-        if value > ROUGH:
+        if value > HIGH_FRICTION:
             yield f"{what} is more than solids rub with; dry steel has 0.1 to 0.5"
 
 
@@ -101,11 +101,11 @@ def _speed(seat: Seat) -> Iterator[str]:
     rolls = seat.bore is not None or any(name.startswith(BALLS) for name in seat.values)
     if not rolls or seat.speed is None or seat.width is None:
         return
-    usual = MOST_BORE_SPEED / seat.width * RPM
-    if abs(seat.speed) > FAST * usual:
+    usual = MAX_BORE_SPEED / seat.width * RPM
+    if abs(seat.speed) > SPEED_RATIO_LIMIT * usual:
         yield (
             f"{seat.body}.speed = {seat.speed / RPM:.0f} rpm is more than a bearing of {_mm(seat.width)} "
-            f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MOST_BORE_SPEED:,.0f} mm rpm); "
+            f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MAX_BORE_SPEED:,.0f} mm rpm); "
             "a number without a unit is in rad/s"
         )
 

@@ -43,7 +43,7 @@ class BondSpec(NamedTuple):
         return (*(wire for wire in told if wire is not None), *self.motion)
 
 
-BOND = 'such as [["s1.f", "s2.f"], ["s2.x", "s1.x2"], ["s2.v", "s1.v2"]]'
+BOND_EXAMPLE = 'such as [["s1.f", "s2.f"], ["s2.x", "s1.x2"], ["s2.v", "s1.v2"]]'
 
 
 def wires(value: object, where: str) -> tuple[Wire, ...]:
@@ -71,7 +71,7 @@ def bonds(value: object, where: str) -> tuple[BondSpec, ...]:
     """A bond as a list of its wires, the force first; or a list of bonds, of which each may be a table."""
     listed = items(value)
     if listed is None:
-        raise TouchdownError(f"{where} must be a list of wires, the force first, {BOND}")
+        raise TouchdownError(f"{where} must be a list of wires, the force first, {BOND_EXAMPLE}")
     return tuple(_bonds(listed, where))
 
 
@@ -95,12 +95,12 @@ def _listed(listed: Sequence[object], where: str) -> BondSpec:
     found = wires(list(listed), where)
     if not 2 <= len(found) <= 3:
         raise TouchdownError(
-            f"{where} has {len(found)} wires; a bond is a force and one or two of motion, {BOND}"
+            f"{where} has {len(found)} wires; a bond is a force and one or two of motion, {BOND_EXAMPLE}"
         )
     return BondSpec(found[0], motion=found[1:])
 
 
-MOST = 3  # changes that a title names
+MAX_TITLE_CHANGES = 3  # changes that a title names
 _DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
 
 
@@ -136,8 +136,8 @@ def amended(title: str, changes: Sequence[str]) -> str:
     """
     if not changes:
         return title
-    more = f" and {len(changes) - MOST} more" if len(changes) > MOST else ""
-    return f"{title}, but with {', '.join(changes[:MOST])}{more}"
+    more = f" and {len(changes) - MAX_TITLE_CHANGES} more" if len(changes) > MAX_TITLE_CHANGES else ""
+    return f"{title}, but with {', '.join(changes[:MAX_TITLE_CHANGES])}{more}"
 
 
 def _words(fmu: str) -> str:

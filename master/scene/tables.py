@@ -15,11 +15,11 @@ from ...modelkit.units import NUMBER
 from ..common.errors import TouchdownError, one_of
 from ..common.units import to_si
 
-DEEPEST = 32
+MAX_DEPTH = 32
 NAME = re.compile(r"\w[\w -]*")  # of a component
 LINE = re.compile(r"at line (\d+)")  # of a mistake, as the library says it
 UNQUOTED = re.compile(r"=\s*([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*[A-Za-z%\u00b5\u03bc][^\s,}\]#\"']*)")
-OF_ROTORS = ("element", "superelement", "disc", "point_mass", "unbalance", "stations", "levitated_at")
+ROTOR_TABLES = ("element", "superelement", "disc", "point_mass", "unbalance", "stations", "levitated_at")
 
 
 def entries(value: object) -> Mapping[str, Any] | None:
@@ -66,7 +66,7 @@ def refuse_unusable(table: Mapping[str, Any], where: str) -> None:
     No scene needs either; files, folders and recordings cannot have a NUL in their names.
     """
     level: list[object] = [table]
-    for _ in range(DEEPEST):
+    for _ in range(MAX_DEPTH):
         inner: list[object] = []
         for value in level:
             mapping, listed = entries(value), items(value)
@@ -79,7 +79,7 @@ def refuse_unusable(table: Mapping[str, Any], where: str) -> None:
         if not inner:
             return
         level = inner
-    raise TouchdownError(f"{where}: values lie {DEEPEST} deep in each other; no scene needs that")
+    raise TouchdownError(f"{where}: values lie {MAX_DEPTH} deep in each other; no scene needs that")
 
 
 def unquoted(error: Exception, text: str) -> str:
@@ -121,7 +121,7 @@ def _names(path: Path) -> Collection[str]:
 
 def is_rotor(table: Mapping[str, Any]) -> bool:
     """Whether a file's table is a rotor's, not a scene's."""
-    return "components" not in table and any(key in table for key in OF_ROTORS)
+    return "components" not in table and any(key in table for key in ROTOR_TABLES)
 
 
 def refuse_unknown(table: Mapping[str, Any], known: tuple[str, ...], where: str) -> None:

@@ -111,14 +111,14 @@ def _execute_compare(options: argparse.Namespace) -> int:
 
 
 def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
-    from ..studies.comparison.schemes import STEPS, WANTED, Asked, compare_schemes, pieces
+    from ..studies.comparison.schemes import STEPS, TARGET_ERROR_M, Asked, compare_schemes, pieces
     from ..studies.comparison.schemes_report import report_lines, write_report
 
     asked = Asked(
         schemes=tuple(SCHEMES) if options.schemes is None else _scheme_names(options.schemes),
         steps=several_above_zero(options.macro_steps, "s", "--macro-steps") or STEPS,
         duration=above_zero(options.duration, "s", "--duration"),
-        wanted=above_zero(options.wanted, "m", "--wanted") or WANTED,
+        wanted=above_zero(options.wanted, "m", "--wanted") or TARGET_ERROR_M,
         repeat=count(options.repeat, "--repeat"),
         timed=above_zero(options.timed, "s", "--timed"),
         in_process=options.in_process,

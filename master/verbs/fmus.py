@@ -305,11 +305,11 @@ def _execute_cache(options: argparse.Namespace) -> int:
 
 def _table(root: str, held: Sequence[Entry]) -> Iterator[str]:
     """What is held, a line for each kind."""
-    from ..common.cache import ABOUT, DAY
+    from ..common.cache import DAY, DESCRIPTIONS
 
     now = time.time()
     yield root
-    for kind, about in ABOUT.items():
+    for kind, about in DESCRIPTIONS.items():
         own = [entry for entry in held if entry.kind == kind]
         if own:
             unused = max(now - entry.used for entry in own) / DAY

@@ -13,7 +13,7 @@ import math
 from ..kernel import kernel
 
 SMALLEST_STEP = 1e-15  # s; far below the fastest motion here (0.1 us)
-MOST_STEPS = 1_000_000  # in one macro step; a slower advance is a failure, not patience
+MAX_STEPS = 1_000_000  # in one macro step; a slower advance is a failure, not patience
 
 SAFETY = 0.9  # of the step at which the error would just be allowed
 MIN_FACTOR = 0.2  # a step shrinks to no less than this share of the last one

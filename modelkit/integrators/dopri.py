@@ -10,12 +10,12 @@ import numpy as np
 
 from ..kernel import kernel
 from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
-from .control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
+from .control import MAX_STEPS, SMALLEST_STEP, grown, is_last, shrunk
 
 STAGES = 7
 TRIAL = STAGES  # the row of scratch behind the stages
 EXPONENT = 1 / 5  # the error is of order 5 in the step
-LEAST_ERROR, MAX_FACTOR = 1e-8, 5.0
+MIN_ERROR, MAX_FACTOR = 1e-8, 5.0
 
 A21 = 1 / 5
 A31, A32 = 3 / 40, 9 / 40
@@ -96,7 +96,7 @@ def integrate(rhs, observe, m, q, n, weight, K, span, h, tolerance):
     evaluations = 1
     while t < span:
         steps += 1
-        if steps > MOST_STEPS:
+        if steps > MAX_STEPS:
             status = TOO_MANY_STEPS
             break
         last = is_last(t, h, span)
@@ -110,7 +110,7 @@ def integrate(rhs, observe, m, q, n, weight, K, span, h, tolerance):
                 q[i] = K[TRIAL, i]
                 K[0, i] = K[6, i]
             observe(t, q, m)
-            longer = grown(step, error_norm, EXPONENT, LEAST_ERROR, MAX_FACTOR)
+            longer = grown(step, error_norm, EXPONENT, MIN_ERROR, MAX_FACTOR)
             # a step cut short by the end of the span says little about the next one
             h = max(h, longer) if last else longer
         else:

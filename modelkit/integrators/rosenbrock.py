@@ -17,11 +17,11 @@ import numpy as np
 
 from ..kernel import kernel
 from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
-from .control import MOST_STEPS, SMALLEST_STEP, grown, is_last, shrunk
+from .control import MAX_STEPS, SMALLEST_STEP, grown, is_last, shrunk
 
 STAGES = 4
 EXPONENT = 1.0 / 3.0  # the error is of order 3 in the step
-LEAST_ERROR, MAX_FACTOR = 1e-6, 4.0
+MIN_ERROR, MAX_FACTOR = 1e-6, 4.0
 
 G = 4.3586652150845900e-01  # the method's gamma
 
@@ -142,7 +142,7 @@ def integrate(rhs, linearise, solve, observe, m, q, n, weight, work, span, h, to
     evaluations = 1
     while t < span:
         steps += 1
-        if steps > MOST_STEPS:
+        if steps > MAX_STEPS:
             status = TOO_MANY_STEPS
             break
         last = is_last(t, h, span)
@@ -157,7 +157,7 @@ def integrate(rhs, linearise, solve, observe, m, q, n, weight, work, span, h, to
             rhs(t, q, f, m)
             linearise(q, stiff, m)
             observe(t, q, m)
-            longer = grown(step, error_norm, EXPONENT, LEAST_ERROR, MAX_FACTOR)
+            longer = grown(step, error_norm, EXPONENT, MIN_ERROR, MAX_FACTOR)
             # a step cut short by the end of the span says little about the next one
             h = max(h, longer) if last else longer
         else:

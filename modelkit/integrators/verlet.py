@@ -9,8 +9,8 @@ step; a' is evaluated with those before it, and a model may take what depends on
 The step is bounded from above, and by the fastest contact of late: h w at most `Steps.resolution`, w its
 angular frequency (the method is stable up to 2). Steps that shorten as a hit is found and lengthen after it
 come late at one end of the hit and in time at the other: a body that rattles undamped would gain energy at
-every hit, without bound. So w fades slowly, by `FADING` a step, and hits that follow each other are taken
-in equal steps.
+every hit, without bound. So w fades slowly, by `FREQUENCY_DECAY` a step, and hits that follow
+each other are taken in equal steps.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from typing import NamedTuple
 
 from ..kernel import kernel
 from ..status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
-from .control import MOST_STEPS, SMALLEST_STEP
+from .control import MAX_STEPS, SMALLEST_STEP
 
-OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
-FADING = 0.999  # of the largest frequency, a step
-SLIVER = 1e-6  # of a step; what is left of a span by rounding
+MAX_OVERRUN = 2.0  # of the resolution, up to which a step keeps the length that its kick was for
+FREQUENCY_DECAY = 0.999  # of the largest frequency, a step
+MIN_REMAINDER = 1e-6  # of a step; what is left of a span by rounding
 
 
 class Steps(NamedTuple):
@@ -45,7 +45,7 @@ def step_length(frequency, left, steps):
 @kernel
 def of_late(now, before):
     """The frequency (rad/s) that bounds the next step: that of `now`, or that of `before`, faded."""
-    faded = FADING * before
+    faded = FREQUENCY_DECAY * before
     return faded if now < faded else now  # a NaN stays
 
 
@@ -72,7 +72,7 @@ def integrate(rhs, drift, forecast, fastest, kicked, observe, m, q, n, work, spa
     kicked(q, f, 0.5 * h, m)
     while t < span:
         taken += 1
-        if taken > MOST_STEPS:
+        if taken > MAX_STEPS:
             status = TOO_MANY_STEPS
             break
         if not h >= SMALLEST_STEP:  # a NaN is not
@@ -80,7 +80,7 @@ def integrate(rhs, drift, forecast, fastest, kicked, observe, m, q, n, work, spa
             break
         left = span - t - h
         following = 0.0
-        if left > SLIVER * h:
+        if left > MIN_REMAINDER * h:
             following = step_length(frequency, left, steps)
             t += h
         else:
@@ -96,7 +96,9 @@ def integrate(rhs, drift, forecast, fastest, kicked, observe, m, q, n, work, spa
         drift(q, trial, half, 0.0, m)
         f, f_new = f_new, f
         frequency = of_late(fastest(m), frequency)
-        if frequency * following > OVERRUN * steps.resolution:  # a hit found only now needs a shorter one
+        if (
+            frequency * following > MAX_OVERRUN * steps.resolution
+        ):  # a hit found only now needs a shorter one
             following = min(following, step_length(frequency, span - t, steps))
         kicked(q, f, 0.5 * (h + following), m)
         observe(t, q, m)

@@ -16,17 +16,18 @@ from numba.core.compiler import Compiler
 from numba.core.registry import cpu_target
 from numba.core.utils import OPERATORS_TO_BUILTINS
 
-NUMBA = ((0, 68), (0, 68))  # the first and the last
+NUMBA_RANGE = ((0, 68), (0, 68))  # the first and the last
 
 
 @cache
 def is_tried() -> bool:
     """Whether numba is of a version among them."""
     numbers = tuple(int(part) for part in version("numba").split(".")[:2])
-    return NUMBA[0] <= numbers <= NUMBA[1]
+    return NUMBA_RANGE[0] <= numbers <= NUMBA_RANGE[1]
 
 
-UNUSED = (  # `with`, branches on constants, literally(), functions that numba inlines; checks, reports
+# `with`, branches on constants, literally(), functions that numba inlines; checks, reports
+UNUSED_PASSES = (
     untyped_passes.WithLifting,
     untyped_passes.RewriteSemanticConstants,
     untyped_passes.DeadBranchPrune,
@@ -77,5 +78,5 @@ class FrontEnd(Compiler):
         state.library.enable_object_caching()
         pipelines = super().define_pipelines()
         for pipeline in pipelines:
-            pipeline.passes = [known for known in pipeline.passes if known[0] not in UNUSED]
+            pipeline.passes = [known for known in pipeline.passes if known[0] not in UNUSED_PASSES]
         return pipelines

@@ -20,8 +20,8 @@ from numba.core.typing.templates import make_concrete_template
 
 from .front_end import FrontEnd
 
-OPTIONS = {"nopython": True, "error_model": "numpy"}  # of every kernel
-COUNTING = "NRT_"  # begins the names of functions that count references
+COMPILER_OPTIONS = {"nopython": True, "error_model": "numpy"}  # of every kernel
+REFERENCE_COUNTING_PREFIX = "NRT_"  # begins the names of functions that count references
 
 
 class WholeCode(JITCodeLibrary):
@@ -34,7 +34,7 @@ class WholeCode(JITCodeLibrary):
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
-            counting = function.name.startswith(COUNTING)
+            counting = function.name.startswith(REFERENCE_COUNTING_PREFIX)
             if not function.is_declaration and function.linkage.name == "linkonce_odr" and not counting:
                 function.linkage, function.name = "internal", f"{function.name}.internal"
         super()._optimize_final_module()
@@ -67,7 +67,7 @@ class KernelDispatcher(CPUDispatcher):
     _compiling_counter: Any  # by which numba finds recursion
 
     def __init__(self, py_func: Any, locals: Any = None, targetoptions: Any = None) -> None:
-        super().__init__(py_func, locals, OPTIONS | (targetoptions or {}), pipeline_class=_Whole)
+        super().__init__(py_func, locals, COMPILER_OPTIONS | (targetoptions or {}), pipeline_class=_Whole)
         self._linked: dict[tuple[types.Type, ...], CompileResult] = {}
 
     def get_call_template(self, args: Any, kws: Any) -> Any:

@@ -19,8 +19,8 @@ from .body import Beams, Matrices, PointMass
 from .element import Element
 from .superelement import Superelement
 
-MOST_NODES = 2000
-MOST_STATIONS = 8
+MAX_NODES = 2000
+MAX_STATIONS = 8
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Shaft:
         return self.body.diametral_inertia
 
 
-TOO_UNLIKE = (
+TOO_UNLIKE_MESSAGE = (
     "the elements of the rotor are too unlike each other to be calculated together; "
     "look for very short or very thin ones"
 )
@@ -164,12 +164,12 @@ def solve(stiffness: np.ndarray, loads: np.ndarray) -> np.ndarray:
     try:
         factor = linalg.cho_factor(stiffness * np.outer(scale, scale))
     except linalg.LinAlgError:
-        raise ModelError(TOO_UNLIKE) from None
+        raise ModelError(TOO_UNLIKE_MESSAGE) from None
     return (scale * linalg.cho_solve(factor, (scale * loads.T).T).T).T
 
 
-CLOSE = 1e-7  # m; a node this close is the one that is meant
-SHORTEST = 1e-4  # m; of an element
+NODE_TOLERANCE = 1e-7  # m; a node this close is the one that is meant
+MIN_ELEMENT_LENGTH = 1e-4  # m; of an element
 
 AtNode = TypeVar("AtNode", PointMass, Unbalance, Station, Support)
 
@@ -178,7 +178,7 @@ def node_at(shaft: Shaft, position: float) -> int | None:
     """The node (from 1) at `position` (m from node 1), or None."""
     apart = np.abs(shaft.positions() - position)
     nearest = int(np.argmin(apart))
-    return nearest + 1 if apart[nearest] <= CLOSE else None
+    return nearest + 1 if apart[nearest] <= NODE_TOLERANCE else None
 
 
 def with_node(shaft: Shaft, position: float) -> Shaft:
@@ -201,8 +201,8 @@ def with_node(shaft: Shaft, position: float) -> Shaft:
             f"nothing between nodes; the nearest is node {near + 1} at {1e3 * z[near]:g} mm"
         )
     cut = int(np.searchsorted(z, position)) - 1
-    if min(position - z[cut], z[cut + 1] - position) < SHORTEST:
-        near = cut + 1 if position - z[cut] < SHORTEST else cut + 2
+    if min(position - z[cut], z[cut + 1] - position) < MIN_ELEMENT_LENGTH:
+        near = cut + 1 if position - z[cut] < MIN_ELEMENT_LENGTH else cut + 2
         raise ModelError(
             f"{1e3 * position:g} mm is less than 0.1 mm from node {near} of the rotor {shaft.title}; "
             f"name that node"

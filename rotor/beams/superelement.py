@@ -17,15 +17,19 @@ from scipy import linalg, sparse
 from ...modelkit.model import ModelError
 from .body import Matrices, rigid_motion
 
-MOST_COORDINATES = 1000  # its matrices are full
+MAX_COORDINATES = 1000  # its matrices are full
 ROUNDING = 1e-6  # of others' matrices
-STILL = 1e-2  # of the first bending frequency; a mode below is a rigid one that digits or soft ropes hold
+RIGID_FREQUENCY_RATIO = (
+    1e-2  # of the first bending frequency; a mode below is a rigid one that digits or soft ropes hold
+)
 NOISE = 1e-13  # of the highest squared frequency, which the lowest are calculated beside
-FIT = 1e-3  # of the largest motion of a node: by which shapes may miss that of a rigid body
-LENGTHS = (1e-3, 1e2)  # m, of rotors; beyond, units are mistaken
-HERTZ = (0.1, 1e6)  # of their first bending mode
-HEAVY = 1e3  # kg/m3, mass over cubed length; slender rotors have 1 to 100, short flywheels more
-DENSEST = 5e4  # kg/m3, twice that of any metal
+RIGID_SHAPE_TOLERANCE = (
+    1e-3  # of the largest motion of a node: by which shapes may miss that of a rigid body
+)
+LENGTH_RANGE = (1e-3, 1e2)  # m, of rotors; beyond, units are mistaken
+BENDING_RANGE_HZ = (0.1, 1e6)  # of their first bending mode
+MAX_BULK_DENSITY = 1e3  # kg/m3, mass over cubed length; slender rotors have 1 to 100, short flywheels more
+MAX_DENSITY = 5e4  # kg/m3, twice that of any metal
 FREE = (
     "export the rotor free, without bearings and supports, its coordinates and matrices in the same units, "
     "with all digits, and the dofs in their order"
@@ -166,11 +170,11 @@ def _check_sizes(body: Superelement) -> None:
     z, n = body.positions, body.coordinates
     if z.ndim != 1 or len(z) < 2 or z[0] != 0.0 or not np.all(np.diff(z) > 0.0):
         raise ModelError("the positions must be those of two nodes or more, ascending from 0")
-    if not LENGTHS[0] <= z[-1] <= LENGTHS[1]:
+    if not LENGTH_RANGE[0] <= z[-1] <= LENGTH_RANGE[1]:
         raise ModelError(f"the nodes are on {z[-1]:.4g} m, which is out of proportion; look at the units")
-    if n > MOST_COORDINATES:
+    if n > MAX_COORDINATES:
         raise ModelError(
-            f"{n} coordinates per plane are too many, at most {MOST_COORDINATES} are possible; condense "
+            f"{n} coordinates per plane are too many, at most {MAX_COORDINATES} are possible; condense "
             "the model to fewer nodes, or import its modes"
         )
     if n < 3:
@@ -219,7 +223,7 @@ def _check_rigid(body: Superelement) -> None:
     for column, what in enumerate(("translation", "tilt")):
         for part, name in ((0, "deflections"), (1, "slopes")):
             scale = np.max(np.abs(motion[part::2, column])) or np.max(np.abs(motion)) / body.positions[-1]
-            if np.max(missed[part::2, column]) > FIT * scale:
+            if np.max(missed[part::2, column]) > RIGID_SHAPE_TOLERANCE * scale:
                 raise ModelError(
                     f"no combination of the two lowest modes is a {what} of the rigid rotor: its {name} "
                     "are missed; give both rigid modes of the free rotor, and slopes with the sign of dx/dz"
@@ -234,7 +238,7 @@ def _check_proportion(body: Superelement) -> None:
     """
     length, mass = float(body.positions[-1]), body.mass
     least = mass**2 / (2.0 * math.pi * body.polar_inertia * length)
-    if mass > HEAVY * length**3 and least > DENSEST:
+    if mass > MAX_BULK_DENSITY * length**3 and least > MAX_DENSITY:
         raise ModelError(
             f"{mass:.5g} kg on {length:.4g} m is out of proportion, look at the units: t, not kg, goes "
             "with mm, s and N"
@@ -254,7 +258,7 @@ def _check_inertia(body: Superelement) -> None:
         )
     if polar == 0.0:
         raise ModelError("G has no polar inertia, and without one no rotor spins")
-    if polar > 2.0 * diametral * (1.0 + FIT):
+    if polar > 2.0 * diametral * (1.0 + RIGID_SHAPE_TOLERANCE):
         raise ModelError(
             f"G has a polar inertia of {polar:.4g} kg.m2, which no body has beside a diametral one of "
             f"{diametral:.4g} kg.m2; G is per spin speed, in rad/s"
@@ -272,12 +276,12 @@ def _check_stiffness(body: Superelement) -> None:
     K, M = body.stiffness_matrix, body.mass_matrix
     square = linalg.eigh(K, M, eigvals_only=True)
     bending, noise = square[2], NOISE * square[-1]
-    if square[0] < -(STILL**2) * abs(bending) - noise:
+    if square[0] < -(RIGID_FREQUENCY_RATIO**2) * abs(bending) - noise:
         raise ModelError(f"K is not positive: some motion would have less energy than none; {FREE}")
     rigid = body.matrices().rigid
     for motion, what in zip(rigid.T, ("moved sideways", "tilted"), strict=True):
         own = (motion @ K @ motion) / (motion @ M @ motion)
-        if abs(own) > STILL**2 * max(bending, 0.0) + noise:
+        if abs(own) > RIGID_FREQUENCY_RATIO**2 * max(bending, 0.0) + noise:
             swings = math.sqrt(abs(own)) / (2.0 * math.pi)
             raise ModelError(f"K holds the rotor: {what} as a whole it swings at {swings:.4g} Hz; {FREE}")
     if bending <= noise:
@@ -291,7 +295,7 @@ def _check_stiffness(body: Superelement) -> None:
             "rigid modes first"
         )
     first = math.sqrt(bending) / (2.0 * math.pi)
-    if not HERTZ[0] <= first <= HERTZ[1]:
+    if not BENDING_RANGE_HZ[0] <= first <= BENDING_RANGE_HZ[1]:
         raise ModelError(
             f"the first bending mode has {first:.4g} Hz, out of proportion; look at the units of M and K"
         )

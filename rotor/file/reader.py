@@ -34,8 +34,8 @@ from ...modelkit.model import ModelError
 from ...modelkit.units import UnitError, to_si, units_of
 from ..beams.body import PointMass, disc
 from ..beams.element import Element, split
-from ..beams.shaft import MOST_NODES, MOST_STATIONS, Shaft, Station, Support, Unbalance
-from ..beams.superelement import MOST_COORDINATES, Superelement, checked
+from ..beams.shaft import MAX_NODES, MAX_STATIONS, Shaft, Station, Support, Unbalance
+from ..beams.superelement import MAX_COORDINATES, Superelement, checked
 
 EXAMPLES = {
     "m": "12.5 mm", "Pa": "207 GPa", "kg/m3": "7830 kg/m3", "kg": "0.5 kg", "kg.m2": "0.002 kg.m2",
@@ -165,7 +165,7 @@ class Table:
 
 
 DIAMETERS = ("outer_diameter", "inner_diameter", "outer_diameter_end", "inner_diameter_end")
-CLOSE = 1e-7  # m; positions and sums of lengths this close agree
+POSITION_TOLERANCE = 1e-7  # m; positions and sums of lengths this close agree
 
 
 @dataclass(frozen=True)
@@ -232,10 +232,10 @@ def elements_of(top: Table, materials: dict[str, Material]) -> tuple[Element, ..
         _check_position(t, end)
         count = t.integer("count", 1, 10**9, default=1)
         nodes = len(elements) + count + 1
-        if nodes > MOST_NODES:
+        if nodes > MAX_NODES:
             raise RotorFileError(
                 f"{top.file}: {t.where} brings the rotor to {nodes} nodes; "
-                f"at most {MOST_NODES} are possible, take fewer and longer elements"
+                f"at most {MAX_NODES} are possible, take fewer and longer elements"
             )
         element = _element(t, materials)
         elements += [piece.stretched(element.length) for piece in split(element, count)]
@@ -252,7 +252,7 @@ def _check_position(table: Table, end: float) -> None:
     if "position" not in table.values:
         return
     start = table.quantity("position", "m", zero=True)
-    if abs(start - end) > CLOSE:
+    if abs(start - end) > POSITION_TOLERANCE:
         what = "leaves a gap after" if start > end else "overlaps"
         raise table.error(
             "position",
@@ -325,8 +325,8 @@ def superelement_of(t: Table) -> Superelement:
     t.only(*FIELDS)
     positions = _numbers(t, "positions")
     own = 2 * len(positions)
-    if own > 2 * MOST_COORDINATES:
-        raise t.error("positions", f"are {len(positions)}; at most {MOST_COORDINATES} nodes are possible")
+    if own > 2 * MAX_COORDINATES:
+        raise t.error("positions", f"are {len(positions)}; at most {MAX_COORDINATES} nodes are possible")
     shapes = _entries(t, "shapes") if "shapes" in t.values else None
     n = own if shapes is None else int(np.max(shapes[:, 1], initial=0.0))
     given = {name: _symmetric(t, name, n) for name in FIELDS[1:4] if name in t.values or name != "mass"}
@@ -366,8 +366,8 @@ def _entries(t: Table, name: str) -> np.ndarray:
         raise t.error(name, "has an entry whose row or column is no whole number from 1 on")
     if len(np.unique(places, axis=0)) < len(places):
         raise t.error(name, "has two entries at one place")
-    if np.any(places[:, 1] > MOST_COORDINATES):
-        raise t.error(name, f"has more than {MOST_COORDINATES} columns, which is the most that is possible")
+    if np.any(places[:, 1] > MAX_COORDINATES):
+        raise t.error(name, f"has more than {MAX_COORDINATES} columns, which is the most that is possible")
     return entries
 
 
@@ -493,8 +493,8 @@ def _stations(top: Table, kind: str, nodes: int) -> tuple[Station, ...]:
     if kind not in top.values:
         return ()
     t = top.table(kind)
-    if len(t.values) > MOST_STATIONS:
-        raise top.error(kind, f"are {len(t.values)}; at most {MOST_STATIONS} are possible")
+    if len(t.values) > MAX_STATIONS:
+        raise top.error(kind, f"are {len(t.values)}; at most {MAX_STATIONS} are possible")
     for name in t.values:
         if not (name.isascii() and name.isidentifier()) or keyword.iskeyword(name) or name in RESERVED:
             raise t.error(

@@ -12,13 +12,13 @@ import re
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from ...modelkit.units import SCALES, to_si
+from ...modelkit.units import UNIT_SCALES, to_si
 from ..beams.body import PointMass
 from ..beams.element import Element
 from ..beams.shaft import Shaft, Station, Support, Unbalance
 from .reader import RotorFileError, parse, superelement_lines
 
-PREFERRED = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
+PREFERRED_UNITS = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
 DIGITS = 15  # decimal digits that a float holds
 
 
@@ -151,7 +151,7 @@ def _stations(kind: str, stations: tuple[Station, ...]) -> Iterator[str]:
 def _quantity(value: float, unit: str) -> str:
     """`value` (SI) as text with a unit: the shortest of those that are read as the same number."""
     exact = f"{float(value)!r} {unit}"
-    scales = [(SCALES[name][0], name) for name in PREFERRED if SCALES[name][1] == unit]
+    scales = [(UNIT_SCALES[name][0], name) for name in PREFERRED_UNITS if UNIT_SCALES[name][1] == unit]
     ways = [f"{value / factor:.{DIGITS}g} {name}" for factor, name in (*scales, (1.0, unit))]
     same = [way for way in ways if math.isfinite(value) and to_si(way, unit, unit) == value]
     return _text(min((*same, exact), key=len))

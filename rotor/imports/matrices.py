@@ -30,7 +30,7 @@ import numpy as np
 from ...modelkit.model import ModelError
 from ..beams.shaft import Shaft
 from ..beams.superelement import Superelement, by, checked, furthest
-from ..modal.modes import RIGID, basis
+from ..modal.modes import RIGID_MODES, basis
 from .tables import Given, ImportedRotorError
 
 AXES = "XYZ"
@@ -43,7 +43,7 @@ DOFS = {
         *(str(i + 1), f"{'TR'[i // 3]}{i % 3 + 1}"),
     )
 }
-STRAIGHT = 1e-6  # of the length, by which nodes may lie beside the axis
+AXIS_TOLERANCE = 1e-6  # of the length, by which nodes may lie beside the axis
 
 
 @dataclass(frozen=True)
@@ -98,14 +98,14 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
     spread = np.ptp(places, axis=0)
     axis = int(np.argmax(spread))
     beside = float(np.delete(spread, axis).max())
-    if beside > STRAIGHT * spread[axis]:
+    if beside > AXIS_TOLERANCE * spread[axis]:
         raise given.error(
             f"coordinates: the nodes are up to {beside:g} away from a line along {AXES[axis]}; they must "
             "lie on the rotor's axis, which is one of x, y and z"
         )
     ascending = np.sort(places[:, axis])
     apart = np.diff(ascending)
-    if apart.min() <= STRAIGHT * spread[axis]:
+    if apart.min() <= AXIS_TOLERANCE * spread[axis]:
         where = ascending[int(np.argmin(apart))]
         raise given.error(f"coordinates: two nodes are at {where:g} along {AXES[axis]}; join them")
     return axis, places[:, axis]
@@ -141,18 +141,18 @@ def _places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int
 
 FIELDS = ("M", "K", "G", "C", "coordinates", "nodes", "dofs", "units")
 LENGTHS = {"m": 1.0, "mm": 1e-3}  # m
-MISTAKEN = (  # what mends a mistake: a factor of the coordinates, and the unit; and what to say
+UNIT_MISTAKES = (  # what mends a mistake: a factor of the coordinates, and the unit; and what to say
     (-1.0, None, "the coordinates run against the axis of the matrices; turn their sign along it"),
     (1.0, "m", 'these are matrices in kg, m, s, N, so it is units = "m"'),
     (1.0, "mm", 'these are matrices in t, mm, s, N; give units = "mm"'),
     (1e-3, "m", "the coordinates are in mm, the matrices in kg, m, s, N; divide the coordinates by 1000"),
     (1e3, "mm", 'the matrices are in t, mm, s, N; give the coordinates in mm, too, and units = "mm"'),
 )
-ALONG = "motion along the axis or about it, which a rotor here does not have"
-UNDAMPED = 1e-3  # of the first bending frequency: damping of a rigid motion below it is none
-PROPORTIONAL = 1e-3  # of alpha: by which C may differ from alpha M on the rigid modes
-TOLD = 5  # damping ratios
-MOST_LISTED = 200  # characters of nodes' names
+AXIAL_MOTION = "motion along the axis or about it, which a rotor here does not have"
+DAMPING_TOLERANCE = 1e-3  # of the first bending frequency: damping of a rigid motion below it is none
+PROPORTIONAL_TOLERANCE = 1e-3  # of alpha: by which C may differ from alpha M on the rigid modes
+MAX_LISTED_RATIOS = 5  # damping ratios
+MAX_LISTED_CHARACTERS = 200  # characters of nodes' names
 
 
 def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
@@ -173,7 +173,7 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     positions = body.positions
     about, called = "Imported from mass, stiffness and gyroscopic matrices.", ()
     if planes.rows.nodes != tuple(str(i + 1) for i in range(len(positions))):
-        listed = shorten(", ".join(planes.rows.nodes), MOST_LISTED, placeholder=" ...")
+        listed = shorten(", ".join(planes.rows.nodes), MAX_LISTED_CHARACTERS, placeholder=" ...")
         about += f"\nIts nodes from 1 on are those called {listed}"
         called = planes.rows.nodes
     shaft = Shaft(title, superelement=body, about=about, called=called)
@@ -196,7 +196,7 @@ def _body(given: Given, planes: Planes, M: np.ndarray) -> Superelement:
 def _mistaken(given: Given, M: np.ndarray) -> str:
     """Which mistake about axis or units, put right, makes these the matrices of a rotor; "" of none."""
     places = given.numbers("coordinates")
-    for factor, unit, says in MISTAKEN:
+    for factor, unit, says in UNIT_MISTAKES:
         changes = {"coordinates": factor * places} | ({} if unit is None else {"units": unit})
         other = Given(given.file, {**given.data, **changes})
         try:
@@ -283,7 +283,9 @@ class Planes:
     def _check_alone(self, name: str, matrix: np.ndarray, size: np.ndarray) -> None:
         """Bending has nothing to do with motion along the axis or about it."""
         lateral = np.concatenate((self.rows.x, self.rows.y))
-        self._check_empty(f"{name} couples bending to {ALONG}", matrix, size, lateral, self.rows.other)
+        self._check_empty(
+            f"{name} couples bending to {AXIAL_MOTION}", matrix, size, lateral, self.rows.other
+        )
 
     def _check_empty(
         self, what: str, matrix: np.ndarray, size: np.ndarray, lines: np.ndarray, columns: np.ndarray
@@ -311,10 +313,13 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
     """`shaft` with the damping ratio that C (2N, 2N) gives the first bending mode; `about` tells others."""
     free = basis(shaft, 0)
     modal = np.sum(free.shapes * (C @ free.shapes), axis=0)  # 1/s
-    if np.max(np.abs(modal[:RIGID])) > UNDAMPED * free.omega[RIGID]:
-        rigid = free.shapes[:, :RIGID]
-        alpha = modal[:RIGID].mean()
-        if np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID))) <= PROPORTIONAL * alpha:
+    if np.max(np.abs(modal[:RIGID_MODES])) > DAMPING_TOLERANCE * free.omega[RIGID_MODES]:
+        rigid = free.shapes[:, :RIGID_MODES]
+        alpha = modal[:RIGID_MODES].mean()
+        if (
+            np.max(np.abs(rigid.T @ C @ rigid - alpha * np.eye(RIGID_MODES)))
+            <= PROPORTIONAL_TOLERANCE * alpha
+        ):
             raise given.error(
                 f"C has a share of alpha M (alpha = {alpha:.4g} 1/s), which damps rigid motion, too; it "
                 "belongs to the surroundings; export C without it"
@@ -323,9 +328,9 @@ def _damped(given: Given, shaft: Shaft, C: np.ndarray) -> Shaft:
             "C damps the rotor as a whole, so it holds bearings; export the rotor without, they belong "
             "into the scene"
         )
-    ratios = modal[RIGID:] / (2.0 * free.omega[RIGID:])
+    ratios = modal[RIGID_MODES:] / (2.0 * free.omega[RIGID_MODES:])
     if not 0.0 <= ratios[0] < 1.0:
         raise given.error(f"C gives the first bending mode a damping ratio of {ratios[0]:g}, not of 0 to 1")
-    told = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:TOLD])
+    told = ", ".join(f"{100.0 * ratio:.3g} %" for ratio in ratios[:MAX_LISTED_RATIOS])
     about = f"{shaft.about}\nC gives the bending modes damping ratios of {told}; here all have the first."
     return replace(shaft, damping_ratio=float(ratios[0]), about=about)

@@ -23,15 +23,15 @@ import numpy as np
 
 from ...modelkit.model import ModelError
 from ..beams.shaft import Shaft
-from ..beams.superelement import STILL, Superelement, checked
-from ..modal.modes import RIGID
+from ..beams.superelement import RIGID_FREQUENCY_RATIO, Superelement, checked
+from ..modal.modes import RIGID_MODES
 from .tables import Given
 
 FIELDS = (
     *("positions", "frequencies", "deflections", "slopes"),
     *("modal_masses", "gyroscopic", "polar_inertias"),
 )
-ALIKE = 1e-6  # of 1, the largest deflection of modes that are scaled to it
+UNIT_SCALE_TOLERANCE = 1e-6  # of 1, the largest deflection of modes that are scaled to it
 
 
 def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
@@ -50,7 +50,7 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     scale = 1.0 / np.sqrt(_masses(given, shapes[0::2])[order])
     shapes *= scale
     omega = 2.0 * np.pi * frequencies[order]
-    omega[:RIGID] = 0.0
+    omega[:RIGID_MODES] = 0.0
     body = Superelement(
         positions - positions[0],
         np.eye(size[1]),
@@ -73,11 +73,11 @@ def of_modes(data: Mapping[str, Any], file: str, title: str) -> Shaft:
 
 def _check_rigid(given: Given, frequencies: np.ndarray) -> None:
     """Of ascending frequencies (Hz)."""
-    if len(frequencies) <= RIGID:
+    if len(frequencies) <= RIGID_MODES:
         raise given.error(f"{len(frequencies)} modes hold no bending mode; such a rotor is rigid")
-    lowest, first = frequencies[:RIGID], frequencies[RIGID]
-    if first <= 0.0 or np.max(np.abs(lowest)) > STILL * first:
-        listed = ", ".join(f"{f:.4g}" for f in frequencies[: RIGID + 1])
+    lowest, first = frequencies[:RIGID_MODES], frequencies[RIGID_MODES]
+    if first <= 0.0 or np.max(np.abs(lowest)) > RIGID_FREQUENCY_RATIO * first:
+        listed = ", ".join(f"{f:.4g}" for f in frequencies[: RIGID_MODES + 1])
         raise given.error(
             f"frequencies: the lowest are {listed} Hz; a free rotor has two rigid modes of 0 Hz in a "
             "plane, and no third; export the modes of the rotor without bearings"
@@ -88,7 +88,7 @@ def _masses(given: Given, deflections: np.ndarray) -> np.ndarray:
     """Modal masses (n,), kg, of modes with these deflections (N, n)."""
     n = deflections.shape[1]
     if not given.has("modal_masses"):
-        if np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=ALIKE):
+        if np.allclose(np.abs(deflections).max(axis=0), 1.0, rtol=UNIT_SCALE_TOLERANCE):
             raise given.error(
                 "every mode has the largest deflection 1, so they are not mass-normalised: "
                 "give modal_masses"

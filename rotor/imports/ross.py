@@ -17,17 +17,17 @@ import numpy as np
 
 from ..beams.body import PointMass
 from ..beams.element import Element
-from ..beams.shaft import MOST_STATIONS, Shaft, Station, Support
+from ..beams.shaft import MAX_STATIONS, Shaft, Station, Support
 from .tables import ImportedRotorError
 
-LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")
-TOLD = (  # attributes of elements that matter here
+ELEMENT_LISTS = ("shaft_elements", "disk_elements", "bearing_elements", "point_mass_elements")
+READ_ATTRIBUTES = (  # attributes of elements that matter here
     *("n", "L", "idl", "odl", "idr", "odr", "axial_force", "torque", "alpha", "beta", "n_link"),
     *("shear_effects", "rotary_inertia", "gyroscopic", "shear_method_calc"),
     *("m", "mx", "Id", "Ip", "frequency", "kxx", "kyy", "kxy", "kyx", "cxx", "cyy", "cxy", "cyx"),
 )
-LEAST_CROSS = 1e-9  # of the direct coefficient; cross-coupling below is none
-LETTERS = "ABCDEFGH"
+MIN_CROSS_COUPLING = 1e-9  # of the direct coefficient; cross-coupling below is none
+STATION_LETTERS = "ABCDEFGH"
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def from_ross(rotor: Any, speed: float | None = None) -> Shaft:
 
 
 def _elements(rotor: Any) -> Iterator[Any]:
-    for name in LISTS:
+    for name in ELEMENT_LISTS:
         listed = getattr(rotor, name, None)
         yield from listed if isinstance(listed, Iterable) else ()
 
@@ -110,7 +110,7 @@ def _name(element: Any) -> str:
 
 
 def _attributes(element: Any) -> dict[str, Any]:
-    values = {name: getattr(element, name, None) for name in TOLD}
+    values = {name: getattr(element, name, None) for name in READ_ATTRIBUTES}
     material = getattr(element, "material", None)
     if material is not None:
         values["material"] = {
@@ -247,8 +247,8 @@ def _grounded(bearings: list[Part], nodes: int) -> tuple[list[Part], list[str]]:
 
 
 def _stations(bearings: list[Part]) -> tuple[Station, ...]:
-    nodes = list(dict.fromkeys(p.node() for p in bearings))[:MOST_STATIONS]
-    return tuple(Station(letter, node + 1) for letter, node in zip(LETTERS, nodes, strict=False))
+    nodes = list(dict.fromkeys(p.node() for p in bearings))[:MAX_STATIONS]
+    return tuple(Station(letter, node + 1) for letter, node in zip(STATION_LETTERS, nodes, strict=False))
 
 
 def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support, ...], list[str]]:
@@ -272,7 +272,7 @@ def _supports(bearings: list[Part], speed: float | None) -> tuple[tuple[Support,
                     f"{part.name}: taken at {nearest:.6g} rad/s, the nearest speed it is given at"
                 )
         if any(
-            abs(_coefficient(part, name, speed)) > LEAST_CROSS * abs(k or 1.0)
+            abs(_coefficient(part, name, speed)) > MIN_CROSS_COUPLING * abs(k or 1.0)
             for name in ("kxy", "kyx", "cxy", "cyx")
         ):
             remarks.append(f"{part.name}: its cross-coupled coefficients are left out")

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from ...modelkit.units import UnitError, to_si
 from ..beams.body import PointMass
 from ..beams.element import Element, split
-from ..beams.shaft import MOST_NODES, Shaft, Station, Unbalance
+from ..beams.shaft import MAX_NODES, Shaft, Station, Unbalance
 from .tables import ImportedRotorError, named, separator
 
 UNITS = {  # column: SI unit; those of text and of pure numbers are not here
@@ -91,7 +91,7 @@ def of_sections(text: str, file: str, title: str) -> Shaft:
     for row in _rows(text, file):
         _add_things(row, built)
         if "length" in row.cells:
-            built.elements += _elements(row, MOST_NODES - 1 - len(built.elements))
+            built.elements += _elements(row, MAX_NODES - 1 - len(built.elements))
         elif "outer diameter" in row.cells:
             raise row.error("length", "is missing, of a section with an outer diameter")
     if not built.elements:
@@ -227,6 +227,6 @@ def _count(row: Row, section: Element, most: int) -> int:
         raise row.error("elements", "must be a whole number")
     if count > most:
         raise row.error(
-            "length", f"makes {count:g} elements; with those before a rotor has at most {MOST_NODES} nodes"
+            "length", f"makes {count:g} elements; with those before a rotor has at most {MAX_NODES} nodes"
         )
     return int(count)

@@ -14,12 +14,12 @@ import numpy as np
 
 from ...modelkit.ports import MODES
 from ...modelkit.variables import array, group, integer, real
-from ..beams.shaft import MOST_STATIONS, Shaft
-from .modes import MOST_SOLVED, RIGID, Basis, basis
-from .stresses import MOST_WATCHED, recovery, watched
+from ..beams.shaft import MAX_STATIONS, Shaft
+from .modes import MAX_SOLVED, RIGID_MODES, Basis, basis
+from .stresses import MAX_STRESS_NODES, recovery, watched
 
-MOST_MODES = MOST_SOLVED + MOST_STATIONS  # per plane, residual vectors included
-MOST_ENDS = 2 * MOST_WATCHED  # of elements
+MAX_MODES = MAX_SOLVED + MAX_STATIONS  # per plane, residual vectors included
+MAX_ENDS = 2 * MAX_STRESS_NODES  # of elements
 NEGLIGIBLE = 1e-9  # of a station's inv_m: a mode that has a node there
 
 
@@ -27,9 +27,9 @@ NEGLIGIBLE = 1e-9  # of a station's inv_m: a mode that has a node there
 class Gyroscopic:
     """The modal polar matrix G = Q diag(principal) Q^T, polar inertia per length (1)."""
 
-    polar: np.ndarray = array(MOST_MODES, MOST_MODES)  # G (n, n)
-    turn: np.ndarray = array(MOST_MODES, MOST_MODES)  # Q^T (n, n)
-    principal: np.ndarray = array(MOST_MODES)  # (n,)
+    polar: np.ndarray = array(MAX_MODES, MAX_MODES)  # G (n, n)
+    turn: np.ndarray = array(MAX_MODES, MAX_MODES)  # Q^T (n, n)
+    principal: np.ndarray = array(MAX_MODES)  # (n,)
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class ModalUnbalance:
     """Unbalance of each mode in the rotor's frame (n,), kg^0.5 m."""
 
     present: int = integer(0, "whether there is any unbalance")
-    x: np.ndarray = array(MOST_MODES)
-    y: np.ndarray = array(MOST_MODES)
+    x: np.ndarray = array(MAX_MODES)
+    y: np.ndarray = array(MAX_MODES)
 
 
 @dataclass(frozen=True)
@@ -46,12 +46,12 @@ class StressRows:
     """Stresses at the ends of the elements at watched nodes, R of them in use."""
 
     ends: int = integer(0, "of the elements, at watched nodes")
-    node: np.ndarray = array(MOST_ENDS)  # (R,), counted from 1
-    place: np.ndarray = array(MOST_ENDS)  # (R,), among the watched nodes, from 0
-    bending: np.ndarray = array(MOST_MODES, MOST_ENDS)  # (n, R), Pa per modal coordinate
-    shear: np.ndarray = array(MOST_MODES, MOST_ENDS)  # (n, R)
-    bending_load: np.ndarray = array(MOST_STATIONS, MOST_ENDS)  # (S, R), Pa/N, of the modes left out
-    shear_load: np.ndarray = array(MOST_STATIONS, MOST_ENDS)  # (S, R)
+    node: np.ndarray = array(MAX_ENDS)  # (R,), counted from 1
+    place: np.ndarray = array(MAX_ENDS)  # (R,), among the watched nodes, from 0
+    bending: np.ndarray = array(MAX_MODES, MAX_ENDS)  # (n, R), Pa per modal coordinate
+    shear: np.ndarray = array(MAX_MODES, MAX_ENDS)  # (n, R)
+    bending_load: np.ndarray = array(MAX_STATIONS, MAX_ENDS)  # (S, R), Pa/N, of the modes left out
+    shear_load: np.ndarray = array(MAX_STATIONS, MAX_ENDS)  # (S, R)
 
 
 @dataclass(frozen=True)
@@ -68,20 +68,20 @@ class Derived:
     inertia: float = real(0.0, "kg.m2", "polar")
     own_damping_ratio: float = real(0.0, "1", "of the elastic modes, as the rotor's file says")
     damping_ratio: float = real(0.0, "1", "of the elastic modes; settled")
-    position: np.ndarray = array(MOST_WATCHED)  # of the watched nodes (W,), m
-    stiffness: np.ndarray = array(MOST_MODES)  # omega^2 (n,), 1/s2
-    damping: np.ndarray = array(MOST_MODES)  # 2 zeta omega (n,), 1/s; settled
-    reach: np.ndarray = array(MOST_MODES)  # largest deflection (n,), 1/kg^0.5
-    weight: np.ndarray = array(MOST_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
-    sag: np.ndarray = array(MOST_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5; settled
-    shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the stations (S, n), 1/kg^0.5
-    sensor_shape: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # at the sensors
-    inv_m: np.ndarray = array(MOST_STATIONS)  # (S,), 1/kg
-    held: np.ndarray = array(MOST_STATIONS)  # (S,), kg, what of the mass a station holds at the start
-    static_fy: np.ndarray = array(MOST_STATIONS)  # (S,), N, with which it does; settled
-    slots: np.ndarray = array(MOST_STATIONS)  # modes told of at a station (S,)
-    slot: np.ndarray = array(MOST_STATIONS, MOST_MODES)  # of a mode there (S, n), from 0; -1: none
-    lumped: np.ndarray = array(MOST_STATIONS)  # whether the last slot holds more than one mode (S,)
+    position: np.ndarray = array(MAX_STRESS_NODES)  # of the watched nodes (W,), m
+    stiffness: np.ndarray = array(MAX_MODES)  # omega^2 (n,), 1/s2
+    damping: np.ndarray = array(MAX_MODES)  # 2 zeta omega (n,), 1/s; settled
+    reach: np.ndarray = array(MAX_MODES)  # largest deflection (n,), 1/kg^0.5
+    weight: np.ndarray = array(MAX_MODES)  # modal force of gravity (n,), per m/s2, upwards, kg^0.5
+    sag: np.ndarray = array(MAX_MODES)  # vertical modal coordinates at the start (n,), m kg^0.5; settled
+    shape: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # at the stations (S, n), 1/kg^0.5
+    sensor_shape: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # at the sensors
+    inv_m: np.ndarray = array(MAX_STATIONS)  # (S,), 1/kg
+    held: np.ndarray = array(MAX_STATIONS)  # (S,), kg, what of the mass a station holds at the start
+    static_fy: np.ndarray = array(MAX_STATIONS)  # (S,), N, with which it does; settled
+    slots: np.ndarray = array(MAX_STATIONS)  # modes told of at a station (S,)
+    slot: np.ndarray = array(MAX_STATIONS, MAX_MODES)  # of a mode there (S, n), from 0; -1: none
+    lumped: np.ndarray = array(MAX_STATIONS)  # whether the last slot holds more than one mode (S,)
     gyroscopic: Gyroscopic = group(Gyroscopic)
     unbalance: ModalUnbalance = group(ModalUnbalance)
     stress: StressRows = group(StressRows)
@@ -110,7 +110,7 @@ def tabulate(shaft: Shaft, modes: int, residual: int) -> Derived:
         inertia=shaft.polar_inertia,
         own_damping_ratio=shaft.damping_ratio,
         damping_ratio=0.0,
-        position=_room(shaft.positions()[np.array(watched(shaft), int) - 1], MOST_WATCHED),
+        position=_room(shaft.positions()[np.array(watched(shaft), int) - 1], MAX_STRESS_NODES),
         gyroscopic=_gyroscopic(kept),
         unbalance=_unbalance(shaft, kept),
         stress=_stress_rows(shaft, kept),
@@ -124,9 +124,9 @@ def _of_modes(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
     weight = np.zeros(len(kept.omega))
     weight[0] = np.sqrt(shaft.mass)  # the translation's; to gravity all others are orthogonal
     return {
-        "stiffness": _room(kept.omega**2, MOST_MODES),
-        "reach": _room(np.max(np.abs(kept.shapes[::2]), axis=0), MOST_MODES),
-        "weight": _room(weight, MOST_MODES),
+        "stiffness": _room(kept.omega**2, MAX_MODES),
+        "reach": _room(np.max(np.abs(kept.shapes[::2]), axis=0), MAX_MODES),
+        "weight": _room(weight, MAX_MODES),
     }
 
 
@@ -135,22 +135,22 @@ def _of_stations(shaft: Shaft, kept: Basis) -> dict[str, np.ndarray]:
     shape = kept.deflections([s.node for s in shaft.stations])
     slots, slot = _slots(shape)
     return {
-        "shape": _room(shape, MOST_STATIONS, MOST_MODES),
-        "sensor_shape": _room(kept.deflections([s.node for s in shaft.sensors]), MOST_STATIONS, MOST_MODES),
-        "inv_m": _room(np.sum(shape**2, axis=1), MOST_STATIONS),
-        "held": _room(held_masses(shaft), MOST_STATIONS),
-        "slots": _room(slots, MOST_STATIONS),
-        "slot": _room(slot, MOST_STATIONS, MOST_MODES),
-        "lumped": _room(np.sum(slot >= 0, axis=1) > slots, MOST_STATIONS),
+        "shape": _room(shape, MAX_STATIONS, MAX_MODES),
+        "sensor_shape": _room(kept.deflections([s.node for s in shaft.sensors]), MAX_STATIONS, MAX_MODES),
+        "inv_m": _room(np.sum(shape**2, axis=1), MAX_STATIONS),
+        "held": _room(held_masses(shaft), MAX_STATIONS),
+        "slots": _room(slots, MAX_STATIONS),
+        "slot": _room(slot, MAX_STATIONS, MAX_MODES),
+        "lumped": _room(np.sum(slot >= 0, axis=1) > slots, MAX_STATIONS),
     }
 
 
 def _gyroscopic(kept: Basis) -> Gyroscopic:
     principal, axes = np.linalg.eigh(kept.gyroscopic)
     return Gyroscopic(
-        polar=_room(kept.gyroscopic, MOST_MODES, MOST_MODES),
-        turn=_room(axes.T, MOST_MODES, MOST_MODES),
-        principal=_room(principal, MOST_MODES),
+        polar=_room(kept.gyroscopic, MAX_MODES, MAX_MODES),
+        turn=_room(axes.T, MAX_MODES, MAX_MODES),
+        principal=_room(principal, MAX_MODES),
     )
 
 
@@ -160,8 +160,8 @@ def _unbalance(shaft: Shaft, kept: Basis) -> ModalUnbalance:
         unbalance += u.moment * np.exp(1j * u.angle) * kept.shapes[2 * (u.node - 1)]
     return ModalUnbalance(
         present=int(np.any(unbalance != 0.0)),
-        x=_room(np.real(unbalance), MOST_MODES),
-        y=_room(np.imag(unbalance), MOST_MODES),
+        x=_room(np.real(unbalance), MAX_MODES),
+        y=_room(np.imag(unbalance), MAX_MODES),
     )
 
 
@@ -171,18 +171,18 @@ def _stress_rows(shaft: Shaft, kept: Basis) -> StressRows:
     rows = [i for i, node in enumerate(stresses.node) if node in place]
     return StressRows(
         ends=len(rows),
-        node=_room(stresses.node[rows], MOST_ENDS),
-        place=_room(np.array([place[node] for node in stresses.node[rows]]), MOST_ENDS),
-        bending=_room(stresses.bending[rows].T, MOST_MODES, MOST_ENDS),
-        shear=_room(stresses.shear[rows].T, MOST_MODES, MOST_ENDS),
-        bending_load=_room(stresses.bending_load[rows].T, MOST_STATIONS, MOST_ENDS),
-        shear_load=_room(stresses.shear_load[rows].T, MOST_STATIONS, MOST_ENDS),
+        node=_room(stresses.node[rows], MAX_ENDS),
+        place=_room(np.array([place[node] for node in stresses.node[rows]]), MAX_ENDS),
+        bending=_room(stresses.bending[rows].T, MAX_MODES, MAX_ENDS),
+        shear=_room(stresses.shear[rows].T, MAX_MODES, MAX_ENDS),
+        bending_load=_room(stresses.bending_load[rows].T, MAX_STATIONS, MAX_ENDS),
+        shear_load=_room(stresses.shear_load[rows].T, MAX_STATIONS, MAX_ENDS),
     )
 
 
 def most_modes(shaft: Shaft) -> int:
-    """How many modes per plane can be kept: all, or `MOST_SOLVED`."""
-    return min(shaft.coordinates, MOST_SOLVED)
+    """How many modes per plane can be kept: all, or `MAX_SOLVED`."""
+    return min(shaft.coordinates, MAX_SOLVED)
 
 
 def held_masses(shaft: Shaft) -> np.ndarray:
@@ -208,7 +208,7 @@ def _slots(shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     gain = shape**2
     slot = np.full(shape.shape, -1.0)
     for row, mine in enumerate(gain):
-        told = [k for k in range(RIGID, len(mine)) if mine[k] > NEGLIGIBLE * np.sum(mine)]
+        told = [k for k in range(RIGID_MODES, len(mine)) if mine[k] > NEGLIGIBLE * np.sum(mine)]
         for number, k in enumerate(told):
             slot[row, k] = min(number, MODES - 1)
     return slot.max(axis=1, initial=-1.0) + 1.0, slot

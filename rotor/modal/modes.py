@@ -17,13 +17,15 @@ from scipy.sparse import linalg as splinalg
 from ...modelkit.model import ModelError
 from ..beams.body import Matrices
 from ..beams.element import Element, element_matrices
-from ..beams.shaft import TOO_UNLIKE, Shaft, assemble, solve, unit_forces
+from ..beams.shaft import TOO_UNLIKE_MESSAGE, Shaft, assemble, solve, unit_forces
 
-RIGID = 2  # rigid modes per plane
-MOST_SOLVED = 128  # modes per plane of a long list of nodes
-NOTHING = 1e-7  # a residual vector this small against its node's deflection is rounding error
-DROWNED = 1e-11  # squared frequency over the highest; below, rounding errors show in the third digit
-PARALLEL = 1e-10  # squared sine below which residual vectors count as one
+RIGID_MODES = 2  # rigid modes per plane
+MAX_SOLVED = 128  # modes per plane of a long list of nodes
+MIN_RESIDUAL = 1e-7  # a residual vector this small against its node's deflection is rounding error
+MIN_FREQUENCY_RATIO = (
+    1e-11  # squared frequency over the highest; below, rounding errors show in the third digit
+)
+PARALLEL_TOLERANCE = 1e-10  # squared sine below which residual vectors count as one
 
 
 @dataclass(frozen=True)
@@ -47,17 +49,17 @@ class Basis:
 def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
     """The lowest `modes` modes of one plane, the two rigid ones included, and residual vectors.
 
-    0: all, of which rotors with more than `MOST_SOLVED` have only so many here.
+    0: all, of which rotors with more than `MAX_SOLVED` have only so many here.
 
     `residual_at` are nodes (1-based) for whose forces the static flexibility shall be exact; what the
     modes leave nothing of, or what another node has brought already, is not added. Raises ModelError where
     there are not so many modes, or the elements are too unlike each other.
     """
-    most = min(shaft.coordinates, MOST_SOLVED)
-    if modes != 0 and not RIGID <= modes <= most:
+    most = min(shaft.coordinates, MAX_SOLVED)
+    if modes != 0 and not RIGID_MODES <= modes <= most:
         raise ModelError(
             f"modes = {modes}: the rotor {shaft.title} has {most} modes per plane to keep; "
-            f"take {RIGID} (rigid) to {most}, or 0 for all of them"
+            f"take {RIGID_MODES} (rigid) to {most}, or 0 for all of them"
         )
     matrices = assemble(shaft)
     shapes, omega = _free_modes(shaft, matrices, modes or most)
@@ -73,7 +75,7 @@ def basis(shaft: Shaft, modes: int, residual_at: Sequence[int] = ()) -> Basis:
 
 def fullest(shaft: Shaft, held_at: Sequence[int]) -> Basis:
     """All modes; of a rotor with more than are kept, also residual vectors at the nodes `held_at`."""
-    return basis(shaft, 0, held_at if shaft.coordinates > MOST_SOLVED else ())
+    return basis(shaft, 0, held_at if shaft.coordinates > MAX_SOLVED else ())
 
 
 def flexibility(shaft: Shaft, nodes: Sequence[int]) -> np.ndarray:
@@ -95,8 +97,8 @@ def _beyond(
     shapes: np.ndarray, omega: np.ndarray, deflection: np.ndarray, forces: np.ndarray
 ) -> np.ndarray:
     """What modes leave of an elastic `deflection` under `forces`; shapes in the same coordinates."""
-    elastic = shapes[:, RIGID:]
-    return deflection - elastic @ (elastic.T @ forces / omega[RIGID:, None] ** 2)
+    elastic = shapes[:, RIGID_MODES:]
+    return deflection - elastic @ (elastic.T @ forces / omega[RIGID_MODES:, None] ** 2)
 
 
 def _rigid_modes(shaft: Shaft, matrices: Matrices) -> np.ndarray:
@@ -119,15 +121,15 @@ def _relieved(shaft: Shaft, matrices: Matrices, nodes: Sequence[int]) -> np.ndar
 def _free_modes(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Shapes (n, count) and frequencies (count,), the rigid ones built, not solved for."""
     rigid = _rigid_modes(shaft, matrices)
-    if count == RIGID:
-        return rigid, np.zeros(RIGID)
+    if count == RIGID_MODES:
+        return rigid, np.zeros(RIGID_MODES)
     square, bending, highest = _lowest(shaft, matrices, count)
-    if square[RIGID] < DROWNED * highest:
-        raise ModelError(TOO_UNLIKE)
-    bending = bending[:, RIGID:count]
+    if square[RIGID_MODES] < MIN_FREQUENCY_RATIO * highest:
+        raise ModelError(TOO_UNLIKE_MESSAGE)
+    bending = bending[:, RIGID_MODES:count]
     bending = bending - rigid @ (rigid.T @ (matrices.mass @ bending))
     elastic, omega = _ritz(matrices, bending)
-    return np.hstack((rigid, elastic)), np.concatenate((np.zeros(RIGID), omega))
+    return np.hstack((rigid, elastic)), np.concatenate((np.zeros(RIGID_MODES), omega))
 
 
 def _lowest(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, np.ndarray, float]:
@@ -135,7 +137,7 @@ def _lowest(shaft: Shaft, matrices: Matrices, count: int) -> tuple[np.ndarray, n
 
     Of many elements the highest is that of the stiffest by itself, which bounds it from above.
     """
-    if shaft.coordinates <= MOST_SOLVED or not shaft.elements:
+    if shaft.coordinates <= MAX_SOLVED or not shaft.elements:
         square, vectors = linalg.eigh(matrices.stiffness, matrices.mass)
         return square, vectors, float(square[-1])
     K, M = (sparse.csc_array(matrix) for matrix in (matrices.stiffness, matrices.mass))
@@ -162,12 +164,12 @@ def _residual_vectors(
     vectors = vectors - shapes @ (shapes.T @ (matrices.mass @ vectors))
     size = np.sqrt(np.sum(vectors * (matrices.mass @ vectors), axis=0))
     full = np.sqrt(np.sum(deflection * (matrices.mass @ deflection), axis=0))
-    there = size > NOTHING * full
+    there = size > MIN_RESIDUAL * full
     if not there.any():
         return np.zeros((len(shapes), 0)), np.zeros(0)
     vectors = vectors[:, there] / size[there]
     gram, turns = np.linalg.eigh(vectors.T @ matrices.mass @ vectors)
-    return _ritz(matrices, vectors @ turns[:, gram > PARALLEL])
+    return _ritz(matrices, vectors @ turns[:, gram > PARALLEL_TOLERANCE])
 
 
 def _ritz(matrices: Matrices, vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

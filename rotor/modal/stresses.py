@@ -93,30 +93,30 @@ def shear_per_force(element: Element) -> float:
     return factor / element.area * element.core_EI / element.EI
 
 
-MOST_WATCHED = 64
-STEPS = 32  # of them at most where the section changes
+MAX_STRESS_NODES = 64
+MAX_SECTION_STEPS = 32  # of them at most where the section changes
 
 
 def watched(shaft: Shaft) -> tuple[int, ...]:
-    """Nodes, ascending from 1: all up to `MOST_WATCHED`; none of a rotor without elements.
+    """Nodes, ascending from 1: all up to `MAX_STRESS_NODES`; none of a rotor without elements.
 
     Of more: the ends, the stations, the greatest changes of section, and then, one by one, the node in
     the middle of the longest stretch without one.
     """
     if not shaft.elements:
         return ()
-    return tuple(range(1, shaft.nodes + 1)) if shaft.nodes <= MOST_WATCHED else _chosen(shaft)
+    return tuple(range(1, shaft.nodes + 1)) if shaft.nodes <= MAX_STRESS_NODES else _chosen(shaft)
 
 
 @lru_cache(maxsize=16)
 def _chosen(shaft: Shaft) -> tuple[int, ...]:
-    """`MOST_WATCHED` of more nodes."""
+    """`MAX_STRESS_NODES` of more nodes."""
     chosen = {1, shaft.nodes, *(s.node for s in shaft.stations)}
     changes = _changes(shaft)
     greatest = [node for node in sorted(changes, key=lambda n: -changes[n]) if changes[node] > 0.0]
-    chosen |= set(greatest[:STEPS])
+    chosen |= set(greatest[:MAX_SECTION_STEPS])
     z = shaft.positions()
-    while len(chosen) < MOST_WATCHED:
+    while len(chosen) < MAX_STRESS_NODES:
         chosen.add(_between(sorted(chosen), z))
     return tuple(sorted(chosen))
 

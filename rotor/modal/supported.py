@@ -24,8 +24,10 @@ from ...modelkit.model import ModelError
 from ..beams.shaft import Support
 from .modes import Basis
 
-DAMPED = 1e-6  # damping ratio (either sign) below which rounding may be all there is
-STILL = 1e-7  # of the largest root that swings: what swings less does not, and what is less is next to zero
+MIN_DAMPING_RATIO = 1e-6  # damping ratio (either sign) below which rounding may be all there is
+MIN_ROOT_RATIO = (
+    1e-7  # of the largest root that swings: what swings less does not, and what is less is next to zero
+)
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,9 @@ class Whirl:
 
     roots: np.ndarray  # (M,), complex, 1/s: damping and whirl speed, imaginary part positive
     sense: np.ndarray  # (M,), 1 circular whirl counter-clockwise, -1 circular clockwise, 0 in a plane
-    aperiodic: np.ndarray  # (A,), real parts of roots that do not swing, or swing less than `STILL`, 1/s
+    aperiodic: (
+        np.ndarray
+    )  # (A,), real parts of roots that do not swing, or swing less than `MIN_ROOT_RATIO`, 1/s
     free: int  # roots next to zero: of what nothing holds, which may drift
     vectors: np.ndarray  # (coordinates, M), complex, by the root of their masses, of unit length
 
@@ -135,7 +139,7 @@ class Whirl:
     @property
     def stable(self) -> bool:
         """Whether nothing grows, by more than what rounding makes of no damping at all."""
-        return not self.pushed_away and bool(np.all(self.damping_ratios > -DAMPED))
+        return not self.pushed_away and bool(np.all(self.damping_ratios > -MIN_DAMPING_RATIO))
 
     @property
     def pushed_away(self) -> bool:
@@ -236,9 +240,11 @@ class HeldRotor:
     def _sorted(self, roots: np.ndarray, vectors: np.ndarray) -> Whirl:
         """Of each conjugate pair one, by size; what a rotor that nothing holds leaves is no mode."""
         size = np.abs(roots)
-        fast = np.imag(roots) > STILL * np.max(size)
-        small = STILL * np.max(size[fast] if fast.any() else size)  # a short lag's root counts for no mode
-        least = np.maximum(small, STILL * size)
+        fast = np.imag(roots) > MIN_ROOT_RATIO * np.max(size)
+        small = MIN_ROOT_RATIO * np.max(
+            size[fast] if fast.any() else size
+        )  # a short lag's root counts for no mode
+        least = np.maximum(small, MIN_ROOT_RATIO * size)
         swinging = np.imag(roots) > least
         aperiodic = np.sort(np.real(roots[(np.abs(np.imag(roots)) <= least) & (size > small)]))
         free = int(np.count_nonzero(size <= small))

@@ -23,10 +23,12 @@ from ..beams.shaft import Shaft, Station, Support
 from .modes import Basis
 from .supported import HeldRotor, LinearBearing, Whirl
 
-HEAVY = 0.95  # damping ratio from which a mode hardly swings: such as a controller's lag
-UNLIKE = 1.0  # of a mode and the next speed's: 1 less their likeness, and how far apart their roots are
-TURNED = 0.1  # of a root's size that another sense of whirl is worth
-EXACT = 1e-12  # of a critical speed
+OVERDAMPED_RATIO = 0.95  # damping ratio from which a mode hardly swings: such as a controller's lag
+MAX_UNLIKENESS = (
+    1.0  # of a mode and the next speed's: 1 less their likeness, and how far apart their roots are
+)
+SENSE_PENALTY = 0.1  # of a root's size that another sense of whirl is worth
+SPEED_TOLERANCE = 1e-12  # of a critical speed
 
 
 def whirl_frequencies(
@@ -77,7 +79,7 @@ class Lines:
 def followed(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Lines:
     """The lowest `count` modes over `speeds` (rad/s, ascending, not negative), and where they are critical.
 
-    What hardly swings (a damping ratio of `HEAVY` or more) is left out.
+    What hardly swings (a damping ratio of `OVERDAMPED_RATIO` or more) is left out.
 
     A mode goes on as the one that looks most like it at the next speed. Lines are drawn from the highest
     speed down: at rest, where both planes may be alike, any mix of two whirls is a mode.
@@ -105,7 +107,7 @@ def followed(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int)
 
 def _lowest(found: Whirl, count: int) -> list[int]:
     """The lowest `count` modes but those that hardly swing."""
-    return np.flatnonzero(found.damping_ratios < HEAVY)[:count].tolist()
+    return np.flatnonzero(found.damping_ratios < OVERDAMPED_RATIO)[:count].tolist()
 
 
 def _likest(last: Whirl, modes: Sequence[int], found: Whirl) -> dict[int, int]:
@@ -115,7 +117,7 @@ def _likest(last: Whirl, modes: Sequence[int], found: Whirl) -> dict[int, int]:
     apart = np.abs(here - there) / np.maximum(np.abs(here), np.abs(there))
     cost = 1.0 - alike + apart
     rows, columns = optimize.linear_sum_assignment(cost)
-    return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < UNLIKE}
+    return {int(r): int(c) for r, c in zip(rows, columns, strict=True) if cost[r, c] < MAX_UNLIKENESS}
 
 
 def _crossings(
@@ -139,7 +141,7 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
         found = rotor.whirl(speed)
         share = (speed - speeds[0]) / (speeds[1] - speeds[0])
         guess = roots[0] + share * (roots[1] - roots[0])
-        off = np.abs(found.roots - guess) / abs(guess) + TURNED * np.abs(found.sense - sense)
+        off = np.abs(found.roots - guess) / abs(guess) + SENSE_PENALTY * np.abs(found.sense - sense)
         nearest = int(np.argmin(off if speed > 0.0 else np.abs(found.roots - guess)))
         return Crossing(speed, complex(found.roots[nearest]), float(found.sense[nearest]))
 
@@ -155,7 +157,7 @@ def _crossing(rotor: HeldRotor, speeds: np.ndarray, roots: np.ndarray, sense: fl
             complex(roots[0] + share * np.diff(roots)[0]),
             sense,
         )
-    found = optimize.root_scalar(ahead, bracket=(low, high), xtol=EXACT * high)
+    found = optimize.root_scalar(ahead, bracket=(low, high), xtol=SPEED_TOLERANCE * high)
     return at(float(found.root))
 
 
@@ -171,7 +173,7 @@ class Held:
     @property
     def swinging(self) -> np.ndarray:
         """Which of the modes at `speed` swing (their places): all but those that hardly do."""
-        return np.flatnonzero(self.whirl.damping_ratios < HEAVY)
+        return np.flatnonzero(self.whirl.damping_ratios < OVERDAMPED_RATIO)
 
 
 def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> Held:
@@ -180,10 +182,10 @@ def held(rotor: HeldRotor, speeds: Sequence[float] | np.ndarray, count: int) -> 
     return Held(tuple(rotor.bearings), first, rotor.whirl(first), followed(rotor, others, count))
 
 
-STIFFNESSES = 61  # of a map
-DECADES = (-4, 2)  # of a map, about the first bending mode's frequency squared times the mass
-LINES = 5  # of a map
-LEAST = 1e-12  # of the largest 1 / w^2: below, rounding of what has no critical speed
+MAP_STIFFNESSES = 61  # of a map
+MAP_DECADES = (-4, 2)  # of a map, about the first bending mode's frequency squared times the mass
+MAP_LINES = 5  # of a map
+MIN_INVERSE_SQUARE = 1e-12  # of the largest 1 / w^2: below, rounding of what has no critical speed
 
 
 @dataclass(frozen=True)
@@ -216,20 +218,22 @@ def critical_speeds(basis: Basis, supports: Sequence[Support]) -> np.ndarray:
 def critical_map(shaft: Shaft, basis: Basis, places: Sequence[Station]) -> CriticalMap:
     """The map of `shaft` held at `places`, two nodes or more; about its first bending mode."""
     scale = shaft.mass * basis.omega[2] ** 2
-    low, high = (round(np.log10(scale) + decade) for decade in DECADES)
-    stiffness = np.logspace(low, high, STIFFNESSES)
+    low, high = (round(np.log10(scale) + decade) for decade in MAP_DECADES)
+    stiffness = np.logspace(low, high, MAP_STIFFNESSES)
     held = [Support(node, 1.0) for node in dict.fromkeys(s.node for s in places)]
     speeds = [critical_speeds(basis, [replace(s, stiffness=k) for s in held]) for k in stiffness]
     nodes = {s.node for s in held}
     stiff = [s for s in shaft.supports if 0.0 not in (s.stiffness, s.stiffness_y)]
     marked = tuple(s for s in stiff if s.node in nodes)
     own = critical_speeds(basis, marked) if {s.node for s in marked} == nodes else np.zeros(0)
-    return CriticalMap(tuple(places), stiffness, np.array([_first(s) for s in speeds]), marked, own[:LINES])
+    return CriticalMap(
+        tuple(places), stiffness, np.array([_first(s) for s in speeds]), marked, own[:MAP_LINES]
+    )
 
 
 def _first(speeds: np.ndarray) -> np.ndarray:
-    """The lowest `LINES` of them (LINES,), nan where there are less."""
-    return np.pad(speeds[:LINES], (0, max(0, LINES - len(speeds))), constant_values=np.nan)
+    """The lowest `MAP_LINES` of them (LINES,), nan where there are less."""
+    return np.pad(speeds[:MAP_LINES], (0, max(0, MAP_LINES - len(speeds))), constant_values=np.nan)
 
 
 def _held(basis: Basis, supports: Sequence[Support], plane: str) -> np.ndarray:
@@ -245,4 +249,4 @@ def _held(basis: Basis, supports: Sequence[Support], plane: str) -> np.ndarray:
 def _speeds(K: np.ndarray, M: np.ndarray) -> np.ndarray:
     """Real w of K v = w^2 M v, ascending; K is positive definite, M need not be."""
     inverse = linalg.eigh(M, K, eigvals_only=True)  # 1 / w^2
-    return 1.0 / np.sqrt(inverse[inverse > LEAST * inverse[-1]][::-1])
+    return 1.0 / np.sqrt(inverse[inverse > MIN_INVERSE_SQUARE * inverse[-1]][::-1])

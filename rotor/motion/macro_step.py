@@ -18,7 +18,7 @@ from ...modelkit import numerics
 from ...modelkit.kernel import kernel
 from ...modelkit.ports import MODES
 from ...modelkit.variables import array, real
-from ..modal.data import MOST_MODES
+from ..modal.data import MAX_MODES
 from . import outputs
 from .equations import (
     ANGLE,
@@ -107,7 +107,9 @@ def _kick(q, m, j, k, load):
     return energy
 
 
-SLOW = 1e-4  # (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
+HERMITE_LIMIT = (
+    1e-4  # (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
+)
 
 
 @dataclass(frozen=True)
@@ -115,14 +117,14 @@ class Stride:
     """`oscillator.Step` of every mode, for one length."""
 
     length: float = real(0.0, "s", "of the stride")
-    zz: np.ndarray = array(MOST_MODES)
-    zv: np.ndarray = array(MOST_MODES)
-    vz: np.ndarray = array(MOST_MODES)
-    vv: np.ndarray = array(MOST_MODES)
-    zf: np.ndarray = array(MOST_MODES)
-    vf: np.ndarray = array(MOST_MODES)
-    zg: np.ndarray = array(MOST_MODES)
-    vg: np.ndarray = array(MOST_MODES)
+    zz: np.ndarray = array(MAX_MODES)
+    zv: np.ndarray = array(MAX_MODES)
+    vz: np.ndarray = array(MAX_MODES)
+    vv: np.ndarray = array(MAX_MODES)
+    zf: np.ndarray = array(MAX_MODES)
+    vf: np.ndarray = array(MAX_MODES)
+    zg: np.ndarray = array(MAX_MODES)
+    vg: np.ndarray = array(MAX_MODES)
 
 
 class LinearLoad(NamedTuple):
@@ -203,7 +205,7 @@ def _along(m, k, h, p, v, f, df):
     s, damping, stiffness = m.s.stride, m.d.damping[k], m.d.stiffness[k]
     p_end = s.zz[k] * p + s.zv[k] * v + s.zf[k] * f + s.zg[k] * df
     v_end = s.vz[k] * p + s.vv[k] * v + s.vf[k] * f + s.vg[k] * df
-    if stiffness * h * h < SLOW:
+    if stiffness * h * h < HERMITE_LIMIT:
         area = 0.5 * h * (p + p_end) + h * h / 12.0 * (v - v_end)
     else:
         area = (f * h - (v_end - v) - damping * (p_end - p)) / stiffness

@@ -13,7 +13,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from touchdown.modelkit.integrators import dopri
-from touchdown.modelkit.integrators.control import MOST_STEPS
+from touchdown.modelkit.integrators.control import MAX_STEPS
 from touchdown.modelkit.integrators.dopri import integrate, scratch
 from touchdown.modelkit.kernel import kernel
 from touchdown.modelkit.status import OK, STEP_UNDERFLOW, TOO_MANY_STEPS
@@ -346,5 +346,5 @@ def test_a_span_too_long_is_given_up():
     """No more than a set number of steps is spent on one span."""
     done = advance(run_swinging, np.array(SWING_START), 1e8, 0.1, 1e-6)
     assert done.status == TOO_MANY_STEPS
-    assert done.evaluations == 1 + 6 * MOST_STEPS
+    assert done.evaluations == 1 + 6 * MAX_STEPS
     assert 0.0 < done.diary[LAST_TIME] < 1e8

@@ -87,7 +87,7 @@ STEPPED = """
 import sys
 from touchdown.modelkit.kernel import front_end
 if sys.argv[1] == "plain":
-    front_end.NUMBA = ((0, 1), (0, 1))
+    front_end.NUMBA_RANGE = ((0, 1), (0, 1))
 from touchdown.modelkit.kernel.machine_code import KernelCache
 KernelCache.active = False
 from touchdown.bearings.surroundings.housing import MODEL

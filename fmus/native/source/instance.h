@@ -351,7 +351,7 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
     if (status == BAD_INPUT || status == BAD_LOAD) return explain(f, SAY_BAD_LOAD, time);
     if (status == RAISED) return explain(f, SAY_GAVE_UP, time);
     if (status == TOO_MANY_STEPS)
-        explain(f, SAY_TOO_MANY_STEPS, MOST_STEPS, step, time);
+        explain(f, SAY_TOO_MANY_STEPS, MAX_STEPS, step, time);
     else
         explain(f, SAY_UNRESOLVED, time, step);
     return DISCARD;
@@ -363,9 +363,9 @@ static Status step_by(Fmu *f, double time, double step)
     Life *life = &f->life;
     if (life->failed) return stop_again(f);
     if (life->phase != STEPPING) return FAIL(f, life->phase == ENDED ? SAY_ENDED : SAY_NOT_STARTED);
-    if (fabs(time - life->end) > LATE * step) return FAIL(f, SAY_APART, time, step, life->end);
+    if (fabs(time - life->end) > TIME_TOLERANCE * step) return FAIL(f, SAY_APART, time, step, life->end);
     if (!(step > 0.0) || !isfinite(step) || !isfinite(time)) return FAIL(f, SAY_NO_STEP, plain(time), plain(step));
-    if (time + step > life->stop + LATE * step) return FAIL(f, SAY_PAST_STOP, time, step, life->stop);
+    if (time + step > life->stop + TIME_TOLERANCE * step) return FAIL(f, SAY_PAST_STOP, time, step, life->stop);
     if (f->outdated && derive_again(f)) return fail(f);
     int64_t status = advance(f->words, f->scratch, time, step);
     if (status) return explain_step(f, status, time, step) == DISCARD ? DISCARD : fail(f);

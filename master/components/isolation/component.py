@@ -27,15 +27,15 @@ from ...common.watched import search_path, way_of
 from ...scene.run_spec import CALL_TIMEOUT
 from ..fmu import CALLS, ArchivedFmu
 from ..fmu3 import CALLS as CALLS_3
-from .shared_memory import CUT_OFF, SPIN, Ask, Board, GoneError, Side, Word, board_size
+from .shared_memory import CUT_OFF, SPIN_S, Ask, Board, GoneError, Side, Word, board_size
 
 HOST = "touchdown.master.components.isolation.host"
 _START = "import json, runpy, sys; sys.path[:] = json.loads(sys.argv.pop(1)); " + (
     f"runpy.run_module({HOST!r}, run_name='__main__', alter_sys=False)"
 )
-UP = 120.0  # s that it may take to come up
+START_TIMEOUT_S = 120.0  # s that it may take to come up
 CORES = cores()
-REAP = 5.0  # s that the end of a process which is gone may take
+REAP_TIMEOUT_S = 5.0  # s that the end of a process which is gone may take
 
 _running: weakref.WeakSet[Worker] = weakref.WeakSet()
 
@@ -69,7 +69,7 @@ class Worker:
         other.close()
         self._finish = weakref.finalize(self, _end, self._process, ours, self._connection)
         _running.add(self)
-        self._wait(UP)
+        self._wait(START_TIMEOUT_S)
 
     def ask(self, what: Ask, argument: int = 0, pushed: bool = False) -> None:
         """Ask for something, and wait until it is done.
@@ -94,12 +94,12 @@ class Worker:
     def _post(self, what: Ask, argument: int, pushed: bool) -> None:
         words = self.board.words
         words[Word.WHAT], words[Word.ARGUMENT], words[Word.PUSHED] = what, argument, pushed
-        words[Word.SPIN] = int(1e6 * SPIN) if len(_running) < CORES else 0
+        words[Word.SPIN] = int(1e6 * SPIN_S) if len(_running) < CORES else 0
         self._side.post()
 
     def _wait(self, limit: float) -> None:
         try:
-            self._side.wait(SPIN if CORES > 1 else 0.0, limit)
+            self._side.wait(SPIN_S if CORES > 1 else 0.0, limit)
         except TimeoutError:
             self.end()
             raise LateError(f"did not answer within {limit:g} s") from None
@@ -113,7 +113,7 @@ class Worker:
 
     def _how_it_ended(self) -> str:
         try:
-            status = self._process.wait(REAP)
+            status = self._process.wait(REAP_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             status = CUT_OFF
         finally:

@@ -21,7 +21,7 @@ from ..foreign import foreign_fmu
 from .shared_memory import CUT_OFF, Ask, Board, GoneError, Side, Word
 
 SETTING, STEPPING, READING = (CALLS.index(name) for name in ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal"))
-FOREVER = 1e9  # s
+NO_TIMEOUT_S = 1e9  # s
 
 
 class Host:
@@ -132,7 +132,7 @@ def serve(board: Board, side: Side, connection: Connection) -> None:
     side.post()
     while True:
         try:
-            side.wait(1e-6 * words[Word.SPIN], FOREVER)
+            side.wait(1e-6 * words[Word.SPIN], NO_TIMEOUT_S)
         except GoneError:
             return
         try:

@@ -21,25 +21,25 @@ from enum import IntEnum
 
 import numpy as np
 
-LINE = 8  # words of a cache line
+CACHE_LINE_WORDS = 8  # words of a cache line
 
 
 class Word(IntEnum):
     """Where the words are."""
 
     REQUEST = 0  # number of the last request
-    REPLY = LINE  # number of the last reply
-    MASTER_SLEEPS = 2 * LINE  # and must be woken
-    HOST_SLEEPS = 3 * LINE
-    WHAT = 4 * LINE  # is asked for: an `Ask`
+    REPLY = CACHE_LINE_WORDS  # number of the last reply
+    MASTER_SLEEPS = 2 * CACHE_LINE_WORDS  # and must be woken
+    HOST_SLEEPS = 3 * CACHE_LINE_WORDS
+    WHAT = 4 * CACHE_LINE_WORDS  # is asked for: an `Ask`
     ARGUMENT = WHAT + 1  # a number
     PUSHED = WHAT + 2  # whether the inputs are to be handed over before
     SPIN = WHAT + 3  # us that the host spins before it sleeps
     TIME = WHAT + 4  # s, of the step, a float
     STEP = WHAT + 5  # s, its length, a float
-    AT = 5 * LINE  # what the FMU is at: an index into `touchdown.master.components.fmu.CALLS`
+    AT = 5 * CACHE_LINE_WORDS  # what the FMU is at: an index into `touchdown.master.components.fmu.CALLS`
     FAILED = AT + 1  # whether the request did
-    VALUES = 6 * LINE  # behind the words
+    VALUES = 6 * CACHE_LINE_WORDS  # behind the words
 
 
 class Ask(IntEnum):
@@ -70,11 +70,14 @@ def board_size(variables: int) -> int:
     return 8 * (Word.VALUES + 3 * max(variables, 1))
 
 
-SPIN = 3e-4  # s to look before sleeping
-LONGEST = 512  # waits that are not begun by looking, after looking was in vain again and again
+SPIN_S = 3e-4  # s to look before sleeping
+MAX_SKIPPED_SPINS = 512  # waits that are not begun by looking, after looking was in vain again and again
 CUT_OFF = 120  # exit status of a process that finds its side of the crossing closed
-LOOK_AGAIN = 0.05  # s; a wake-up call that crossed with falling asleep is lost
-ORDERED = platform.machine() in ("x86_64", "AMD64")  # other processors may show numbers before values
+WAKE_INTERVAL_S = 0.05  # s; a wake-up call that crossed with falling asleep is lost
+STORES_ARE_ORDERED = platform.machine() in (
+    "x86_64",
+    "AMD64",
+)  # other processors may show numbers before values
 
 
 class GoneError(Exception):
@@ -108,7 +111,7 @@ class Side:
 
         Raises GoneError where the other side is gone, TimeoutError where it does not post.
         """
-        if not (ORDERED and spin > 0.0 and self._worth_looking() and self._look(spin)):
+        if not (STORES_ARE_ORDERED and spin > 0.0 and self._worth_looking() and self._look(spin)):
             self._doze(limit)
         self._awaited += 1
 
@@ -124,7 +127,7 @@ class Side:
         if time.perf_counter() < deadline:
             self._passed_over = 1
         else:  # the other side is slow, or the processors are busy: then looking only takes time from it
-            self._passed_over = self._pass_over = min(2 * self._passed_over, LONGEST)
+            self._passed_over = self._pass_over = min(2 * self._passed_over, MAX_SKIPPED_SPINS)
         return words[place] == awaited
 
     def _doze(self, limit: float) -> None:
@@ -135,10 +138,10 @@ class Side:
             left = deadline - time.monotonic()
             if left <= 0.0:
                 raise TimeoutError
-            called = self._poll.poll(1e3 * min(left, LOOK_AGAIN))
+            called = self._poll.poll(1e3 * min(left, WAKE_INTERVAL_S))
             if called and not self._called() and words[place] != awaited:
                 raise GoneError
-        words[self._sleep] = int(not ORDERED)
+        words[self._sleep] = int(not STORES_ARE_ORDERED)
 
     def _called(self) -> bytes:
         try:

@@ -9,7 +9,7 @@ from ..connections import Connection
 from ..steppers.stepper import Stepper
 from ..system import System
 
-MOST = 4  # single connections that are named
+MAX_NAMED = 4  # single connections that are named
 
 
 def exchange(stepper: Stepper) -> str:
@@ -30,8 +30,8 @@ def _parts(stepper: Stepper) -> Iterator[str]:
         yield f"{bond.title} by {way}"
     singles = [f"{c.source_name} to {c.target_name}" for c in single(system)]
     if singles:
-        more = f" and {len(singles) - MOST} more" if len(singles) > MOST else ""
-        yield f"{', '.join(singles[:MOST])}{more} held"
+        more = f" and {len(singles) - MAX_NAMED} more" if len(singles) > MAX_NAMED else ""
+        yield f"{', '.join(singles[:MAX_NAMED])}{more} held"
     if scheme.sequence == "jacobi":
         yield "all components at once"
     else:
@@ -49,7 +49,7 @@ def single(system: System) -> list[Connection]:
     ]
 
 
-def unjoined(stepper: Stepper) -> str:
+def uncoupled_warning(stepper: Stepper) -> str:
     """What is to be said where the scheme has nothing to act on; empty where it has."""
     system, name = stepper.system, stepper.run.scheme.name
     held = single(system)

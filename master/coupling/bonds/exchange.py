@@ -91,7 +91,7 @@ def _inverse(nodes: tuple[float, ...], values: int, slopes: int) -> np.ndarray:
     return np.linalg.inv(np.array(rows))
 
 
-FIRST = 2.0 / 3.0  # of a stretch, for which the first of two motions is held
+FIRST_SHARE = 2.0 / 3.0  # of a stretch, for which the first of two motions is held
 
 
 def motion_holds(p: Polynomial, begin: float, end: float) -> tuple[float, float]:
@@ -110,9 +110,9 @@ def force_holds(p: Polynomial, begin: float, end: float, split: float) -> tuple[
     return mean - (1.0 - split) * jump, mean + split * jump
 
 
-FORGOTTEN = 0.1  # share of what was learned that each observation takes the place of
-RIDGE = 1e-6  # of the sum of squares; where position and velocity do not tell apart, it decides
-NEAR = 0.1  # of the motion asked for; what was told apart by less does not reach so far
+FORGETTING_SHARE = 0.1  # share of what was learned that each observation takes the place of
+RIDGE_PARAMETER = 1e-6  # of the sum of squares; where position and velocity do not tell apart, it decides
+MAX_REACH = 0.1  # of the motion asked for; what was told apart by less does not reach so far
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class Feedthrough:
     def learned(self, apart: Sequence[float], force: float) -> Feedthrough:
         """With an observation: a motion that is `apart` from the held one would change it by `force`."""
         a, b = (*apart, 0.0)[:2]
-        kept = 1.0 - FORGOTTEN
+        kept = 1.0 - FORGETTING_SHARE
         return Feedthrough(
             kept * self.aa + a * a,
             kept * self.ab + a * b,
@@ -143,7 +143,7 @@ class Feedthrough:
         Motions that are hardly apart show rounding, and what else moves the force.
         """
         a, b = (*motion, 0.0)[:2]
-        ridge = RIDGE * (self.aa + self.bb) + NEAR**2 * (a * a + b * b)
+        ridge = RIDGE_PARAMETER * (self.aa + self.bb) + MAX_REACH**2 * (a * a + b * b)
         aa, bb = self.aa + ridge, self.bb + ridge
         whole = aa * bb - self.ab * self.ab
         if whole <= 0.0:
@@ -194,9 +194,9 @@ class Audit:
         )
 
 
-KEPT = 8  # points of the past
-NEAREST = 1.0 / 32.0  # of the step; points closer to each other would say little but rounding
-POSITION_ALONE, VELOCITY_ALONE = 5, 4  # points that the polynomial of a lonely one passes through
+HISTORY_POINTS = 8  # points of the past
+MIN_POINT_DISTANCE = 1.0 / 32.0  # of the step; points closer to each other would say little but rounding
+POSITION_POINTS, VELOCITY_POINTS = 5, 4  # points that the polynomial of a lonely one passes through
 
 
 class Moved(NamedTuple):
@@ -317,7 +317,7 @@ class Crossing:
         audit = past.audit.booked(self.bond.factor, work(self._taken, real), given)
         newest = self._samples[0]._replace(lacking=lacking)
         pushed = (newest, *self._samples[1:], *past.pushed)
-        self.past = Past(moved[:KEPT], pushed[:KEPT], behind, feedthrough, audit)
+        self.past = Past(moved[:HISTORY_POINTS], pushed[:HISTORY_POINTS], behind, feedthrough, audit)
 
     def _learned(self) -> Feedthrough:
         """With what this step has shown of it."""
@@ -360,7 +360,7 @@ class Crossing:
         if count == 0:
             return [Polynomial([value]) for value in points[0].values]
         both = len(self._motion) == 2
-        alone = VELOCITY_ALONE if self.bond.position is None else POSITION_ALONE
+        alone = VELOCITY_POINTS if self.bond.position is None else POSITION_POINTS
         points = self._apart(points, count if both else alone)
         nodes = [self._tau(p.time) for p in points]
         first = [p.values[0] for p in points]
@@ -387,7 +387,7 @@ class Crossing:
         for point in points:
             if len(kept) == count:
                 break
-            if not kept or kept[-1].time - point.time > NEAREST * self._step:
+            if not kept or kept[-1].time - point.time > MIN_POINT_DISTANCE * self._step:
                 kept.append(point)
         return kept
 

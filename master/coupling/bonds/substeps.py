@@ -11,7 +11,7 @@ import numpy as np
 from ...common.units import Scale
 from ..system import System
 from .bond import Way
-from .exchange import FIRST, Crossing, force_holds
+from .exchange import FIRST_SHARE, Crossing, force_holds
 
 
 class Part(NamedTuple):
@@ -39,7 +39,7 @@ def stretches(count: int, split: float, any_step: bool) -> tuple[Stretch, ...]:
 
 def _stretch(begin: float, end: float, split: float, any_step: bool) -> Stretch:
     length = end - begin
-    if split == FIRST and not any_step:
+    if split == FIRST_SHARE and not any_step:
         third = length / 3.0
         parts: tuple[Part, ...] = (
             Part(begin, third, 0, False),
@@ -106,7 +106,7 @@ class BondedTurn:
             return (Stretch(0.0, 1.0, 0.5, (Part(0.0, 1.0, 0, True),)),)
         moves = bool(self._gives) and not all(way.held for way in ways)
         count = max(way.stretches for way in ways) if self._gives else 1
-        return stretches(count, FIRST if moves else 0.5, self._component.any_step)
+        return stretches(count, FIRST_SHARE if moves else 0.5, self._component.any_step)
 
     def take(self, time: float, step: float) -> None:
         """The whole macro step."""

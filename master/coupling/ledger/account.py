@@ -10,7 +10,7 @@ from ..bonds.exchange import Crossing
 from ..connections import Attachment
 from ..loop.kernels.accounts import BOOK
 
-SETTLED = 4  # steps in which a bond has done work, before it is judged
+MIN_WORKING_STEPS = 4  # steps in which a bond has done work, before it is judged
 
 
 class Account:
@@ -86,5 +86,5 @@ class BondAccount(Account):
     def fetch(self) -> None:
         """Take over, for judgement, what was heard so far."""
         heard = self.crossing.past.audit
-        if heard.loaded >= SETTLED:
+        if heard.loaded >= MIN_WORKING_STEPS:
             self.record["total"], self.record["turned"] = heard.share * heard.turned, heard.turned

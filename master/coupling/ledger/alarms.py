@@ -26,7 +26,7 @@ from .account import Account, SeatAccount
 from .accounts import Ledger
 
 MICRO_STEP, TOLERANCE = "micro_step", "interface.tolerance"
-BEYOND = 3.0  # times what a scheme bears; there the macro step alone is to blame
+MACRO_STEP_BLAME = 3.0  # times what a scheme bears; there the macro step alone is to blame
 
 
 class Judge(Observer):
@@ -77,7 +77,7 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
         return _shorter_for_bond(run, share)
     bearing = account.attachment.bearing
     swing = _swing(run, system, bearing)
-    inside = finer(system, bearing) if swing < BEYOND * run.scheme.bears else ""
+    inside = finer(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.bears else ""
     if inside and swing <= run.scheme.bears:
         return (
             f"the macro step of {run.macro_step:g} s is short enough, the steps inside the bearing are "
@@ -118,7 +118,7 @@ def finer(system: System, bearing: str) -> str:
 
 KINETIC, SUPPLIED = "energy.kinetic", "supplied"
 STORED = (KINETIC, "energy.potential", "energy.dissipated")
-SAMPLING = 1e-5  # of the energy that bodies and contacts hold; steps let the sum swing by as much
+SAMPLING_NOISE = 1e-5  # of the energy that bodies and contacts hold; steps let the sum swing by as much
 ROUNDING = 1e-6  # of the kinetic energy, spin with it; what is less is not judged
 
 
@@ -165,7 +165,7 @@ class Balance(Observer):
         over = min(self._ledger.turnover, self._fastest) + self._ledger.fall + ROUNDING * self._fastest
         for one in self.sums:
             made = one.value(now.system) - one.start
-            judged = max(abs(made) - SAMPLING * one.held(now.system), 0.0)
+            judged = max(abs(made) - SAMPLING_NOISE * one.held(now.system), 0.0)
             share = judged / over if over > 0.0 else 0.0
             one.share = share if not share <= one.share else one.share  # no number is the largest
             if not share <= self._limit:

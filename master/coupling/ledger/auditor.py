@@ -135,7 +135,7 @@ class Spin:
             inputs[acceleration] = gain * (end - begin) / span
 
 
-BY_MASTER = "heard by the master from what crosses"
+ESTIMATED_BY_MASTER = "heard by the master from what crosses"
 REPORT = "contact.first_time"  # what a bearing that reports its contact has
 POWERED = ("shutdown_time", "active")  # what a magnetic bearing has
 CLEARANCE = "clearance"
@@ -319,7 +319,7 @@ def _variable(name: str) -> Variable:
         minimum=None,
         maximum=None,
         start=None,
-        description=f"{meaning}, {BY_MASTER}",
+        description=f"{meaning}, {ESTIMATED_BY_MASTER}",
     )
 
 
@@ -334,13 +334,16 @@ def heard(components: Mapping[str, Component], attachments: Sequence[Attachment]
     return listened
 
 
-def told_by_master(variable: Variable) -> bool:
+def estimated_by_master(variable: Variable) -> bool:
     """Whether it is what the master heard."""
-    return variable.description.endswith(BY_MASTER)
+    return variable.description.endswith(ESTIMATED_BY_MASTER)
 
 
-PARTS = 4  # of a step in which there is a load
-AS_TOLD = {ORDER: MODEL, LEAD: 0}  # it follows what is prescribed, and hands over what acted meanwhile
+LOADED_STEP_PARTS = 4  # of a step in which there is a load
+FOLLOWS_PRESCRIBED = {
+    ORDER: MODEL,
+    LEAD: 0,
+}  # it follows what is prescribed, and hands over what acted meanwhile
 
 
 def witnesses(stepper: Stepper, accounts: Iterable[SeatAccount]) -> list[Witness]:
@@ -401,7 +404,9 @@ class Witness:
         """Initialise it as the bearing was, without what it would carry the bodies by."""
         system, component = self._system, self._component
         settings = {key: value for (name, key), value in system.settings.items() if name == self._bearing}
-        component.set(settings | {key: value for key, value in AS_TOLD.items() if key in settings})
+        component.set(
+            settings | {key: value for key, value in FOLLOWS_PRESCRIBED.items() if key in settings}
+        )
         fed = [c for c in system.connections if c.target == self._bearing and not _carries(c)]
         component.set({c.input: _value(system, c) for c in fed if system.constant(c)})
         told = [c for c in fed if not system.constant(c)]
@@ -446,7 +451,7 @@ class Witness:
             spin.follow()
         loaded = self._forces.any() or any(axis.given() for axis in self._axes)
         try:
-            residuals = self._walk(step, PARTS if loaded else 1)
+            residuals = self._walk(step, LOADED_STEP_PARTS if loaded else 1)
         except TouchdownError as error:
             _leave(self._accounts, f"the second instance that listens failed: {error}")
             self._accounts = ()

@@ -19,7 +19,7 @@ import numpy as np
 from ...components.component import REACH, WHOLE, ByFunctions, Call, Component, InMemory, Kind, Variable
 from ..layout import Scaling
 from ..ledger import Judge, Ledger, Shortening
-from ..observer import BEAT, Moment, Observer
+from ..observer import LOOK_INTERVAL_STEPS, Moment, Observer
 from ..recorder import Recorder
 from ..steppers.gauss_seidel import GaussSeidel, Turn
 from ..steppers.jacobi import Jacobi
@@ -244,12 +244,14 @@ def _fetched(
     return columns
 
 
-AT_ONCE: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
+PARALLEL_SEQUENCES: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.step: True}
 """Sequences that compiled code knows: whether all components take their inputs before any steps."""
 CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
 NO_ROWS = np.zeros((0, 0))
-PATIENCE = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
-MOST = BEAT  # macro steps of a stretch: a contact may make the next ones a hundred times slower
+MAX_STRETCH_S = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
+MAX_STRETCH_STEPS = (
+    LOOK_INTERVAL_STEPS  # macro steps of a stretch: a contact may make the next ones a hundred times slower
+)
 
 
 class Stretches:
@@ -261,7 +263,7 @@ class Stretches:
         self._steps, self._judge, self._recorder = steps, judge, recorder
         self._observers = observers
         self._every = steps.coupling.run.record_every if recorder is not None else 0
-        self._at_once = AT_ONCE.get(type(steps.coupling).step)
+        self._at_once = PARALLEL_SEQUENCES.get(type(steps.coupling).step)
         seen = any(type(o).due is Observer.due and not o.at_beats_only for o in observers)
         self._able = self._at_once is not None and not seen and not steps.ledger.listens
         self._signals: np.ndarray | None = None  # those that the tables are of
@@ -281,10 +283,10 @@ class Stretches:
         began, done = clock.perf_counter(), now.done
         self._stretch(found, now)
         took = clock.perf_counter() - began
-        if took > 0.5 * PATIENCE:
+        if took > 0.5 * MAX_STRETCH_S:
             self._longest = max(1, self._longest // 2)
         elif now.done - done == self._longest:
-            self._longest = min(2 * self._longest, MOST)
+            self._longest = min(2 * self._longest, MAX_STRETCH_STEPS)
 
     def close(self) -> None:
         """Send the helpers away."""

@@ -6,8 +6,8 @@ will do in the next step its last load does not tell. So these steps, some per c
 
 In a whirl the journal is pressed hard against its ring all the time, and turns over in milliseconds what a
 drop turns over once. What the coupling makes of that grows with a power of the macro step, the order of the
-scheme, so halving it a few times takes it away. A landing turns over up to 5 m g c within `WINDOW`; beyond
-`WHIRL` it is none.
+scheme, so halving it a few times takes it away. A landing turns over up to 5 m g c within `WINDOW_S`;
+beyond `WHIRL_TURNOVER` it is none.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from ..observer import Moment, Observer
 from ..steppers.stepper import Stepper
 from .kernels.exchange import SEAT, met
 
-LONG_AGO = -1.0  # s
-MOST = 100_000  # parts of a macro step; seconds of work
+NO_CONTACT_TIME = -1.0  # s
+MAX_PARTS = 100_000  # parts of a macro step; seconds of work
 
 
 class Impacts:
@@ -44,7 +44,7 @@ class Impacts:
 
     def _seat(self, a: Attachment) -> tuple[int, int, float, float]:
         bodies = list(self._system.components)
-        return self._reach(a), bodies.index(a.body), LONG_AGO, LONG_AGO
+        return self._reach(a), bodies.index(a.body), NO_CONTACT_TIME, NO_CONTACT_TIME
 
     def _reach(self, a: Attachment) -> int:
         return self._system.position[a.reach]
@@ -68,18 +68,18 @@ class Impacts:
 
 def _parts(run: RunSpec) -> int:
     """Into how many a macro step is divided. Raises TouchdownError where they are too many."""
-    if run.macro_step > MOST * run.impact_step:
+    if run.macro_step > MAX_PARTS * run.impact_step:
         raise TouchdownError(
             f"run.impact_step = {run.impact_step:g} s divides a macro step of {run.macro_step:g} s into "
-            f"more than {MOST} parts; take a longer one, or 0 to have none divided"
+            f"more than {MAX_PARTS} parts; take a longer one, or 0 to have none divided"
         )
     return max(1, math.ceil(run.macro_step / run.impact_step - 1e-6))
 
 
-WINDOW = 5e-3  # s, over which is looked back
-WHIRL = 8.0  # m g c, turned over in a window
-OVER = 4.0  # m g c; where less is turned over the whirl has ended
-GOAL = 1e-4  # energy made in a window, over what was turned over
+WINDOW_S = 5e-3  # s, over which is looked back
+WHIRL_TURNOVER = 8.0  # m g c, turned over in a window
+WHIRL_END_TURNOVER = 4.0  # m g c; where less is turned over the whirl has ended
+TARGET_ENERGY_MADE = 1e-4  # energy made in a window, over what was turned over
 
 
 class Shortening(Observer):
@@ -101,15 +101,15 @@ class Shortening(Observer):
         if self._most == 0:
             return
         self._count(now)
-        if now.time - self._since >= WINDOW:
+        if now.time - self._since >= WINDOW_S:
             self._look_back(now.time)
 
     def due(self, now: Moment) -> int:
         """At the end of the window."""
         if self._most == 0:
             return now.steps
-        done = max(now.done + 1, int((self._since - self._start + WINDOW) / self._step) - 1)
-        while self._start + done * self._step - self._since < WINDOW:
+        done = max(now.done + 1, int((self._since - self._start + WINDOW_S) / self._step) - 1)
+        while self._start + done * self._step - self._since < WINDOW_S:
             done += 1
         return done
 
@@ -123,10 +123,10 @@ class Shortening(Observer):
         ledger = self.ledger
         turned, made = ledger.turned - self._turned, abs(ledger.made - self._made)
         self._since, self._turned, self._made = time, ledger.turned, ledger.made
-        if turned < OVER * ledger.fall:
+        if turned < WHIRL_END_TURNOVER * ledger.fall:
             self.halvings = 0
-        elif turned > WHIRL * ledger.fall and made > GOAL * turned:
-            wanted = math.ceil(math.log2(made / (GOAL * turned)) / self._order)
+        elif turned > WHIRL_TURNOVER * ledger.fall and made > TARGET_ENERGY_MADE * turned:
+            wanted = math.ceil(math.log2(made / (TARGET_ENERGY_MADE * turned)) / self._order)
             self.halvings = min(self.halvings + wanted, self._most)
 
     def times(self, now: Moment) -> dict[float, float]:

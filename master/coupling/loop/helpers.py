@@ -14,10 +14,12 @@ from ....modelkit.kernel.memory import WORD
 from ...common.pool import threads
 from .kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
 
-PATIENCE = 20_000  # looks in vain, some ms, after which a helper leaves
-FREE = 0.9  # share of a stretch that a helper has its processor, where nobody else wants that
-JUDGED = 5e-4  # s that a stretch takes, at least, to tell
-MOST_ALONE = 64  # stretches without helpers before they are asked again
+MAX_IDLE_LOOKS = 20_000  # looks in vain, some ms, after which a helper leaves
+MIN_PROCESSOR_SHARE = (
+    0.9  # share of a stretch that a helper has its processor, where nobody else wants that
+)
+MIN_JUDGED_S = 5e-4  # s that a stretch takes, at least, to tell
+MAX_STRETCHES_ALONE = 64  # stretches without helpers before they are asked again
 
 
 class Helpers:
@@ -56,9 +58,9 @@ class Helpers:
         if self._failure is not None:
             raise self._failure
         took, spent = clock.perf_counter() - self._began[0], self._spent() - self._began[1]
-        if self._beside and took > JUDGED:
-            kept = spent < FREE * took * len(self._threads)
-            self._rests = min(2 * self._rests or 1, MOST_ALONE) if kept else 0
+        if self._beside and took > MIN_JUDGED_S:
+            kept = spent < MIN_PROCESSOR_SHARE * took * len(self._threads)
+            self._rests = min(2 * self._rests or 1, MAX_STRETCHES_ALONE) if kept else 0
             self._alone = self._rests
             if kept:
                 self._board[OPEN // WORD] = 0
@@ -95,7 +97,7 @@ class Helpers:
 
     def _help(self) -> None:
         try:
-            help_out(self._board.ctypes.data, self._turns, PATIENCE)
+            help_out(self._board.ctypes.data, self._turns, MAX_IDLE_LOOKS)
         except BaseException as error:
             self._failure = error
 

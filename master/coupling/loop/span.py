@@ -17,7 +17,7 @@ from ...scene.scene import Scene
 from ..observer import Moment, Observer
 from ..steppers.stepper import Stepper
 
-FINENESS = 1e-3  # of a macro step, that times must tell apart
+TIME_RESOLUTION = 1e-3  # of a macro step, that times must tell apart
 
 
 class Values(Protocol):
@@ -72,7 +72,7 @@ def _refuse_lost(start: float, run: RunSpec, impacts: bool) -> None:
         (run.macro_step, "macro steps of", "take longer steps"),
         (parts, "parts of macro steps, of run.impact_step =", "take a longer one, or 0 to divide none"),
     ):
-        if math.ulp(start) > FINENESS * length:
+        if math.ulp(start) > TIME_RESOLUTION * length:
             raise TouchdownError(
                 f"run.start_time = {start:g} s is too late: beside it {what} {length:g} s are lost in "
                 f"rounding; start earlier, or {remedy}"

@@ -26,11 +26,11 @@ from ..bonds.exchange import Crossing, Past
 from ..bonds.substeps import BondedTurn, Loads
 from ..system import System
 from .gauss_seidel import GaussSeidel, Turn
-from .iterated import MOST, TINY, Iterated
+from .iterated import MAX_REPETITIONS, TINY, Iterated
 from .rates import parts_of
 from .stepper import Checkpoint, require_any_step
 
-RAMP = 10  # doublings of the first part of the first macro step until the whole of it is over
+RAMP_DOUBLINGS = 10  # doublings of the first part of the first macro step until the whole of it is over
 
 
 class Memory(NamedTuple):
@@ -76,8 +76,8 @@ class Bonded(GaussSeidel):
             self.sweep(time, step)
             return
         self.ramped = True
-        part, done = step / 2**RAMP, 0.0
-        for _ in range(RAMP + 1):
+        part, done = step / 2**RAMP_DOUBLINGS, 0.0
+        for _ in range(RAMP_DOUBLINGS + 1):
             self.sweep(time + done, part)
             done += part
             part = done
@@ -131,8 +131,8 @@ def _require_single_steps(system: System) -> None:
             )
 
 
-LEAST = 1e-9  # m; ends are moved by what they are off, and at least by so much
-AGAIN = MOST // 2  # repetitions after which K is found anew
+MIN_OFFSET = 1e-9  # m; ends are moved by what they are off, and at least by so much
+JACOBIAN_INTERVAL = MAX_REPETITIONS // 2  # repetitions after which K is found anew
 
 
 class IteratedBonds(Iterated):
@@ -183,11 +183,11 @@ class IteratedBonds(Iterated):
             return self._sweep(time, step, end / sizes) * sizes - end
 
         off = off_from(end)
-        for repetition in range(1, MOST):
+        for repetition in range(1, MAX_REPETITIONS):
             change = float(np.max(np.abs(off)))
             if change <= self.run.tolerance or not np.isfinite(change):
                 return change
-            if self._gains is None or repetition == AGAIN:
+            if self._gains is None or repetition == JACOBIAN_INTERVAL:
                 self._gains = _gains(off_from, end, off)
             moved = self._gains @ off
             end = end + moved
@@ -204,7 +204,7 @@ class IteratedBonds(Iterated):
 
 def _gains(off_from: Callable[[np.ndarray], np.ndarray], end: np.ndarray, off: np.ndarray) -> np.ndarray:
     """K at `end`, where the sweep is `off` (m)."""
-    size = max(float(np.max(np.abs(off))), LEAST)
+    size = max(float(np.max(np.abs(off))), MIN_OFFSET)
     turned = np.array([(off_from(end + size * unit) - off) / size for unit in np.eye(len(end))]).T
     if not np.isfinite(turned).all():  # the step will not converge, and be divided
         return np.eye(len(end))

@@ -19,8 +19,10 @@ from .bonded import Bonded
 from .gauss_seidel import GaussSeidel
 from .stepper import Checkpoint, Stepper, require_any_step, require_states
 
-DEEPEST = 12  # halvings of a macro step
-EASY = 1.0 / 32.0  # of the tolerance; below it twice the step will do (third order, with a margin)
+MAX_HALVINGS = 12  # halvings of a macro step
+DOUBLING_SHARE = (
+    1.0 / 32.0
+)  # of the tolerance; below it twice the step will do (third order, with a margin)
 
 
 class Halving(Stepper):
@@ -49,7 +51,7 @@ class Halving(Stepper):
             deepest, worst = max(deepest, level), max(worst, error)
         self._error = max(self._error, worst)
         self._deepest = max(self._deepest, deepest)
-        easy = deepest > 0 and worst < EASY * self.run.tolerance
+        easy = deepest > 0 and worst < DOUBLING_SHARE * self.run.tolerance
         self._level = deepest - 1 if easy else deepest
 
     def _advance(self, time: float, step: float, level: int) -> tuple[int, float]:
@@ -64,7 +66,7 @@ class Halving(Stepper):
             error = float(np.max(np.where(self._rates, step, 1.0) * apart, initial=0.0))
             if error <= self.run.tolerance:
                 return level, error
-            if level == DEEPEST:
+            if level == MAX_HALVINGS:
                 raise TouchdownError(
                     f"steps of {step:g} s and its half still differ by {error:.2g} m at t = {time:.9g} s; "
                     f"take a larger run.tolerance than {self.run.tolerance:g} m, or a smaller macro step"

@@ -22,8 +22,8 @@ from ...scene.run_spec import RunSpec
 from ..system import System
 from .stepper import Checkpoint, Stepper, require_states
 
-MOST = 16  # repetitions of a step
-DEEPEST = 8  # halvings of a macro step
+MAX_REPETITIONS = 16  # repetitions of a step
+MAX_HALVINGS = 8  # halvings of a macro step
 TINY = 1e-300
 
 
@@ -82,11 +82,11 @@ class Iterated(Stepper):
             change = self._converge(before, time, step)
             if change <= self.run.tolerance:
                 return
-            if level == DEEPEST:
+            if level == MAX_HALVINGS:
                 raise TouchdownError(
                     f"scheme iterated does not converge at t = {time:.9g} s, where a step of {step:g} s "
-                    f"repeated {MOST} times still moves the bodies by {change:.2g} m; take a smaller macro "
-                    "step, or a scheme in which bearings carry the bodies (interface)"
+                    f"repeated {MAX_REPETITIONS} times still moves the bodies by {change:.2g} m; take a "
+                    "smaller macro step, or a scheme in which bearings carry the bodies (interface)"
                 )
             before.restore()
         self._advance(time, 0.5 * step, level + 1)
@@ -100,7 +100,7 @@ class Iterated(Stepper):
         self._steps += 1
         relaxation, last, change = 1.0, np.zeros(0), np.inf
         guess = self._guess
-        for repetition in range(MOST):
+        for repetition in range(MAX_REPETITIONS):
             if repetition:
                 before.restore()
             off = self._take(before.signals, guess, time, step) - guess

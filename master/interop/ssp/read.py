@@ -23,11 +23,11 @@ from ...common.units import Scale, Unit, scaled, then
 from ...components.component import Kind, Variable
 from ...components.description import interface
 from ...components.unpack import Format, unpack
-from ...coupling.simulation import MOST_STEPS
+from ...coupling.simulation import MAX_MACRO_STEPS
 from ...scene.scene import BondSpec, ComponentSpec, Scene, Wire
 from . import structure
 from .structure import Node, Part, Structure, Value
-from .xml import HEART
+from .xml import SSD_FILE
 
 ElementPath = tuple[str, ...]  # names of elements, from the root system on
 Place = tuple[ElementPath, str]  # an element, or a system, and one of its connectors
@@ -188,7 +188,7 @@ class _Ways:
             yield from self._given(node.inner[own], (*path, own), variable, value)
 
 
-PACKAGE = Format("an SSP package", HEART, "`touchdown ssp` makes one of a scene")
+PACKAGE = Format("an SSP package", SSD_FILE, "`touchdown ssp` makes one of a scene")
 
 
 RUN_KEYS = (
@@ -271,10 +271,10 @@ def _every(package: Package, name: str) -> int:
     """How many of the system's macro steps the component `name` takes in one. Raises TouchdownError."""
     step, macro_step = package.flat.parts[name].step, package.said.macro_step
     ratio = step / macro_step if step and macro_step else 1.0
-    if not ratio < MOST_STEPS:
+    if not ratio < MAX_MACRO_STEPS:
         raise TouchdownError(
             f"component {name} asks for steps of {step:g} s, {ratio:g} of the package's macro steps; "
-            f"less than {MOST_STEPS:g} are possible"
+            f"less than {MAX_MACRO_STEPS:g} are possible"
         )
     return max(1, round(ratio))
 

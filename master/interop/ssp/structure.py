@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 from ...common.errors import TouchdownError, one_of
 from ...common.units import Scale, Unit
 from . import xml
-from .xml import HEART, INTEGERS, MASTER_ANNOTATION, REALS, SCENE_ANNOTATION, STEP_ANNOTATION
+from .xml import INTEGERS, MASTER_ANNOTATION, REALS, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
 SET_TYPE, MAPPING_TYPE = "application/x-ssp-parameter-set", "application/x-ssp-parameter-mapping"
 BOOLEANS = {"true": 1.0, "1": 1.0, "false": 0.0, "0": 0.0}
@@ -183,7 +183,7 @@ class Structure:
 
 def read_structure(folder: Path, where: str) -> Structure:
     """The structure of an unpacked package. Raises TouchdownError for what cannot be run."""
-    root = xml.read_xml(folder / HEART, f"{where}: {HEART}", "ssd:SystemStructureDescription")
+    root = xml.read_xml(folder / SSD_FILE, f"{where}: {SSD_FILE}", "ssd:SystemStructureDescription")
     version = root.get("version", "")
     if not version.startswith(("1.", "2.")):
         raise TouchdownError(f"{where} is SSP {version or 'of no version'}; SSP 1.0 or 2.0 is needed")

@@ -39,8 +39,8 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.run_spec import END, RunSpec
 from ...scene.scene import Scene, amended
-from ..container import AS_IN_SCENE, Making, changes, fixed, packed_fmus, start_values
-from .xml import HEART, MASTER_ANNOTATION, NAMESPACES, RESOURCES, SCENE_ANNOTATION, STEP_ANNOTATION
+from ..container import SCENE_SETTINGS, Making, changes, fixed, packed_fmus, start_values
+from .xml import MASTER_ANNOTATION, NAMESPACES, RESOURCES, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
 OMS_DEFAULT = "oms_ma_default"  # the master that OMSimulator gives components that name none
 OMS_TOLERANCE = "0.0001"  # OMSimulator's own; a master with fixed steps makes no use of it
@@ -313,7 +313,7 @@ class Written:
 
 
 def write_package(
-    scene: Scene, path: Path, outputs_only: bool = False, making: Making = AS_IN_SCENE
+    scene: Scene, path: Path, outputs_only: bool = False, making: Making = SCENE_SETTINGS
 ) -> Written:
     """Write `scene` to `path` (.ssp); an older one is replaced. Raises TouchdownError where it cannot.
 
@@ -332,7 +332,7 @@ def write_package(
         fmus = dict(sorted(places.values()))
         written = Written(path, len(sources), len(connected), tuple(fixed(scene, system)))
     indent(root)
-    write_archive(path, {HEART: document(root), **fmus})
+    write_archive(path, {SSD_FILE: document(root), **fmus})
     return written
 
 

@@ -24,7 +24,7 @@ NAMESPACES = {
 }
 REALS = ("Real", "Float64", "Float32")  # elements of a connector's or a parameter's type, 1.0's and 2.0's
 INTEGERS = ("Integer", *(f"{sign}Int{bits}" for bits in (8, 16, 32, 64) for sign in ("", "U")))
-HEART = "SystemStructure.ssd"
+SSD_FILE = "SystemStructure.ssd"
 RESOURCES = "resources"
 STEP_ANNOTATION = "com.opensimulationplatform"  # holds the macro step for libcosim
 MASTER_ANNOTATION = "org.openmodelica"  # holds it for OMSimulator

@@ -29,7 +29,7 @@ from ..charts import inline
 from ..numbers import digits, quantity, share
 from ..subject import Origin, Subject, number, run_origin, setting_origin
 
-FOREIGN = "an FMU of another's; its own documentation says what is in it"
+FOREIGN_FMU = "an FMU of another's; its own documentation says what is in it"
 ALWAYS_LEFT_OUT = (
     "Axial motion and axial loads: all is in the radial planes of the bearings.",
     "Temperature: friction's heat is counted in the energy ledger, but nothing warms up or expands.",
@@ -71,7 +71,7 @@ def _about(subject: Subject, spec: ComponentSpec) -> str:
     path = subject.result.scene.folder / spec.fmu
     name = str(path) if spec.fmu.endswith(".toml") and path.is_file() else spec.fmu
     if name not in names() and not name.endswith(".toml"):
-        return FOREIGN
+        return FOREIGN_FMU
     try:
         return recipe(name).model.about
     except (LookupError, ModelError, OSError, TouchdownError):
@@ -87,7 +87,9 @@ def _left_out(subject: Subject) -> Iterator[str]:
     yield from ALWAYS_LEFT_OUT
 
 
-FINE = 1e-3  # of the turnover: what the coupling makes or loses says nothing against the figures
+NEGLIGIBLE_RESIDUAL = (
+    1e-3  # of the turnover: what the coupling makes or loses says nothing against the figures
+)
 MADE_INSIDE = 0.02  # of the turnover, inside a bearing; beyond it the run has warned
 NAMES = {
     "energy_turnover_J": ("Energy that crossed between the parts", "J"),
@@ -135,7 +137,7 @@ def _judged(subject: Subject) -> list[Block]:
     inside = number(subject.summary.get("energy_made_inside_of_turnover")) or 0.0
     if inside > MADE_INSIDE:
         said += f"; inside the worst bearing {share(inside)} of what was turned over was made or lost"
-    if max(abs(made), worst) <= FINE and inside <= MADE_INSIDE:
+    if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and inside <= MADE_INSIDE:
         return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
     return [
         Text(

@@ -18,7 +18,7 @@ from ..subject import COLOURS, Rated, Subject, rated
 RING, BALL = "ring.omega", "balls.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
 GPA = 1e-9
-RUN_UP = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
+RUN_UP_HEAD = ["Seat", "Rolls with the rotor after", "Speed at the end", "of the rotor's"]
 
 
 def run_up(subject: Subject) -> list[Block]:
@@ -39,7 +39,7 @@ def run_up(subject: Subject) -> list[Block]:
     rows = [_synchronous(subject, a) for a in turning]
     return [
         series(chart, "Speeds of the rotor, of the inner rings and of the balls round the bearing."),
-        Table("Run-up of the inner rings", RUN_UP, rows, 1),
+        Table("Run-up of the inner rings", RUN_UP_HEAD, rows, 1),
     ]
 
 
@@ -129,8 +129,8 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
     return found
 
 
-USUAL = 2.0  # s_0 that makers ask for under shocks
-MOST_DROPS = 1e6  # more are said to be more
+USUAL_STATIC_SAFETY = 2.0  # s_0 that makers ask for under shocks
+MAX_DROPS = 1e6  # more are said to be more
 
 
 def life(subject: Subject) -> list[Block]:
@@ -180,8 +180,8 @@ def _fatigue(found: dict[str, Rated]) -> Table:
             one.stated.dynamic,
             digits(one.turns, 3),
             share(one.damage),
-            f"more than {MOST_DROPS:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
-            if one.drops > MOST_DROPS
+            f"more than {MAX_DROPS:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
+            if one.drops > MAX_DROPS
             else digits(one.drops, 2),
         ]
         for seat, one in found.items()
@@ -200,12 +200,15 @@ def _words(found: dict[str, Rated]) -> list[Block]:
                 "limit, and dents them."
             )
         )
-    close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL]
+    close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL_STATIC_SAFETY]
     if close:
         said.append(
-            Text(f"At {listed(close)} the safety against dents is below {USUAL:g}, usual under shocks.")
+            Text(
+                f"At {listed(close)} the safety against dents is below {USUAL_STATIC_SAFETY:g}, "
+                "usual under shocks."
+            )
         )
-    if all(math.isinf(one.drops) or one.drops > MOST_DROPS for one in found.values()):
+    if all(math.isinf(one.drops) or one.drops > MAX_DROPS for one in found.values()):
         said.append(Text("Fatigue: this run takes less than a millionth of a life."))
     said.append(
         Text(

@@ -11,7 +11,7 @@ from ...coupling.connections import Attachment
 from ...results.figures.spectra import has_spectrum, spectrum
 from ...results.figures.stress import has_stress, stress
 from ...results.recording import NotRecordedError
-from ...results.spectra import BEGIN, LENGTH
+from ...results.spectra import WINDOW_S, WINDOW_START_S
 from ...results.stresses import stressed
 from ...results.summary import is_heard, relative_orbit
 from ..blocks import Absent, Block, Lacking, Picture, Table
@@ -22,7 +22,7 @@ from ..series import Line
 from ..subject import COLOURS, Subject, number
 
 FORCE = "contact.force"
-SEEN = 1.02  # times the largest recorded value: a larger peak is worth a word
+PEAK_RATIO = 1.02  # times the largest recorded value: a larger peak is worth a word
 
 
 def forces(subject: Subject) -> list[Block]:
@@ -54,7 +54,7 @@ def _between(subject: Subject, recorded: Sequence[Attachment]) -> str:
     missed = []
     for a in recorded:
         peak, seen = subject.figure("peak_contact_force_N", a), float(np.max(subject.values(a, FORCE)))
-        if peak is not None and peak > SEEN * seen:
+        if peak is not None and peak > PEAK_RATIO * seen:
             missed.append(
                 f"{quantity(peak, 'N', 3)} at {subject.name(a)}, of which it has {quantity(seen, 'N', 3)}"
             )
@@ -139,7 +139,8 @@ def spectra(subject: Subject) -> list[Block]:
     shown = [a for a in subject.need_seats() if has_spectrum(subject.run.recording, a)]
     if not shown:
         raise Absent(
-            f"a spectrum takes {LENGTH:.3g} s from {BEGIN:g} s after the shutdown on, of a bearing whose "
+            f"a spectrum takes {WINDOW_S:.3g} s from {WINDOW_START_S:g} s after the shutdown on, of a "
+            "bearing whose "
             "ring is recorded; this run has not that."
         )
     return [_spectrum(subject, a) for a in shown]

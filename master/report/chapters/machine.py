@@ -21,8 +21,8 @@ from ..subject import Subject
 
 SECTION = ("journal_radius", "clearance")
 BALLS = ("balls.count", "balls.diameter", "balls.pitch_diameter")
-STEEL = 7830.0  # kg/m3, of the disc that stands for a rigid rotor
-ARM = 0.012  # m, of its shaft beyond the last bearing
+STEEL_DENSITY = 7830.0  # kg/m3, of the disc that stands for a rigid rotor
+SHAFT_OVERHANG = 0.012  # m, of its shaft beyond the last bearing
 MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
 
 
@@ -81,7 +81,7 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
     ports = {a.body_port: 0.0 for a in system.attachments if a.body == body}
     supports = list(_supports(subject, body, ports))
     journal = next((s.inner for s in supports if s.kind == TOUCHDOWN and s.inner), 0.3 * diameter)
-    arm = ARM + max([0.0, *(abs(s.position) for s in _beside(supports, width))]) - 0.5 * width
+    arm = SHAFT_OVERHANG + max([0.0, *(abs(s.position) for s in _beside(supports, width))]) - 0.5 * width
     middle = arm + 0.5 * width
     pieces = [(arm, journal), (width, diameter), (arm, journal)]
     shaft = Shaft("disc", tuple(_steel(*piece) for piece in pieces))
@@ -96,12 +96,14 @@ def _rigid(subject: Subject, body: str) -> tuple[SideView, str]:
 def _disc(mass: float, inertia: float) -> tuple[float, float]:
     """Diameter and width (m) of a steel disc with a mass (kg) and a polar inertia (kg m2)."""
     radius = math.sqrt(2.0 * inertia / mass)
-    return 2.0 * radius, mass / (STEEL * math.pi * radius**2)
+    return 2.0 * radius, mass / (STEEL_DENSITY * math.pi * radius**2)
 
 
 def _steel(length: float, diameter: float) -> Element:
     """To be drawn (m)."""
-    return Element(length=length, outer_diameter=diameter, modulus=207e9, density=STEEL, poisson=0.3)
+    return Element(
+        length=length, outer_diameter=diameter, modulus=207e9, density=STEEL_DENSITY, poisson=0.3
+    )
 
 
 def _beside(supports: list[Support], width: float) -> list[Support]:

@@ -14,8 +14,8 @@ from ..numbers import RPM, digits, listed, quantity, share
 from ..subject import Rated, Subject, number, rated
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
-UNTOLD = "not told, for no clearance is stated or no orbit recorded"
-SPINS = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
+NO_WHIRL_VERDICT = "not told, for no clearance is stated or no orbit recorded"
+SPINNING_SHARE = 0.5  # of the speed at the shutdown; above it the end of the run is not the end of the drop
 
 
 def headline(subject: Subject) -> str:
@@ -42,7 +42,7 @@ def _verdict(subject: Subject) -> str:
         return f"The rotor whirls: {where}."
     told = {seat: words for seat, words in said.items() if isinstance(words, str)}
     if not told:
-        return f"The rotor lands; whether it whirls is {UNTOLD}."
+        return f"The rotor lands; whether it whirls is {NO_WHIRL_VERDICT}."
     seconds = quantity(subject.length, "s")
     return f"The rotor lands and does not whirl within {seconds}: {_by_words(told)}."
 
@@ -120,7 +120,7 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
         rows.append(
             [
                 f"{subject.name(a)} ({a.bearing})",
-                words if isinstance(words, str) else UNTOLD,
+                words if isinstance(words, str) else NO_WHIRL_VERDICT,
                 quantity(contact, "s"),
                 quantity(subject.figure("first_impact_contact_force_N", a), "N", 3),
                 quantity(subject.figure("peak_contact_force_N", a), "N", 3),
@@ -140,7 +140,7 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
 def _settled(subject: Subject, a: Attachment) -> str:
     """When and how a seat settles, in words."""
     tail = f"_{a.bearing}" if len(subject.seats) > 1 else ""
-    return str(subject.summary.get(f"settled{tail}") or UNTOLD)
+    return str(subject.summary.get(f"settled{tail}") or NO_WHIRL_VERDICT)
 
 
 def _remarks(subject: Subject) -> Iterator[tuple[str, bool]]:
@@ -182,7 +182,7 @@ def _still_turning(subject: Subject) -> Iterator[tuple[str, bool]]:
     if name not in subject.run.recording:
         return
     spin = abs(subject.run.recording[name])
-    if spin[-1] > SPINS * spin[0] > 0.0:
+    if spin[-1] > SPINNING_SHARE * spin[0] > 0.0:
         end = quantity(subject.length, "s")
         left = f"{digits(RPM * float(spin[-1]), 4)} of {digits(RPM * float(spin[0]), 4)} rpm"
         yield (

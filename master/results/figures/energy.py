@@ -15,9 +15,9 @@ from .style import BLACK, BLUE, COLOURS, SKY, TIME, WIDTH, YELLOW, sized, thinne
 PALETTE = (*COLOURS, BLACK, SKY, YELLOW)  # one per component
 MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pairs repeat late
 STYLES = {"kinetic": "-", "potential": "--", "dissipated": ":"}
-SMALL = 1e-3  # of the largest change; less is named, not drawn
-MOST_NAMES = 22  # in a column of the legend
-APART = 0.12  # of the panel's diagonal, between two marks of a curve
+MIN_DRAWN_CHANGE = 1e-3  # of the largest change; less is named, not drawn
+MAX_NAMES = 22  # in a column of the legend
+MARK_SPACING = 0.12  # of the panel's diagonal, between two marks of a curve
 
 
 def energy(figure: FigureBase, run: Finished) -> list[Axes]:
@@ -50,7 +50,7 @@ def energy(figure: FigureBase, run: Finished) -> list[Axes]:
 def _draw(axes: Axes, time: np.ndarray, changes: Mapping[tuple[str, str], np.ndarray]) -> None:
     """Curves of the `changes` (J), by component and kind, with their legend."""
     size = {key: float(np.max(np.abs(change))) for key, change in changes.items()}
-    least = SMALL * max(size.values(), default=0.0)
+    least = MIN_DRAWN_CHANGE * max(size.values(), default=0.0)
     names = list(dict.fromkeys(name for name, _ in changes))
     for i, (name, kind) in enumerate(changes):
         if size[name, kind] > least:
@@ -60,7 +60,10 @@ def _draw(axes: Axes, time: np.ndarray, changes: Mapping[tuple[str, str], np.nda
                 STYLES[kind],
                 color=PALETTE[number % len(PALETTE)],
                 marker=MARKS[number % len(MARKS)],
-                markevery=(APART * ((0.38 * i) % 1.0), APART),  # beside each other where curves coincide
+                markevery=(
+                    MARK_SPACING * ((0.38 * i) % 1.0),
+                    MARK_SPACING,
+                ),  # beside each other where curves coincide
                 markersize=4,
                 lw=WIDTH,
                 label=f"{name} {kind}",
@@ -75,6 +78,6 @@ def _name(axes: Axes) -> None:
     """The legend to the right of the panel, in the order in which the curves end there."""
     lines = sorted(axes.lines, key=lambda line: -float(np.asarray(line.get_ydata())[-1]))
     if lines:
-        columns = 1 + (len(lines) - 1) // MOST_NAMES
+        columns = 1 + (len(lines) - 1) // MAX_NAMES
         beside = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
         axes.legend(handles=lines, ncols=columns, **beside)

@@ -33,11 +33,11 @@ from .style import (
     zooms,
 )
 
-FIRST = 0.5  # s, the first zoom
-IMPACT = 5e-3  # s, the inset from the first touch on
+FIRST_ZOOM_S = 0.5  # s, the first zoom
+IMPACT_S = 5e-3  # s, the inset from the first touch on
 INSET = (0.5, 0.4, 0.48, 0.48)  # of the panel: left, bottom, width, height
 LABELS = 0.06  # of the panel: the inset's numbers
-FEWEST = 10  # recorded values that make an inset
+MIN_INSET_VALUES = 10  # recorded values that make an inset
 HARDEST = "hardest.ball"
 NORMAL, TANGENTIAL = ORANGE, GREEN
 
@@ -61,7 +61,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     chosen = _rows(recording, a)
     rows = [(r.label, c) for r in chosen if (c := present(recording, a.bearing, r.curves))]
     time = recording.time
-    spans = zooms(time, FIRST)
+    spans = zooms(time, FIRST_ZOOM_S)
     sized(figure, max(9.0, 1.0 + 5.5 * len(spans)), 1.0 + 2.5 * len(rows))
     grid = figure.subplots(len(rows), len(spans), squeeze=False, sharex="col")
     for row, (label, curves) in zip(grid, rows, strict=True):
@@ -76,7 +76,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
         if len(curves) > 1:
             row[-1].legend(loc="upper right")
     first = first_contact(run, a)
-    if first is not None and within(time, (first, first + IMPACT)).sum() > FEWEST:
+    if first is not None and within(time, (first, first + IMPACT_S)).sum() > MIN_INSET_VALUES:
         for row, (_, curves) in zip(grid, rows, strict=True):
             shown = [(c, recording[f"{a.bearing}.{c.variable}"]) for c in curves]
             _first_impact(row[0], time, shown, first)
@@ -97,11 +97,11 @@ def _first_impact(
     axes: Axes, time: np.ndarray, shown: list[tuple[Curve, np.ndarray]], first: float
 ) -> None:
     """The first impact in an inset; `axes` make room for it where the forces have not died down."""
-    part = within(time, (first - 0.1 * IMPACT, first + IMPACT))
+    part = within(time, (first - 0.1 * IMPACT_S, first + IMPACT_S))
     inset = axes.inset_axes(INSET)
     for c, values in shown:
         inset.plot(1e3 * (time[part] - first), values[part], color=c.colour, lw=c.width)
-    inset.set_xlim(-100.0 * IMPACT, 1e3 * IMPACT)
+    inset.set_xlim(-100.0 * IMPACT_S, 1e3 * IMPACT_S)
     inset.tick_params(labelsize="x-small")
     inset.set_title("first impact, ms from the first touch", fontsize="x-small", pad=2)
     for side in ("top", "right"):
@@ -147,7 +147,7 @@ def _label_columns(
 
 
 MM = 1e3
-SHOWN = 0.05  # of the pitch radius: about how large the largest displacement is drawn
+DRAWN_DISPLACEMENT = 0.05  # of the pitch radius: about how large the largest displacement is drawn
 NEEDED = ("balls.count", "balls.diameter", "balls.pitch_diameter", "ball[1].x", "ball[1].inner", "ring.x")
 
 
@@ -244,7 +244,7 @@ def _from_outer_ring(
 def _scale(system: Readable, a: Attachment, balls: list[Ball], moved: list[tuple[float, float]]) -> Scale:
     pitch, ball = (0.5 * system.value(f"{a.bearing}.balls.{d}") for d in ("pitch_diameter", "diameter"))
     off = [abs(math.hypot(b.x, b.y) - pitch) for b in balls] + [math.hypot(*at) for at in moved]
-    return Scale(pitch, ball, _round_down(SHOWN * pitch / max(*off, 1e-9)))
+    return Scale(pitch, ball, _round_down(DRAWN_DISPLACEMENT * pitch / max(*off, 1e-9)))
 
 
 def _round_down(value: float) -> float:

@@ -17,7 +17,7 @@ from ..summary import RPM, course_at, relative_orbit, seat_name
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, TIME, beginning, sized, thinned, within, zooms
 
 UM = 1e6
-ROTOR, ROLLING = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
+ROTOR, ROLLING_ON_ROTOR = "rotor", "rolling"  # turn with the rotor, and as what rolls on it without slip
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so tha
         "rotor, ring",
         (
             Turn("ring.omega", "inner ring", ORANGE, width=2.0),
-            Turn(ROLLING, "inner ring without slip", BLUE, line="--"),
+            Turn(ROLLING_ON_ROTOR, "inner ring without slip", BLUE, line="--"),
             Turn(ROTOR, "rotor", BLACK, line="--"),
         ),
     ),
@@ -56,7 +56,7 @@ GROUPS: tuple[tuple[str, tuple[Turn, ...]], ...] = (  # broad ones first, so tha
         ),
     ),
 )
-SPUN_UP = 1.5  # times the ring's first synchronism: here the zoom on the spin-up ends
+SPIN_UP_ZOOM = 1.5  # times the ring's first synchronism: here the zoom on the spin-up ends
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     sign.
     """
     time = run.recording.time
-    spun_up = SPUN_UP * _sync(run, a)
+    spun_up = SPIN_UP_ZOOM * _sync(run, a)
     spans = zooms(time, spun_up)
     zoomed = int(np.sum(time >= spun_up)) > 1
     groups = [(title, shown) for title, turns in GROUPS if (shown := _turning(run, a, turns))]
@@ -124,7 +124,7 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
     """Those of `turns` that were recorded, with their values (rpm)."""
     shown: list[tuple[Turn, np.ndarray]] = []
     for turn in turns:
-        of_rotor = turn.variable in (ROTOR, ROLLING)
+        of_rotor = turn.variable in (ROTOR, ROLLING_ON_ROTOR)
         name = a.motion("omega") if of_rotor else f"{a.bearing}.{turn.variable}"
         if name in run.recording:
             shown.append((turn, RPM * run.recording[name] / _radius(run, a, turn)))
@@ -134,7 +134,7 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
 def _radius(run: Finished, a: Attachment, turn: Turn) -> float:
     """By what a variable is divided to be the spin: the radius (m) of a speed in m/s, or a ratio."""
     value = run.system.value
-    if turn.variable == ROLLING:
+    if turn.variable == ROLLING_ON_ROTOR:
         journal = value(f"{a.bearing}.journal_radius")
         return (journal + value(f"{a.bearing}.clearance")) / journal
     return 0.5 * value(f"{a.bearing}.{turn.on}") if turn.on else 1.0

@@ -187,25 +187,27 @@ class Plot:
 
     def spectrum(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Amplitude of the inner ring's velocity over frequency, after the landing [m/s, Hz]."""
-        from ..spectra import BEGIN, LENGTH
+        from ..spectra import WINDOW_S, WINDOW_START_S
         from .spectra import has_spectrum, spectrum
 
         run, seat = self._run(), self._seat(bearing)
         self._require(f"{seat.bearing}.ring.x")
         if not has_spectrum(run.recording, seat):
-            raise TouchdownError(f"a spectrum needs a run.duration of {BEGIN + LENGTH:.3g} s or more")
+            raise TouchdownError(
+                f"a spectrum needs a run.duration of {WINDOW_START_S + WINDOW_S:.3g} s or more"
+            )
         with self._drawing(figure) as whole:
             return spectrum(whole, run, seat)
 
     def waterfall(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Spectra of the rotor's motion one behind the other, while it slows down."""
-        from .spectra import COARSEST, SHORTEST, has_waterfall, motion_waterfall
+        from .spectra import MIN_SAMPLING_HZ, MIN_TIME_S, has_waterfall, motion_waterfall
 
         run, seat = self._run(), self._seat(bearing)
         if not has_waterfall(run.recording, seat):
             raise TouchdownError(
-                f"a waterfall needs a run.duration of {SHORTEST:g} s or more, recorded at {COARSEST:g} Hz "
-                "or more; see run.record_every and run.record"
+                f"a waterfall needs a run.duration of {MIN_TIME_S:g} s or more, recorded at "
+                f"{MIN_SAMPLING_HZ:g} Hz or more; see run.record_every and run.record"
             )
         with self._drawing(figure) as whole:
             return motion_waterfall(whole, run, seat)

@@ -12,8 +12,8 @@ from ...coupling.connections import Attachment
 from ..ending import Finished
 from ..recording import Recording
 from ..spectra import (
-    LENGTH,
     POINTS,
+    WINDOW_S,
     interval,
     landed,
     on_grid,
@@ -25,7 +25,7 @@ from ..spectra import (
 from ..summary import dominant_frequency
 from .style import BLUE, GREEN, GREY, ORANGE, PURPLE, sized
 
-LOW, HIGH = 700.0, 4000.0  # Hz, the panels' ends
+LOW_BAND_HZ, HIGH_BAND_HZ = 700.0, 4000.0  # Hz, the panels' ends
 BLOCKS = 1000  # to which a panel's line is reduced
 DECADES = 5.0  # of amplitude shown at most
 HARMONICS = 20  # of the pendulum that are marked
@@ -47,19 +47,19 @@ def spectrum(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     spectra = _spectra(recording, a)
     pendulum = _pendulum(recording, a)
     panels = sized(figure, 13, 9.5).subplots(2, 1)
-    for axes, limit in zip(panels, (LOW, HIGH), strict=True):
+    for axes, limit in zip(panels, (LOW_BAND_HZ, HIGH_BAND_HZ), strict=True):
         end = min(limit, 0.5 / interval(time))
         _draw(axes, spectra, end)
-        if limit == LOW and pendulum is not None:
+        if limit == LOW_BAND_HZ and pendulum is not None:
             _mark_harmonics(axes, pendulum, end)
         axes.set_xlabel("frequency [Hz]")
         axes.set_ylabel("velocity amplitude [m/s]")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
-    rate, count = 1.0 / interval(time), samples(time, LENGTH)
+    rate, count = 1.0 / interval(time), samples(time, WINDOW_S)
     figure.suptitle(
         f"{run.scene.title}: horizontal velocity of the inner ring\n"
-        f"sampled at {rate / 1e3:g} kHz, windows of {LENGTH:.4g} s ({count} values), Hann, "
+        f"sampled at {rate / 1e3:g} kHz, windows of {WINDOW_S:.4g} s ({count} values), Hann, "
         f"padded with zeros to {max(POINTS, count)}"
     )
     return list(panels)
@@ -71,10 +71,10 @@ def _spectra(recording: Recording, a: Attachment) -> list[Spectrum]:
     omega = recording[a.motion("omega")]
     made: list[Spectrum] = []
     for start in windows(time):
-        part = (time >= start) & (time <= start + LENGTH)
+        part = (time >= start) & (time <= start + WINDOW_S)
         speed = RPM * float(np.mean(omega[part]))
-        label = f"{start:.2f} s to {start + LENGTH:.2f} s after the shutdown, {speed:.0f} rpm"
-        made.append((label, *velocity_spectrum(time, x, start, LENGTH, POINTS)))
+        label = f"{start:.2f} s to {start + WINDOW_S:.2f} s after the shutdown, {speed:.0f} rpm"
+        made.append((label, *velocity_spectrum(time, x, start, WINDOW_S, POINTS)))
     return made
 
 
@@ -118,14 +118,14 @@ def _mark_harmonics(axes: Axes, pendulum: float, end: float) -> None:
     axes.set_title(f"dotted: multiples of the pendulum's {pendulum:.1f} Hz", fontsize="medium")
 
 
-SHORTEST = 8.0  # s after the shutdown
-COARSEST = 10e3  # Hz
-SPECTRA = 8
+MIN_TIME_S = 8.0  # s after the shutdown
+MIN_SAMPLING_HZ = 10e3  # Hz
+MAX_SPECTRA = 8
 WATERFALL_POINTS = 32768  # at most
-BANDS = (100.0, 2500.0)  # Hz, the panels' ends
+WATERFALL_BANDS = (100.0, 2500.0)  # Hz, the panels' ends
 WATERFALL_BLOCKS = 800  # to which a panel's line is reduced
 WATERFALL_DECADES = 4.0  # of amplitude shown under the highest line of a panel
-STEP = 1.5  # decades from one spectrum to the next
+SPECTRUM_OFFSET = 1.5  # decades from one spectrum to the next
 
 
 def has_waterfall(recording: Recording, a: Attachment) -> bool:
@@ -133,8 +133,8 @@ def has_waterfall(recording: Recording, a: Attachment) -> bool:
     time = recording.time
     if (
         len(time) < 2
-        or time[-1] - max(0.0, time[0]) < SHORTEST * (1.0 - 1e-6)
-        or 1.0 / interval(time) < COARSEST * (1.0 - 1e-6)
+        or time[-1] - max(0.0, time[0]) < MIN_TIME_S * (1.0 - 1e-6)
+        or 1.0 / interval(time) < MIN_SAMPLING_HZ * (1.0 - 1e-6)
     ):
         return False
     return a.motion("vx") in recording and a.motion("omega") in recording
@@ -147,25 +147,26 @@ def motion_waterfall(figure: FigureBase, run: Finished, a: Attachment) -> list[A
     rows = on_grid(recording.time) & (recording.time >= -1e-9)
     time, omega = recording.time[rows], recording[a.motion("omega")][rows]
     rate = 1.0 / interval(time)
-    points = min(WATERFALL_POINTS, 2 ** int(math.log2(len(time) // SPECTRA)))
-    panels = sized(figure, 13, 11).subplots(2, len(BANDS), squeeze=False)
+    points = min(WATERFALL_POINTS, 2 ** int(math.log2(len(time) // MAX_SPECTRA)))
+    panels = sized(figure, 13, 11).subplots(2, len(WATERFALL_BANDS), squeeze=False)
     shown = (("a) velocity", "vx", 1e3, "mm/s", BLUE), ("b) displacement", "x", 1e6, "µm", ORANGE))
     for row, (title, variable, factor, unit, colour) in zip(panels, shown, strict=True):
         values = factor * recording[a.motion(variable)][rows]
-        frequency, centres, amplitude = waterfall(time, values, points, rate, SPECTRA)
+        frequency, centres, amplitude = waterfall(time, values, points, rate, MAX_SPECTRA)
         speeds = RPM * np.interp(centres, time, omega)
-        for axes, band in zip(row, BANDS, strict=True):
+        for axes, band in zip(row, WATERFALL_BANDS, strict=True):
             part = (frequency > 0.0) & (frequency <= min(band, 0.5 * rate))
             _draw_waterfall(axes, frequency[part], amplitude[:, part], unit, colour)
             axes.set_xlim(0.0, min(band, 0.5 * rate))
-            axes.set_yticks(STEP * np.arange(SPECTRA), [f"{speed:.0f}" for speed in speeds])
+            axes.set_yticks(SPECTRUM_OFFSET * np.arange(MAX_SPECTRA), [f"{speed:.0f}" for speed in speeds])
             axes.set_title(title)
             axes.set_xlabel("frequency [Hz]")
             axes.set_ylabel("rotor speed, middle of each part [rpm]")
     figure.suptitle(
         f"{run.scene.title}: horizontal motion of the rotor at {a.body_end.title}\n"
-        f"{SPECTRA} parts of {len(time) / rate / SPECTRA:.3g} s, from each {points} values at "
-        f"{rate / 1e3:g} kHz, Hann; each line stands on its own axis, {STEP:g} decades above the last"
+        f"{MAX_SPECTRA} parts of {len(time) / rate / MAX_SPECTRA:.3g} s, from each {points} values at "
+        f"{rate / 1e3:g} kHz, Hann; each line stands on its own axis, {SPECTRUM_OFFSET:g} decades above "
+        "the last"
     )
     return list(panels.flat)
 
@@ -180,12 +181,12 @@ def _draw_waterfall(
     bottom = max(float(np.max(amplitude)), 1e-300) * 10.0**-WATERFALL_DECADES
     for k, spectrum in enumerate(amplitude):
         f, v = _kept_peaks(frequency, spectrum)
-        height = STEP * k + np.log10(np.maximum(v, bottom) / bottom)
-        axes.fill_between(f, STEP * k, height, color="white", zorder=3 - 0.1 * k)
+        height = SPECTRUM_OFFSET * k + np.log10(np.maximum(v, bottom) / bottom)
+        axes.fill_between(f, SPECTRUM_OFFSET * k, height, color="white", zorder=3 - 0.1 * k)
         axes.plot(f, height, color=colour, lw=0.7, zorder=3.05 - 0.1 * k)
-        axes.axhline(STEP * k, color=colour, lw=0.3, alpha=0.5, zorder=3.04 - 0.1 * k)
-    axes.set_ylim(-0.1, STEP * (len(amplitude) - 1) + WATERFALL_DECADES + 0.2)
-    _scale(axes, bottom, STEP * (len(amplitude) - 1), unit)
+        axes.axhline(SPECTRUM_OFFSET * k, color=colour, lw=0.3, alpha=0.5, zorder=3.04 - 0.1 * k)
+    axes.set_ylim(-0.1, SPECTRUM_OFFSET * (len(amplitude) - 1) + WATERFALL_DECADES + 0.2)
+    _scale(axes, bottom, SPECTRUM_OFFSET * (len(amplitude) - 1), unit)
 
 
 def _scale(axes: Axes, bottom: float, height: float, unit: str) -> None:

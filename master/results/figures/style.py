@@ -51,7 +51,7 @@ ON_DARK: Mapping[str, str] = {
 
 MARGIN = 0.1  # inch around a figure's panels, for labels at their ends
 EDGE, FAINT = "#808080", "#dddddd"
-LOOK: dict[Any, Any] = {
+RC_PARAMETERS: dict[Any, Any] = {
     "figure.facecolor": WHITE,
     "savefig.facecolor": "auto",
     "axes.facecolor": WHITE,
@@ -82,7 +82,7 @@ LOOK: dict[Any, Any] = {
 @contextmanager
 def styled() -> Iterator[None]:
     """Figures and axes made meanwhile have the look of the project's pictures, not the user's own."""
-    with rc_context(LOOK):
+    with rc_context(RC_PARAMETERS):
         yield
 
 
@@ -120,8 +120,8 @@ def sized(figure: FigureBase, width: float, height: float) -> FigureBase:
 
 
 WIDTH = 0.8  # pt, of a line
-MOST_POINTS = 20_000  # drawn per line; peaks are kept
-LAST = 0.05  # s, the last zoom of a run
+MAX_POINTS = 20_000  # drawn per line; peaks are kept
+LAST_ZOOM_S = 0.05  # s, the last zoom of a run
 TIME = "time from the shutdown [s]"
 
 
@@ -148,11 +148,11 @@ def beginning(time: np.ndarray) -> float:
 def zooms(time: np.ndarray, first: float) -> list[tuple[float, float]]:
     """The run from its beginning to `first`, all of it, and its end (s); none of them twice."""
     start, end = beginning(time), float(time[-1])
-    spans = [(start, min(first, end)), (start, end), (max(start, end - LAST), end)]
+    spans = [(start, min(first, end)), (start, end), (max(start, end - LAST_ZOOM_S), end)]
     return list(dict.fromkeys(spans))
 
 
-def thinned(x: np.ndarray, y: np.ndarray, most: int = MOST_POINTS) -> tuple[np.ndarray, np.ndarray]:
+def thinned(x: np.ndarray, y: np.ndarray, most: int = MAX_POINTS) -> tuple[np.ndarray, np.ndarray]:
     """At most `most` points of a line (n,): each stretch's smallest and largest value."""
     if len(x) <= most:
         return x, y
@@ -169,9 +169,12 @@ def within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:
     return (time >= span[0]) & (time <= span[1])
 
 
-GREYISH = 0.02  # largest difference of a grey's red, green and blue
-PALE, DIM = 0.7, 0.3  # lightness from which a colour is a ground, and what it becomes
-BRIGHT = 0.62  # lightness that other colours have at least
+GREY_TOLERANCE = 0.02  # largest difference of a grey's red, green and blue
+GROUND_LIGHTNESS, DARK_GROUND_LIGHTNESS = (
+    0.7,
+    0.3,
+)  # lightness from which a colour is a ground, and what it becomes
+MIN_LIGHTNESS = 0.62  # lightness that other colours have at least
 
 Rgba = tuple[float, float, float, float]
 
@@ -194,12 +197,12 @@ def dark(colour: Any) -> Rgba:
     known = ON_DARK.get(to_hex(rgb))
     if known is not None:
         return to_rgba(known, alpha)
-    if max(rgb) - min(rgb) <= GREYISH:
+    if max(rgb) - min(rgb) <= GREY_TOLERANCE:
         ends = zip(to_rgba(LIGHT_INK)[:3], to_rgba(DARK)[:3], strict=True)
         red, green, blue = (ink + rgb[0] * (ground - ink) for ink, ground in ends)
         return red, green, blue, alpha
     hue, lightness, saturation = colorsys.rgb_to_hls(*rgb)
-    lightness = DIM if lightness > PALE else max(lightness, BRIGHT)
+    lightness = DARK_GROUND_LIGHTNESS if lightness > GROUND_LIGHTNESS else max(lightness, MIN_LIGHTNESS)
     return *colorsys.hls_to_rgb(hue, lightness, saturation), alpha
 
 

@@ -34,14 +34,20 @@ PRESSES = 1e-6  # of the largest force; below it a foreign bearing's force is ro
 FEWEST = 16  # rows to judge from
 FOLLOWED = TURN / 3.0  # between recorded values; more may as well have been the other way round
 NEAR = 0.9  # of the clearance; a flight beyond it clings to the bore, which gives and has play
-CLINGS = 0.6 * TURN  # most that such a flight turns: the journal touches along 0.4 of a turn or more
+MAX_CLINGING_TURN = (
+    0.6 * TURN
+)  # most that such a flight turns: the journal touches along 0.4 of a turn or more
 HOPS = TURN * 160.0 / 360.0  # most that a chord spans: a star's 150 degrees, and not the 180 of a bounce
 BENDS = 0.25  # of the clearance: gravity bends a hop off its chord by so much, inwards or outwards
-COARSE = TURN / 4.0  # between recorded values in contact; a whirl turns by less where it is recorded well
-ROUND = 0.05  # of the clearance: so closely an orbit follows the circle through it
-OUTER = 0.5  # of the clearance, from the orbit's middle: what lies within is a fall or a bounce
-WIDEST = 1.5  # of the clearance: the radius of a circle that a bore may give way to
-DEEPER = 0.5  # of a short chord's distance to the centre: a rebound that lands nearby may come so deep
+MAX_SAMPLE_TURN = (
+    TURN / 4.0
+)  # between recorded values in contact; a whirl turns by less where it is recorded well
+CIRCLE_TOLERANCE = 0.05  # of the clearance: so closely an orbit follows the circle through it
+MIN_ORBIT_RADIUS = 0.5  # of the clearance, from the orbit's middle: what lies within is a fall or a bounce
+MAX_CIRCLE_RADIUS = 1.5  # of the clearance: the radius of a circle that a bore may give way to
+MAX_CHORD_DEPTH = (
+    0.5  # of a short chord's distance to the centre: a rebound that lands nearby may come so deep
+)
 
 
 class Orbit(NamedTuple):
@@ -100,7 +106,7 @@ def too_coarse(orbit: Orbit, force: tuple[np.ndarray, np.ndarray] | None) -> boo
     rows, place = _contacts(orbit, force)
     successive = np.diff(rows) == 1
     step = np.abs(wrapped(np.diff(place)[successive]))
-    return len(step) >= FEWEST and bool(np.median(step) >= COARSE)
+    return len(step) >= FEWEST and bool(np.median(step) >= MAX_SAMPLE_TURN)
 
 
 def about_its_circle(orbit: Orbit) -> Orbit:
@@ -113,7 +119,7 @@ def about_its_circle(orbit: Orbit) -> Orbit:
     x, y = orbit.x[known] / orbit.clearance, orbit.y[known] / orbit.clearance
     if len(x) < FEWEST:
         return orbit
-    far = np.hypot(x - _middle(x), y - _middle(y)) >= OUTER
+    far = np.hypot(x - _middle(x), y - _middle(y)) >= MIN_ORBIT_RADIUS
     x, y = x[far], y[far]
     if len(x) < FEWEST:
         return orbit
@@ -123,7 +129,7 @@ def about_its_circle(orbit: Orbit) -> Orbit:
     radius = math.sqrt(max(rest + cx * cx + cy * cy, 0.0))
     off = np.abs(np.hypot(x - cx, y - cy) - radius)
     quarters = np.unique(np.floor(np.arctan2(y - cy, x - cx) / (0.25 * TURN)))
-    if np.median(off) > ROUND or len(quarters) < 4 or not TOUCHES <= radius <= WIDEST:
+    if np.median(off) > CIRCLE_TOLERANCE or len(quarters) < 4 or not TOUCHES <= radius <= MAX_CIRCLE_RADIUS:
         return orbit
     return orbit._replace(x=orbit.x - cx * orbit.clearance, y=orbit.y - cy * orbit.clearance)
 
@@ -166,14 +172,16 @@ def _is_hop(turn: np.ndarray, least: np.ndarray) -> np.ndarray:
     """Whether flights that turn so far (rad) and come so near to the centre belong to a row of contacts."""
     span = np.abs(turn)
     chord = np.cos(0.5 * span)
-    clings = (span <= CLINGS) & (least >= NEAR)
-    deepest = np.minimum(DEEPER * chord, chord - BENDS)
+    clings = (span <= MAX_CLINGING_TURN) & (least >= NEAR)
+    deepest = np.minimum(MAX_CHORD_DEPTH * chord, chord - BENDS)
     return clings | ((span <= HOPS) & (least >= deepest) & (least <= chord + BENDS))
 
 
-ENDS = TURN / 8.0  # left out of a stretch's either end to time it: there it may set out or swing out slowly
-SECTION = TURN / 100.0  # so little of a turn
-REST = 0.5  # of a pendulum's period that it takes for a section: it has come to rest in between
+END_TURN = (
+    TURN / 8.0
+)  # left out of a stretch's either end to time it: there it may set out or swing out slowly
+SECTION_TURN = TURN / 100.0  # so little of a turn
+REST_PERIODS = 0.5  # of a pendulum's period that it takes for a section: it has come to rest in between
 
 
 class Stretch(NamedTuple):
@@ -224,7 +232,7 @@ def stretch(angle: np.ndarray, begun: int, best: int) -> Stretch:
     part = angle[begun : best + 1]
     turned = np.abs(part - part[0])
     turn = float(part[-1] - part[0])
-    margin = min(ENDS, 0.25 * abs(turn))
+    margin = min(END_TURN, 0.25 * abs(turn))
     b = int(np.argmax(turned >= abs(turn) - margin))
     a = int(np.flatnonzero(turned[: b + 1] <= margin)[-1])
     return Stretch(begun, best, turn, (begun + a, begun + b), float(abs(part[b] - part[a])))
@@ -237,10 +245,10 @@ def without_rests(time: np.ndarray, angle: np.ndarray, whole: Stretch, pendulum:
     """
     turned = math.copysign(1.0, whole.turn) * (angle[whole.first : whole.last + 1] - angle[whole.first])
     furthest = np.maximum.accumulate(turned)
-    levels = np.arange(SECTION, furthest[-1], SECTION)
+    levels = np.arange(SECTION_TURN, furthest[-1], SECTION_TURN)
     after = np.searchsorted(furthest, levels)
     rests = np.flatnonzero(
-        np.diff(_reached(time[whole.first :], furthest, levels, after)) > REST * pendulum
+        np.diff(_reached(time[whole.first :], furthest, levels, after)) > REST_PERIODS * pendulum
     )
     begins = [whole.first, *(whole.first + after[rests + 1] - 1).tolist()]
     ends = [*(whole.first + after[rests]).tolist(), whole.last]
@@ -260,24 +268,26 @@ def period(time: np.ndarray, s: Stretch) -> float:
 
 def times(time: np.ndarray, s: Stretch) -> tuple[float, float]:
     """Start and end (s), the ends taken as fast as the rest: beyond them it may have rested anywhere."""
-    ends = ENDS / TURN * period(time, s)
+    ends = END_TURN / TURN * period(time, s)
     start = max(float(time[s.first]), float(time[s.timed[0]]) - ends)
     return start, min(float(time[s.last]), float(time[s.timed[1]]) + ends)
 
 
-SWING = TURN / 36.0  # from side to side; less is what is left of a pendulum, or play
-FURTHEST = 2.0 * TURN  # of a swing from side to side: a turn to either side
-LIKE = 0.5  # of a swing's turn: least of the one it turns back into; swings decay
-GROWS = 1.25  # times the one before it: most of a swing that turns back into none such
-LAST_PART = 1.0 / 8.0  # of a swing's turn, at an end at which it turns back, takes of its time
-LINGERS = 0.17  # at least: 0.23 in harmonic motion, 0.125 at constant speed, when something hit it back
-STAYS = 0.45  # at most; more where it came to rest in between
+MIN_SWING = TURN / 36.0  # from side to side; less is what is left of a pendulum, or play
+MAX_SWING = 2.0 * TURN  # of a swing from side to side: a turn to either side
+MIN_SWING_RATIO = 0.5  # of a swing's turn: least of the one it turns back into; swings decay
+MAX_SWING_RATIO = 1.25  # times the one before it: most of a swing that turns back into none such
+END_SHARE = 1.0 / 8.0  # of a swing's turn, at an end at which it turns back, takes of its time
+MIN_TIME_AT_ENDS = (
+    0.17  # at least: 0.23 in harmonic motion, 0.125 at constant speed, when something hit it back
+)
+MAX_TIME_AT_ENDS = 0.45  # at most; more where it came to rest in between
 
 
 def to_and_fro(march: March) -> bool:
     """Whether it advances either way while in contact: a loop on one side goes back in flight."""
     advanced = [
-        s.turn for s in stretches(march.angle, SWING) if march.touched(s.first, s.last) * s.turn > 0.0
+        s.turn for s in stretches(march.angle, MIN_SWING) if march.touched(s.first, s.last) * s.turn > 0.0
     ]
     return any(turn > 0.0 for turn in advanced) and any(turn < 0.0 for turn in advanced)
 
@@ -290,31 +300,31 @@ def is_swing(time: np.ndarray, angle: np.ndarray, ways: list[Stretch], i: int) -
     whole = ways[i]
     before = ways[i - 1] if i > 0 else None
     after = ways[i + 1] if i + 1 < len(ways) else None
-    if abs(whole.turn) >= FURTHEST or not _is_like(before, whole, after):
+    if abs(whole.turn) >= MAX_SWING or not _is_like(before, whole, after):
         return False
     shares = zip((before, after), _last_parts(time, angle, whole), strict=True)
-    return all(other is None or LINGERS <= share <= STAYS for other, share in shares)
+    return all(other is None or MIN_TIME_AT_ENDS <= share <= MAX_TIME_AT_ENDS for other, share in shares)
 
 
 def _is_like(before: Stretch | None, whole: Stretch, after: Stretch | None) -> bool:
     """Whether it turns back into a like swing; or came out of one, where the recording may end too soon."""
-    decays = after is not None and abs(after.turn) >= LIKE * abs(whole.turn)
-    return decays or (before is not None and abs(whole.turn) <= GROWS * abs(before.turn))
+    decays = after is not None and abs(after.turn) >= MIN_SWING_RATIO * abs(whole.turn)
+    return decays or (before is not None and abs(whole.turn) <= MAX_SWING_RATIO * abs(before.turn))
 
 
 def _last_parts(time: np.ndarray, angle: np.ndarray, whole: Stretch) -> tuple[float, float]:
     """Parts of a stretch's time that it spends in the first and the last part of its turn."""
     turned = np.abs(angle[whole.first : whole.last + 1] - angle[whole.first]) / abs(whole.turn)
     within = time[whole.first : whole.last + 1] - time[whole.first]
-    left = within[np.flatnonzero(turned <= LAST_PART)[-1]]
-    neared = within[np.argmax(turned >= 1.0 - LAST_PART)]
+    left = within[np.flatnonzero(turned <= END_SHARE)[-1]]
+    neared = within[np.argmax(turned >= 1.0 - END_SHARE)]
     return float(left / within[-1]), float(1.0 - neared / within[-1])
 
 
 GRAVITY = 9.81  # m/s2, for the scale of a pendulum's period
-BACK = TURN / 4.0  # friction and rattle turn a whirl back by less, a swing by more
-NEARLY = 0.75 * TURN  # a free swing's one side, half a turn at most, and half as much again
-CREEP = 0.25  # of the pendulum's frequency
+MAX_TURN_BACK = TURN / 4.0  # friction and rattle turn a whirl back by less, a swing by more
+MAX_FREE_SWING = 0.75 * TURN  # a free swing's one side, half a turn at most, and half as much again
+CREEP_SHARE = 0.25  # of the pendulum's frequency
 
 
 class Direction(StrEnum):
@@ -351,7 +361,7 @@ class Turning:
 
 def most_turns(march: March) -> float:
     """The most that a row of contacts goes one way (turns), swings and rests included; no sign."""
-    ways = stretches(march.angle, BACK)
+    ways = stretches(march.angle, MAX_TURN_BACK)
     return max((abs(way.turn) for way in ways), default=float(np.ptp(march.angle))) / TURN
 
 
@@ -359,12 +369,14 @@ def turnings(orbit: Orbit, march: March) -> Iterator[Turning]:
     """All of a row of contacts, in their order."""
     time = orbit.time[march.rows]
     pendulum = TURN * math.sqrt(orbit.clearance / GRAVITY)
-    ways = stretches(march.angle, BACK)
+    ways = stretches(march.angle, MAX_TURN_BACK)
     for i, whole in enumerate(ways):
-        if abs(whole.turn) < NEARLY or is_swing(time, march.angle, ways, i):
+        if abs(whole.turn) < MAX_FREE_SWING or is_swing(time, march.angle, ways, i):
             continue
-        parts = [p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= NEARLY]
+        parts = [
+            p for p in without_rests(time, march.angle, whole, pendulum) if abs(p.turn) >= MAX_FREE_SWING
+        ]
         for part in parts:
-            yield Turning(march, part, time, CREEP * period(time, part) > pendulum)
+            yield Turning(march, part, time, CREEP_SHARE * period(time, part) > pendulum)
         if not parts:
             yield Turning(march, whole, time, creeps=True)

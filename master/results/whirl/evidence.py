@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from ..ending import Readable
-from .contacts import SWING
+from .contacts import MIN_SWING
 from .verdict import TOO_COARSE, Verdict, short_of_one
 
 ANGLE = "unbalance_angle"  # of a rotor at the start
@@ -26,7 +26,7 @@ def unbalanced(system: Readable) -> list[str]:
 NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn is a hop or two more or less
 MARCHED = "_most_turns_one_way"  # behind the key of a verdict
 CONTACT = "first_contact_time_s"  # begins the key of a bearing's; no value: not yet
-SWUNG = math.degrees(SWING)  # of a pendulum, either way in contact
+SWUNG = math.degrees(MIN_SWING)  # of a pendulum, either way in contact
 COARSELY = (
     "from one recorded row in contact to the next the contact mostly moves by a quarter turn or more; "
     "a smaller run.record_every or run.macro_step tells"

@@ -47,8 +47,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .contacts import (
-    BACK,
     FOLLOWED,
+    MAX_TURN_BACK,
     PRESSES,
     TURN,
     Direction,
@@ -123,7 +123,7 @@ TURNS = "_revolutions"  # behind the key of a seat's verdict: turns of its decis
 TREND = "_trend"  # behind it: how a whirl goes on at the end
 AT_THE_END = ", still so at the end"
 TOO_COARSE = "cannot tell: sampled too coarsely"
-STILL, OVER = re.compile(r", at \S+ s still whirling.*"), re.compile(r", \S+ to \S+ s$")
+STILL_WORDS, OVER_WORDS = re.compile(r", at \S+ s still whirling.*"), re.compile(r", \S+ to \S+ s$")
 
 
 class Kind(StrEnum):
@@ -160,7 +160,7 @@ def verdict_class(words: str) -> str:
     >>> verdict_class("transient backward whirl, 0.134 to 0.526 s")
     'transient backward whirl'
     """
-    return OVER.sub("", STILL.sub(AT_THE_END, words)).partition(":")[0]
+    return OVER_WORDS.sub("", STILL_WORDS.sub(AT_THE_END, words)).partition(":")[0]
 
 
 def short_of_one(turns: float) -> str:
@@ -223,8 +223,10 @@ def _goes_on(words: str) -> bool:
     return words.endswith(AT_THE_END)
 
 
-LOOPS = 2.0 * TURN  # a bounce or two may chance to circle the centre once
-WIDE = 0.2  # of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
+MIN_WHIRL_TURN = 2.0 * TURN  # a bounce or two may chance to circle the centre once
+MIN_ORBIT_RADIUS = (
+    0.2  # of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
+)
 
 
 def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
@@ -258,17 +260,17 @@ def _about_its_mean(orbit: Orbit) -> Orbit:
 def _loops(orbit: Orbit) -> Iterator[tuple[int, int]]:
     """First and last rows of circling one way by LOOPS or more about the origin, WIDE."""
     angle = orbit.angle
-    wide = orbit.radius >= WIDE
+    wide = orbit.radius >= MIN_ORBIT_RADIUS
     joined = wide[:-1] & wide[1:] & (np.abs(wrapped(np.diff(angle))) < FOLLOWED)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], joined, [False]]).astype(int)))
     for first, last in edges.reshape(-1, 2).tolist():
         unwrapped = np.unwrap(angle[first : last + 1])
-        for s in stretches(unwrapped, BACK):
-            if abs(s.turn) >= LOOPS:
+        for s in stretches(unwrapped, MAX_TURN_BACK):
+            if abs(s.turn) >= MIN_WHIRL_TURN:
                 yield first + s.first, first + s.last
 
 
-WAIT = 0.5  # periods from a whirl's end to the recording's end: it still whirls
+STILL_WHIRLING_PERIODS = 0.5  # periods from a whirl's end to the recording's end: it still whirls
 
 
 class Verdict(StrEnum):
@@ -403,5 +405,5 @@ def _episode(orbit: Orbit, t: Turning, spin: float) -> Episode:
         revolutions=t.turns,
         frequency=1.0 / mean,
         radius=float(np.median(orbit.radius[first : last + 1])) * orbit.clearance,
-        goes_on=float(orbit.time[-1]) - end <= WAIT * mean,
+        goes_on=float(orbit.time[-1]) - end <= STILL_WHIRLING_PERIODS * mean,
     )

@@ -20,21 +20,21 @@ from ...coupling.simulation import Outcome, opened, refuse_endless, simulate
 from ...coupling.system import System
 from ...results.summary import seat_name, touchdown_seats
 from ...scene.scene import ComponentSpec, Scene
-from ..drop.first_impact import LEAST, Peaks, Stop, Trace, run_watched
+from ..drop.first_impact import MIN_PEAK, Peaks, Stop, Trace, run_watched
 from ..drop.measured import finest_inside
-from .modes import BASIS, RIGID
+from .modes import BASIS_PARAMETERS, RIGID_MODES
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
-OTHER = {
+ALTERNATIVE_MODELS = {
     "detailed_caged": ("simplified_caged", "simplified bearings"),
     "detailed_cageless": ("simplified_cageless", "simplified bearings"),
     "simplified_caged": ("detailed_caged", "detailed bearings"),
     "simplified_cageless": ("detailed_cageless", "detailed bearings"),
 }
-PLAIN = "bushing"
+SIMPLEST_BEARING = "bushing"
 COULOMB = 0  # of friction.kind
-STEPPING = ("interface.", "micro_step")
-LOOSER = 100.0  # times the tolerance inside a bearing
+STEPPING_PARAMETERS = ("interface.", "micro_step")
+TOLERANCE_FACTOR = 100.0  # times the tolerance inside a bearing
 OFFSETS = ("x0", "y0")  # of a housing out of line
 
 
@@ -74,7 +74,7 @@ def _coupling(scene: Scene, system: System) -> Iterator[Variant]:
 
 
 def _flexible(system: System) -> list[str]:
-    return [n for n, c in system.components.items() if all(v in c.variables for v in BASIS)]
+    return [n for n, c in system.components.items() if all(v in c.variables for v in BASIS_PARAMETERS)]
 
 
 def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
@@ -82,7 +82,7 @@ def _rotors(scene: Scene, system: System) -> Iterator[Variant]:
     if not rotors:
         return
     modes = {system.value(f"{name}.modes") for name in rotors}
-    yield Variant("rigid rotor", _all(scene, rotors, {"modes": RIGID, "residual": 0}))
+    yield Variant("rigid rotor", _all(scene, rotors, {"modes": RIGID_MODES, "residual": 0}))
     for count in MODES:
         if modes != {count}:
             yield Variant(f"{count} modes", _all(scene, rotors, {"modes": count}))
@@ -99,11 +99,15 @@ def _all(scene: Scene, names: Sequence[str], values: Mapping[str, object]) -> Sc
 
 
 def _bearings(scene: Scene, system: System, seats: Sequence[str]) -> Iterator[Variant]:
-    known = {name: OTHER[fmu] for name in seats if (fmu := scene.components[name].fmu) in OTHER}
+    known = {
+        name: ALTERNATIVE_MODELS[fmu]
+        for name in seats
+        if (fmu := scene.components[name].fmu) in ALTERNATIVE_MODELS
+    }
     if known:
         title = " and ".join(dict.fromkeys(title for _, title in known.values()))
         yield Variant(title, _swapped(scene, system, {name: fmu for name, (fmu, _) in known.items()}))
-        yield Variant("plain bushings", _swapped(scene, system, dict.fromkeys(known, PLAIN)))
+        yield Variant("plain bushings", _swapped(scene, system, dict.fromkeys(known, SIMPLEST_BEARING)))
 
 
 def _swapped(scene: Scene, system: System, fmus: Mapping[str, str]) -> Scene:
@@ -112,7 +116,9 @@ def _swapped(scene: Scene, system: System, fmus: Mapping[str, str]) -> Scene:
     for name, fmu in fmus.items():
         variables = system.components[name].variables.values()
         parameters = [v.name for v in variables if v.causality == "parameter" and v.settable]
-        values = {v: system.value(f"{name}.{v}") for v in parameters if not v.startswith(STEPPING)}
+        values = {
+            v: system.value(f"{name}.{v}") for v in parameters if not v.startswith(STEPPING_PARAMETERS)
+        }
         components[name] = ComponentSpec(fmu, preset=components[name].preset, inherited=values)
     return replace(scene, components=components)
 
@@ -151,8 +157,10 @@ def _inner_steps(scene: Scene, system: System, seats: Sequence[str]) -> Iterator
     variable = "interface.tolerance"
     rest = [n for n in seats if n not in fixed and variable in system.components[n].variables]
     if rest:
-        values = {f"{name}.{variable}": LOOSER * system.value(f"{name}.{variable}") for name in rest}
-        title = f"tolerance inside bearings {LOOSER:g} times as large"
+        values = {
+            f"{name}.{variable}": TOLERANCE_FACTOR * system.value(f"{name}.{variable}") for name in rest
+        }
+        title = f"tolerance inside bearings {TOLERANCE_FACTOR:g} times as large"
         yield Variant(title, scene.set(values))
     if fixed or rest:
         yield Variant("fine adaptive steps inside bearings", scene.set(finest_inside(system)))
@@ -184,9 +192,9 @@ def tied(scene: Scene) -> set[str]:
     return {end.partition(".")[0] for pair in pairs for end in pair}
 
 
-LONGEST = 20e-3  # s after the first contact
-CLEAR = 5.0  # %: what costs less may be left out
-FASTER = 0.95  # of the time: what is left out for less is no gain
+MAX_SPAN = 20e-3  # s after the first contact
+MAX_COST_PERCENT = 5.0  # %: what costs less may be left out
+MAX_TIME_RATIO = 0.95  # of the time: what is left out for less is no gain
 
 
 @dataclass(frozen=True)
@@ -252,7 +260,9 @@ class Comparison:
     def dispensable(self) -> list[Row]:
         """What makes the scene faster for a price below CLEAR, the fastest first."""
         good = [
-            r for r in self.rows if r.price and r.price.percent < CLEAR and r.ratio and r.ratio < FASTER
+            r
+            for r in self.rows
+            if r.price and r.price.percent < MAX_COST_PERCENT and r.ratio and r.ratio < MAX_TIME_RATIO
         ]
         return sorted(good, key=lambda row: row.ratio or math.inf)
 
@@ -270,10 +280,10 @@ def compare_models(
     begin(what) is called before the scene and before each variant. Raises TouchdownError where the scene
     itself does not land or stops; a variant says so in its row.
     """
-    refuse_endless(duration or LONGEST, scene.run.macro_step)
+    refuse_endless(duration or MAX_SPAN, scene.run.macro_step)
     scene = _unjudged(scene)
     begin("the scene as it is")
-    exact, outcome = _dropped(scene, Stop(LONGEST if duration is None else duration, early=False))
+    exact, outcome = _dropped(scene, Stop(MAX_SPAN if duration is None else duration, early=False))
     as_long = {"run.duration": outcome.duration}
     stopwatch = _Stopwatch(scene.set(as_long), repeat, in_process)
     rows = []
@@ -351,7 +361,7 @@ def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> 
         end = exact.ends[seat]
         before = exact.traces[seat].momentary_until(end).get(part, 0.0)
         after = drop.traces[seat].momentary_until(end).get(part)
-        if after is not None and before >= LEAST:
+        if after is not None and before >= MIN_PEAK:
             changes.append(after / before - 1.0)
     return max(changes, key=abs, default=None)
 

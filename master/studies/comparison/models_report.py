@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 from ...common.files import writing_to
 from ...results.figures.style import BLUE, GREY, sheet
-from ..drop.first_impact import AVERAGE, forces_text
-from .models import CLEAR, Comparison, Price, Row
+from ..drop.first_impact import AVERAGING_TIME, forces_text
+from .models import MAX_COST_PERCENT, Comparison, Price, Row
 
-LEAST = 1e-3  # %; what a price of nothing is drawn as
+MIN_DRAWN_COST = 1e-3  # %; what a price of nothing is drawn as
 
 
 def error_against_time(comparison: Comparison) -> Figure:
@@ -21,8 +21,13 @@ def error_against_time(comparison: Comparison) -> Figure:
     figure = sheet(12, 1.6 + 0.32 * len(rows))
     price, time = figure.subplots(1, 2, sharey=True)
     names = [row.title for row in rows]
-    price.barh(names, [max(row.price.percent, LEAST) for row in rows if row.price], color=BLUE, left=LEAST)
-    price.axvline(CLEAR, color=GREY, ls="--", lw=0.8)
+    price.barh(
+        names,
+        [max(row.price.percent, MIN_DRAWN_COST) for row in rows if row.price],
+        color=BLUE,
+        left=MIN_DRAWN_COST,
+    )
+    price.axvline(MAX_COST_PERCENT, color=GREY, ls="--", lw=0.8)
     price.set_xscale("log")
     price.set_xlabel("largest change of the journal's forces, position over orbit, orbit [%]")
     time.barh(names, [row.ratio for row in rows if row.ratio is not None], color=GREY)
@@ -36,7 +41,7 @@ def error_against_time(comparison: Comparison) -> Figure:
 
 
 WIDTH = 12
-HEADS = (
+TABLE_HEADS = (
     ("first", "contact us"),
     ("journal", "force %"),
     ("contact", "force %"),
@@ -57,7 +62,7 @@ def report_lines(comparison: Comparison) -> list[str]:
 def _about(comparison: Comparison) -> list[str]:
     drop = comparison.drop
     about = [comparison.scene.title]
-    average = max(AVERAGE, comparison.scene.run.macro_step)
+    average = max(AVERAGING_TIME, comparison.scene.run.macro_step)
     for seat, end in drop.ends.items():
         peaks = drop.peaks[seat]
         about.append(
@@ -78,8 +83,8 @@ def _about(comparison: Comparison) -> list[str]:
 
 def _table(comparison: Comparison) -> list[str]:
     width = max(len(row.title) for row in comparison.rows) + 2
-    top, below = ("".join(f"{head[i]:>{WIDTH}}" for head in HEADS) for i in (0, 1))
-    unchanged = [""] * (len(HEADS) - 2)
+    top, below = ("".join(f"{head[i]:>{WIDTH}}" for head in TABLE_HEADS) for i in (0, 1))
+    unchanged = [""] * (len(TABLE_HEADS) - 2)
     own = "".join(f"{cell:>{WIDTH}}" for cell in (*unchanged, f"{comparison.wall:.3g}", "1.00"))
     return [
         f"{'changes against the scene':<{width}}{top}",
@@ -115,9 +120,10 @@ def advice(comparison: Comparison) -> list[str]:
     """What makes the scene faster without changing it by much."""
     good = comparison.dispensable()
     if not good:
-        return [f"nothing of these makes the scene faster for less than {CLEAR:g} %"]
+        return [f"nothing of these makes the scene faster for less than {MAX_COST_PERCENT:g} %"]
     return [
-        f"for less than {CLEAR:g} % of the journal's forces, position (over the orbit) and orbit, "
+        f"for less than {MAX_COST_PERCENT:g} % of the journal's forces, position (over the orbit) and "
+        "orbit, "
         "each by itself:",
         *(
             f"  {row.title}: {row.price.percent:.2g} %, {row.ratio:.2f} of the time{_inside(row.price)}"

@@ -23,10 +23,10 @@ from ..drop.first_impact import Peaks, Stop, Trace, run_watched
 
 MODES = (3, 5, 8, 12, 20)  # per plane, the two rigid ones included
 STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes
-LONGEST = 10e-3  # s after the first contact; later on, every difference is amplified
-CLOSED = 1e-2  # energy residual of a reference that can be trusted, over the energy scale
-RIGID = 2
-BASIS = ("modes", "residual", "stress.mode_acceleration")  # parameters of a flexible rotor
+MAX_SPAN = 10e-3  # s after the first contact; later on, every difference is amplified
+MAX_REFERENCE_RESIDUAL = 1e-2  # energy residual of a reference that can be trusted, over the energy scale
+RIGID_MODES = 2
+BASIS_PARAMETERS = ("modes", "residual", "stress.mode_acceleration")  # parameters of a flexible rotor
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Comparison:
     @property
     def warnings(self) -> list[str]:
         """What makes the errors doubtful."""
-        if self.reference.energy <= CLOSED:
+        if self.reference.energy <= MAX_REFERENCE_RESIDUAL:
             return []
         return [
             f"the energy residual of the reference is {self.reference.energy:.2g} of the energy lost by "
@@ -103,9 +103,9 @@ def parse_modes(text: str) -> tuple[int, ...]:
             raise TouchdownError(
                 f"--modes {text}: {item.strip() or 'nothing'!r} is not a whole number"
             ) from None
-        if number < RIGID:
+        if number < RIGID_MODES:
             raise TouchdownError(
-                f"--modes {text}: {number} is less than {RIGID}, the rigid modes per plane; "
+                f"--modes {text}: {number} is less than {RIGID_MODES}, the rigid modes per plane; "
                 "all modes are the reference, which always runs"
             )
         numbers.add(number)
@@ -141,11 +141,11 @@ def compare_modes(
     of modes cannot be, nothing touches, or a run stops.
     """
     rotor = _rotor(scene)
-    refuse_endless(duration or LONGEST, macro_step)
+    refuse_endless(duration or MAX_SPAN, macro_step)
     scene = scene.set({"run.macro_step": macro_step})
     _check_modes(_basis(scene, rotor, max(modes), 1, 1))
     whole = _basis(scene, rotor, 0, 0, 0)
-    stop = Stop(LONGEST if duration is None else duration, early=duration is None, every=2)
+    stop = Stop(MAX_SPAN if duration is None else duration, early=duration is None, every=2)
     exact = _run(whole.set({"run.macro_step": 0.5 * macro_step}), rotor, stop)
     impacts = {seat: impact for seat, t in exact.traces.items() if (impact := t.first_impact())}
     if not impacts:
@@ -177,11 +177,13 @@ def runs(modes: Sequence[int]) -> int:
 def _rotor(scene: Scene) -> str:
     """The component that is a flexible rotor."""
     with opened(scene, in_process=True) as system:
-        rotors = [name for name, c in system.components.items() if all(v in c.variables for v in BASIS)]
+        rotors = [
+            name for name, c in system.components.items() if all(v in c.variables for v in BASIS_PARAMETERS)
+        ]
     if not rotors:
         raise TouchdownError(
             f"scene {scene.name} has no flexible rotor with stresses: no component has the parameters "
-            f"{', '.join(BASIS)}"
+            f"{', '.join(BASIS_PARAMETERS)}"
         )
     if len(rotors) > 1:
         raise TouchdownError(
@@ -191,7 +193,7 @@ def _rotor(scene: Scene) -> str:
 
 
 def _basis(scene: Scene, rotor: str, modes: int, residual: int, acceleration: int) -> Scene:
-    values = dict(zip(BASIS, (modes, residual, acceleration), strict=True))
+    values = dict(zip(BASIS_PARAMETERS, (modes, residual, acceleration), strict=True))
     settings = {f"{rotor}.{name}": value for name, value in values.items()}
     return scene.set(settings | {f"{rotor}.stress.active": 1})
 
@@ -228,7 +230,7 @@ def _highest(scene: Scene, system: System, rotor: str, ports: Sequence[str]) -> 
     """
     component, given = system.components[rotor], scene.components[rotor].set
     told = {port: _mode_stiffness(component, port) for port in ports}
-    elastic = int(str(given["modes"])) - RIGID + int(str(given["residual"])) * len(ports)
+    elastic = int(str(given["modes"])) - RIGID_MODES + int(str(given["residual"])) * len(ports)
     if given["modes"] == 0 or any(elastic > len(values) for values in told.values()):
         return None
     square = max((value for values in told.values() for value in values), default=0.0)

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 
 from ...common.files import write_records, writing_to
 from ...results.figures.style import BLUE, GREY, ORANGE, sheet
-from ..drop.first_impact import AVERAGE
+from ..drop.first_impact import AVERAGING_TIME
 from .modes import Comparison, Row, percent, stress_error
 
-LEAST = 1e-4  # %, um; what an error of nothing is drawn as
+MIN_DRAWN_ERROR = 1e-4  # %, um; what an error of nothing is drawn as
 BASES = ((False, BLUE, "modes alone"), (True, ORANGE, "with residual flexibility"))
 
 
@@ -73,12 +73,12 @@ def _draw_errors(axes: Axes, comparison: Comparison, drawn: list[Line], title: s
     for residual, colour, basis in BASES:
         rows = [row for row in comparison.rows if row.residual == residual]
         for one in drawn:
-            values = [max(one.error(row), LEAST) for row in rows]
+            values = [max(one.error(row), MIN_DRAWN_ERROR) for row in rows]
             name = f"{one.label}, {basis}" if one.label else basis
             axes.plot([row.modes for row in rows], values, f"o{one.style}", color=colour, ms=4, label=name)
     for one in drawn:
         name = "all modes at this macro step" if one is drawn[0] else None
-        floor = max(one.error(comparison.coupling), LEAST)
+        floor = max(one.error(comparison.coupling), MIN_DRAWN_ERROR)
         axes.axhline(floor, color=GREY, ls=one.style, lw=0.8, label=name)
     axes.set_yscale("log")
     axes.set_xticks(sorted({row.modes for row in comparison.rows}))
@@ -91,7 +91,7 @@ def _draw_errors(axes: Axes, comparison: Comparison, drawn: list[Line], title: s
 
 WIDTH = 10
 STRESSES = ("bending", "shear")
-WAYS = ("displacement", "acceleration")  # by which stresses are found
+STRESS_METHODS = ("displacement", "acceleration")  # by which stresses are found
 
 
 def report_lines(comparison: Comparison) -> list[str]:
@@ -110,7 +110,7 @@ def _reference_lines(comparison: Comparison) -> list[str]:
         peaks = exact.seats[seat]
         about.append(
             f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, journal force "
-            f"{peaks.force:.5g} N over {1e6 * AVERAGE:g} us, contact force {peaks.contact:.5g} N, "
+            f"{peaks.force:.5g} N over {1e6 * AVERAGING_TIME:g} us, contact force {peaks.contact:.5g} N, "
             f"indentation {1e6 * peaks.indentation:.4g} um"
         )
     stresses = exact.displacement
@@ -152,7 +152,9 @@ def _cells(comparison: Comparison, row: Row) -> str:
     errors += [percent(row.seats[s].contact, exact.seats[s].contact) for s in seats]
     shown = [f"{error:+.2f}" for error in errors]
     shown.append(f"{1e6 * row.orbit:.3g}")
-    shown += [f"{stress_error(comparison, row, kind, way):+.2f}" for kind in STRESSES for way in WAYS]
+    shown += [
+        f"{stress_error(comparison, row, kind, way):+.2f}" for kind in STRESSES for way in STRESS_METHODS
+    ]
     shown.append("-" if row.frequency is None else f"{row.frequency:.0f}")
     shown.append(f"{row.wall:.3g}")
     return "".join(f"{cell:>{WIDTH}}" for cell in shown)
@@ -193,7 +195,7 @@ def _record(comparison: Comparison, role: str, row: Row) -> Mapping[str, object]
             cells[f"{title}_error_percent_{seat}"] = percent(value, right)
     cells["orbit_error_um"] = 1e6 * row.orbit
     for kind in STRESSES:
-        for way in WAYS:
+        for way in STRESS_METHODS:
             cells[f"peak_{kind}_MPa_{way}"] = 1e-6 * getattr(getattr(row, way), kind)
             cells[f"peak_{kind}_error_percent_{way}"] = stress_error(comparison, row, kind, way)
     cells["highest_frequency_Hz"] = row.frequency

@@ -29,10 +29,10 @@ from ...coupling.system import fastest_contact
 from ...scene.run_spec import tidy
 from ...scene.scene import Scene
 from ...scene.schemes import SCHEMES, Scheme, scheme
-from ..drop.first_impact import CONTACT, INSIDE
-from ..drop.measured import FINE, LONGEST, Landing, Plan, Sampler, fine, land, plan
+from ..drop.first_impact import CONTACT, INNER_PEAKS
+from ..drop.measured import FINE_STEP, MAX_SPAN, Landing, Plan, Sampler, fine, land, plan
 from ..drop.reference import (
-    FIRST,
+    FIRST_SOLVER,
     POSITION,
     REFINED,
     VELOCITY,
@@ -49,8 +49,8 @@ from ..drop.reference import (
 )
 
 ABOVE_FLOOR = 10.0  # an error counts from this many times the floor of what it is measured against
-RISING = 0.5  # least slope between neighbours: below it something else than the macro step errs
-FEWEST = 3  # steps that a slope is fitted to
+MIN_SLOPE = 0.5  # least slope between neighbours: below it something else than the macro step errs
+MIN_FITTED_STEPS = 3  # steps that a slope is fitted to
 
 
 @dataclass(frozen=True)
@@ -76,24 +76,24 @@ def fitted_order(
         if not counts:
             stretch = []
             continue
-        if stretch and np.log(error / stretch[-1][1]) < RISING * np.log(step / stretch[-1][0]):
+        if stretch and np.log(error / stretch[-1][1]) < MIN_SLOPE * np.log(step / stretch[-1][0]):
             stretch = []
         stretch.append((step, error))
         longest = max(longest, stretch, key=len).copy()
-    if len(longest) < FEWEST:
+    if len(longest) < MIN_FITTED_STEPS:
         return None
     used, errors_used = zip(*longest, strict=True)
     return Order(float(np.polyfit(np.log(used), np.log(errors_used), 1)[0]), used)
 
 
 STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
-WANTED = 1e-7  # m
-LOOSE = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
-LOOSE_OF_MANY = LOOSE[:1]  # each takes about as long as the reference
-AGREED = 0.1  # of the wanted error: what the reference's solvers may differ by
-SATURATED = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
-ABOUT = 1.2  # times the least wall time: as good as the same
-NEVER = 1e9  # a residual of the ledger at which nothing stops
+TARGET_ERROR_M = 1e-7  # m
+LOOSE_SOLVERS = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
+LOOSE_SOLVERS_OF_MANY = LOOSE_SOLVERS[:1]  # each takes about as long as the reference
+REFERENCE_AGREEMENT = 0.1  # of the wanted error: what the reference's solvers may differ by
+SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
+SAME_TIME_FACTOR = 1.2  # times the least wall time: as good as the same
+NO_STOP_RESIDUAL = 1e9  # a residual of the ledger at which nothing stops
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Quantity:
     axis: str  # title of the axis of its errors
 
 
-SHOWN = {
+ERROR_COLUMNS = {
     "position": Quantity("journal", "um", 1e6, "error of journal [um]"),
     "velocity": Quantity("velocity", "mm/s", 1e3, "error of velocity [mm/s]"),
     "force": Quantity("peak force", "%", 100.0, "error of peak force [%]"),
@@ -123,7 +123,7 @@ class Asked:
     schemes: Sequence[str] = tuple(SCHEMES)
     steps: Sequence[float] = STEPS  # s
     duration: float | None = None  # s from the first contact; None: until the first impact is over
-    wanted: float = WANTED  # m
+    wanted: float = TARGET_ERROR_M  # m
     repeat: int = 3  # runs that are timed
     timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
     in_process: bool = False
@@ -168,12 +168,12 @@ class Comparison:
     @property
     def quantities(self) -> Sequence[str]:
         """What can be compared: bearings without balls, or whose balls only graze, say less."""
-        return [q for q in SHOWN if q in self.fine]
+        return [q for q in ERROR_COLUMNS if q in self.fine]
 
     @property
     def forces(self) -> Sequence[str]:
         """Those of `quantities` that are peak forces."""
-        return [q for q in self.quantities if q == CONTACT or q in INSIDE]
+        return [q for q in self.quantities if q == CONTACT or q in INNER_PEAKS]
 
     @property
     def floors(self) -> Mapping[str, float]:
@@ -193,7 +193,7 @@ class Comparison:
         orders = {}
         for q in self.quantities:
             of = {r.step: r.errors[q] for r in self.rows if r.name == scheme and r.step and q in r.errors}
-            limit = SATURATED * extents.get(q, 1.0)
+            limit = SATURATION * extents.get(q, 1.0)
             orders[q] = fitted_order(list(of), list(of.values()), self.floors[q], limit)
         return orders
 
@@ -212,7 +212,7 @@ class Comparison:
     def _cheapest(self, rows: Iterable[Row]) -> Row | None:
         good = [r for r in rows if r.wall and r.errors.get("position", math.inf) <= self.asked.wanted]
         least = min((row.wall for row in good if row.wall), default=0.0)
-        near = [row for row in good if row.wall and row.wall <= ABOUT * least]
+        near = [row for row in good if row.wall and row.wall <= SAME_TIME_FACTOR * least]
         return min(near, key=lambda row: row.errors["position"], default=None)
 
 
@@ -225,19 +225,21 @@ def compare_schemes(
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0, "run.impact_step": 0})
+    scene = scene.set(
+        {"run.stop_residual": NO_STOP_RESIDUAL, "run.whirl_halvings": 0, "run.impact_step": 0}
+    )
     begin("fine steps")
-    refuse_endless(max(asked.duration or LONGEST, asked.timed or 0.0), min(asked.steps))
+    refuse_endless(max(asked.duration or MAX_SPAN, asked.timed or 0.0), min(asked.steps))
     landing = land(scene, asked.duration)
-    looks = plan(landing, (*asked.steps, 2.0 * FINE))
+    looks = plan(landing, (*asked.steps, 2.0 * FINE_STEP))
     scene = scene.set({"run.duration": landing.duration})
     solves = _solves(scene, looks, begin)
-    exact = reference(looks.times, solves[0], solves[1], AGREED * asked.wanted)
+    exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * asked.wanted)
     judge = _Judge(looks, exact, *limits)
     begin("fine steps")
-    finely = judge.row(fine(scene, 2.0 * FINE), "fine steps", 2.0 * FINE)
+    finely = judge.row(fine(scene, 2.0 * FINE_STEP), "fine steps", 2.0 * FINE_STEP)
     if finely.failed:
-        raise TouchdownError(f"with macro steps of {2e6 * FINE:g} us: {finely.failed}")
+        raise TouchdownError(f"with macro steps of {2e6 * FINE_STEP:g} us: {finely.failed}")
     _warm_up(scene, asked)
     rows = []
     for name in asked.schemes:
@@ -258,7 +260,7 @@ def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[S
     """Both solutions of the reference, then looser ones."""
     seats, solvers = looks.landing.seats, _solvers(scene)
     if has_equations(scene):
-        solve(scene, seats, looks.times[:1], Solver(FIRST.method, 1e-3))  # compiles
+        solve(scene, seats, looks.times[:1], Solver(FIRST_SOLVER.method, 1e-3))  # compiles
     solves: list[Solve] = []
     for solver in solvers:
         begin(solver.title)
@@ -278,7 +280,7 @@ def _solvers(scene: Scene) -> Sequence[Solver | Refined]:
 
 
 def _loose(second: Solver) -> Sequence[Solver]:
-    return LOOSE if second.implicit else LOOSE_OF_MANY
+    return LOOSE_SOLVERS if second.implicit else LOOSE_SOLVERS_OF_MANY
 
 
 def _monolithic(solution: Solve, exact: Reference) -> Row:

@@ -13,7 +13,7 @@ from ...common.files import write_records, writing_to
 from ...results.figures.style import BLACK, COLOURS, GREY, sheet
 from ..drop.first_impact import forces_text
 from ..drop.reference import POSITION, Refined
-from .schemes import SHOWN, Comparison, Row
+from .schemes import ERROR_COLUMNS, Comparison, Row
 
 MARKERS = "osD^v<>ph*"
 
@@ -39,7 +39,7 @@ def work_precision(comparison: Comparison) -> Figure:
 
 
 def _panel(axes: Axes, comparison: Comparison, name: str) -> None:
-    shown = SHOWN[name]
+    shown = ERROR_COLUMNS[name]
     for i, scheme in enumerate(comparison.asked.schemes):
         rows = [row for row in comparison.rows if row.name == scheme]
         style = {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]}
@@ -60,7 +60,7 @@ def _panel(axes: Axes, comparison: Comparison, name: str) -> None:
 def _curve(axes: Axes, rows: Sequence[Row], name: str, label: str, **style: object) -> None:
     """What has an error above zero, and a time."""
     points = [
-        (SHOWN[name].factor * row.errors[name], row.wall, row)
+        (ERROR_COLUMNS[name].factor * row.errors[name], row.wall, row)
         for row in rows
         if row.wall is not None and 0.0 < row.errors.get(name, 0.0) < float("inf")
     ]
@@ -91,7 +91,9 @@ def _about(comparison: Comparison) -> list[str]:
         )
     first, second = exact.first, exact.second
     counted = "macro steps" if isinstance(first.solver, Refined) else "evaluations"
-    known = ", ".join(f"{SHOWN[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces)
+    known = ", ".join(
+        f"{ERROR_COLUMNS[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces
+    )
     until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
     about += [
         f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
@@ -110,8 +112,8 @@ def _table(comparison: Comparison) -> list[str]:
     rows = [*comparison.rows, *comparison.monolithic]
     width = max(len(row.name) for row in rows) + 2
     quantities = comparison.quantities
-    heads = [SHOWN[q].title for q in quantities]
-    units = [f"[{SHOWN[q].unit}]" for q in quantities]
+    heads = [ERROR_COLUMNS[q].title for q in quantities]
+    units = [f"[{ERROR_COLUMNS[q].unit}]" for q in quantities]
     top = f"{'scheme':<{width}}{'macro step':>12}" + "".join(f"{h:>12}" for h in (*heads, "wall/"))
     below = f"{'':<{width}}{'':>12}" + "".join(f"{u:>12}" for u in (*units, "simulated"))
     return [top, below, *(f"{row.name:<{width}}{_cells(row, quantities)}".rstrip() for row in rows)]
@@ -128,14 +130,14 @@ def _cells(row: Row, quantities: Sequence[str]) -> str:
 
 def _shown(row: Row, name: str) -> str:
     error = row.errors.get(name)
-    return "-" if error is None else f"{SHOWN[name].factor * error:.2g}"
+    return "-" if error is None else f"{ERROR_COLUMNS[name].factor * error:.2g}"
 
 
 def _orders(comparison: Comparison) -> list[str]:
     """By scheme; the steps used stand beside the order."""
     width = max(len(name) for name in comparison.asked.schemes) + 2
     quantities = comparison.quantities
-    head = f"{'order':<{width}}" + "".join(f"{SHOWN[q].title:>22}" for q in quantities)
+    head = f"{'order':<{width}}" + "".join(f"{ERROR_COLUMNS[q].title:>22}" for q in quantities)
     body = [
         f"{name:<{width}}" + "".join(f"{_order(comparison, name, q):>22}" for q in quantities)
         for name in comparison.asked.schemes
@@ -183,7 +185,7 @@ def write_report(comparison: Comparison, folder: Path) -> None:
 
 def write_table(comparison: Comparison, path: Path) -> None:
     """All rows, errors in SI and in full precision."""
-    units = dict.fromkeys(SHOWN, "relative") | {"position": "m", "velocity": "m_s"}
+    units = dict.fromkeys(ERROR_COLUMNS, "relative") | {"position": "m", "velocity": "m_s"}
     records: list[Mapping[str, object]] = [
         {
             "scheme": row.name,

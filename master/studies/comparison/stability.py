@@ -36,11 +36,11 @@ from ...scene.run_spec import RunSpec
 from ...scene.scene import ComponentSpec, Scene
 
 STEPS = (*(float(f"{digit}e{power}") for power in (-6, -5, -4) for digit in (1, 2, 5)), 1e-3)  # s
-FIRST = 2e-5  # s, where the search begins
+FIRST_STEP = 2e-5  # s, where the search begins
 REFERENCE_STEP = 5e-7  # s
-GROWTH = 1.5  # of a journal's speed or distance; of the energy, its square
-VISIBLE = 0.05
-NEVER = 1e300  # a ledger residual that no run reaches
+GROWTH_LIMIT = 1.5  # of a journal's speed or distance; of the energy, its square
+VISIBLE_ERROR = 0.05
+NO_STOP_RESIDUAL = 1e300  # a ledger residual that no run reaches
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Case:
     journals: tuple[str, ...] = ("rotor.A",)  # ports of bodies
     theory: Right | None = None  # None: a run at REFERENCE_STEP says what is right
     steps: tuple[float, ...] = STEPS
-    first: float = FIRST  # one of them
+    first: float = FIRST_STEP  # one of them
     long: bool = False  # takes minutes
 
 
@@ -96,7 +96,7 @@ class Attempt:
     @property
     def right(self) -> bool:
         """Whether nothing is to be seen of its error."""
-        return self.stable and self.error <= VISIBLE
+        return self.stable and self.error <= VISIBLE_ERROR
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ def examine(case: Case, scheme: str, right: Right) -> Finding:
 
 def attempted(case: Case, scheme: str, step: float, right: Right) -> Attempt:
     """Run a case and judge it."""
-    bounds = Bounds(case.journals, GROWTH * right.speed, GROWTH * right.distance)
+    bounds = Bounds(case.journals, GROWTH_LIMIT * right.speed, GROWTH_LIMIT * right.distance)
     outcome, values = _run(case, scheme, step, bounds)
     errors = [
         abs(value - exact) / abs(exact if figure.scale is None else figure.scale)
@@ -222,7 +222,9 @@ class Bounds(Observer):
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
     """Run a case in process: what the loop says, and the figures, none where the run broke off."""
     scene = case.scene.set({"run.scheme": scheme, "run.macro_step": step})
-    scene = scene.set({"run.stop_residual": NEVER, "run.whirl_halvings": 0, "run.impact_step": 0})
+    scene = scene.set(
+        {"run.stop_residual": NO_STOP_RESIDUAL, "run.whirl_halvings": 0, "run.impact_step": 0}
+    )
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, observers=[bounds])
         outcome.raise_if_interrupted()
@@ -234,10 +236,10 @@ def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome,
 GRAVITY = 9.81  # m/s2
 CLEARANCE = 0.3e-3  # m, of the disk
 DISK = {"mass": 1.65, "inertia": 0.5e-3}  # kg, kg.m2
-RING = 0.015  # kg, inner ring of its bearing
-ABOVE = -0.29e-3  # m, height at which the disk's drops start
-FALLING = -math.sqrt(-2.0 * GRAVITY * ABOVE)  # m/s, when it passes there
-FINE = 5e-7  # s, micro step of bearings that have one
+RING_MASS = 0.015  # kg, inner ring of its bearing
+START_HEIGHT = -0.29e-3  # m, height at which the disk's drops start
+START_SPEED = -math.sqrt(-2.0 * GRAVITY * START_HEIGHT)  # m/s, when it passes there
+FINE_MICRO_STEP = 5e-7  # s, micro step of bearings that have one
 
 FRICTIONLESS = {"friction.static": 0.0, "friction.dynamic": 0.0, "friction.g6": 0.0}
 
@@ -271,7 +273,7 @@ def _let_go(name: str) -> Scene:
 
 def _dropped(settings: Mapping[str, object], ms: int) -> Scene:
     """The disk from just above its caged bearing."""
-    start = {"rotor.y": ABOVE, "rotor.vy": FALLING, "run.duration": 1e-3 * ms}
+    start = {"rotor.y": START_HEIGHT, "rotor.vy": START_SPEED, "run.duration": 1e-3 * ms}
     return _let_go("disk-caged-simplified").set({**start, **settings})
 
 
@@ -305,16 +307,16 @@ def stiffness(times: int) -> Case:
 
 def mass(times: int) -> Case:
     """A journal as light as the ring it lands on, or some times heavier."""
-    given = {f"rotor.{name}": times * RING / DISK["mass"] * value for name, value in DISK.items()}
+    given = {f"rotor.{name}": times * RING_MASS / DISK["mass"] * value for name, value in DISK.items()}
     scene = _dropped(given, 2)
-    speed = Figure("speed", ("rotor.A.vy",), -FALLING)
+    speed = Figure("speed", ("rotor.A.vy",), -START_SPEED)
     much = "" if times == 1 else f"{times} times "
     return Case(f"mass-{times}", f"journal {much}as heavy as the ring", scene, (speed, PEAK))
 
 
 def _rotor(name: str, settings: Mapping[str, object]) -> Scene:
     """A scene of rotor I, let go; micro steps are fine, so that errors are the coupling's alone."""
-    fine = {f"bearing_{end}.micro_step": FINE for end in "AB"}
+    fine = {f"bearing_{end}.micro_step": FINE_MICRO_STEP for end in "AB"}
     return _let_go(name).set({**fine, **settings})
 
 
@@ -337,13 +339,13 @@ def whirl() -> Case:
 def modes(count: int) -> Case:
     """Rotor I to 9 ms after its shutdown: first impact at both ends with elastic modes."""
     scene = _rotor("rotor1-9000", {"rotor.modes": count, "run.duration": 9e-3})
-    return _on_two(f"modes-{count}", f"rotor I dropped, {count} modes", scene, -FALLING)
+    return _on_two(f"modes-{count}", f"rotor I dropped, {count} modes", scene, -START_SPEED)
 
 
 def together() -> Case:
     """Rotor I neither turning nor out of balance: both bearings are hit in the same instant."""
     still = {"rotor.speed": 0.0, "rotor.unbalance_scale": 0.0, "run.duration": 9e-3}
-    return _on_two("together", "two bearings hit at once", _rotor("rotor1-9000", still), -FALLING)
+    return _on_two("together", "two bearings hit at once", _rotor("rotor1-9000", still), -START_SPEED)
 
 
 def grazing() -> Case:

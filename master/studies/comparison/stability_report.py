@@ -21,10 +21,21 @@ from ...common.pool import TaskOutcome, run_all
 from ...coupling.steppers.carried import carrying
 from ...results.figures.style import sheet
 from ...scene.schemes import SCHEMES
-from .stability import FIRST, GROWTH, STEPS, VISIBLE, Attempt, Case, Finding, Right, examine, reference
+from .stability import (
+    FIRST_STEP,
+    GROWTH_LIMIT,
+    STEPS,
+    VISIBLE_ERROR,
+    Attempt,
+    Case,
+    Finding,
+    Right,
+    examine,
+    reference,
+)
 
-HALF = 1.4  # cells' margin of the colour scale, as a factor
-DARK = 3e-5  # s; below it a cell is dark and its number white
+COLOUR_MARGIN = 1.4  # cells' margin of the colour scale, as a factor
+DARK_BELOW = 3e-5  # s; below it a cell is dark and its number white
 
 
 def draw_chart(study: Study, path: Path) -> None:
@@ -43,9 +54,9 @@ def chart(study: Study) -> Figure:
     figure = sheet(5 + 1.3 * wide, 2.2 + 0.42 * high)
     panels = figure.subplots(1, 2, sharey=True, squeeze=False)[0]
     _panel(panels[0], study, lambda finding: finding.right)
-    panels[0].set_title(f"right: no figure off by more than {VISIBLE:.0%}")
+    panels[0].set_title(f"right: no figure off by more than {VISIBLE_ERROR:.0%}")
     image = _panel(panels[1], study, lambda finding: finding.stable)
-    panels[1].set_title(f"stable: no journal beyond {GROWTH:g} times its speed or distance")
+    panels[1].set_title(f"stable: no journal beyond {GROWTH_LIMIT:g} times its speed or distance")
     panels[0].set_yticks(range(high), [case.title for case in study.cases])
     bar = figure.colorbar(image, ax=list(panels), fraction=0.03, pad=0.01)
     bar.set_label("longest macro step [s]")
@@ -65,14 +76,14 @@ def _panel(axes: Axes, study: Study, pick: Callable[[Finding], Attempt | None]) 
                 continue
             attempt = pick(finding)
             steps[i, j] = np.nan if attempt is None else attempt.step
-            pale = attempt is not None and attempt.step >= DARK
+            pale = attempt is not None and attempt.step >= DARK_BELOW
             axes.text(
                 j, i, microseconds(attempt), ha="center", va="center", fontsize=8,
                 color="black" if pale or attempt is None else "white",
             )  # fmt: skip
             if finding.called is False:
                 axes.add_patch(_frame(i, j))
-    norm = LogNorm(STEPS[0] / HALF, STEPS[-1] * HALF)
+    norm = LogNorm(STEPS[0] / COLOUR_MARGIN, STEPS[-1] * COLOUR_MARGIN)
     image = axes.imshow(steps, cmap="viridis", norm=norm, aspect="auto")
     axes.set_xticks(range(len(study.schemes)), list(study.schemes), rotation=40, ha="right")
     return image
@@ -82,7 +93,7 @@ def _frame(row: int, column: int) -> Rectangle:
     return Rectangle((column - 0.46, row - 0.44), 0.92, 0.88, fill=False, edgecolor="red", lw=1.5)
 
 
-SILENT = "!"  # beside a macro step that is right where the ledger was silent on the next
+SILENT_MARK = "!"  # beside a macro step that is right where the ledger was silent on the next
 NOT_RUN = "?"
 WIDTH = 15  # of names before titles
 
@@ -106,9 +117,10 @@ class Study:
 def report_lines(study: Study) -> list[str]:
     """Tables of macro steps, of errors and of what the ledger says, cases by schemes."""
     return [
-        f"longest macro step [us] that is right (figures within {VISIBLE:.0%}) / stable (to the end, no "
-        f"journal beyond {GROWTH:g} times its speed or distance)",
-        f"{SILENT}: the energy ledger had not warned where the next one is not right",
+        f"longest macro step [us] that is right (figures within {VISIBLE_ERROR:.0%}) / stable (to the "
+        "end, no "
+        f"journal beyond {GROWTH_LIMIT:g} times its speed or distance)",
+        f"{SILENT_MARK}: the energy ledger had not warned where the next one is not right",
         *_table(study, _steps),
         "",
         "error of the worst figure at the longest stable macro step [%]",
@@ -138,7 +150,7 @@ def percent(error: float) -> str:
 
 
 def _steps(finding: Finding) -> str:
-    silent = SILENT if finding.called is False else ""
+    silent = SILENT_MARK if finding.called is False else ""
     return f"{microseconds(finding.right)}/{microseconds(finding.stable)}{silent}"
 
 
@@ -194,7 +206,7 @@ def _theory(study: Study) -> list[str]:
     """Figures over what theory says, at the macro step that is common."""
     rows = [["", *study.schemes]]
     for case in study.cases:
-        if case.theory is None or case.first != FIRST:
+        if case.theory is None or case.first != FIRST_STEP:
             continue
         findings = [study.finding(case, scheme) for scheme in study.schemes]
         for i, (figure, exact) in enumerate(zip(case.figures, case.theory.values, strict=True)):
@@ -204,12 +216,12 @@ def _theory(study: Study) -> list[str]:
             rows.append([f"{case.name}, {figure.title}", *shown])
     if len(rows) == 1:
         return []
-    return ["", f"over what theory says, macro step {1e6 * FIRST:g} us", *_aligned(rows)]
+    return ["", f"over what theory says, macro step {1e6 * FIRST_STEP:g} us", *_aligned(rows)]
 
 
 def _value(finding: Finding | None, place: int) -> float | None:
     """A figure at the macro step that is common, if there was a run that ended."""
-    attempt = None if finding is None else finding.at(FIRST)
+    attempt = None if finding is None else finding.at(FIRST_STEP)
     return attempt.values[place] if attempt is not None and attempt.values else None
 
 

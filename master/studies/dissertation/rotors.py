@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...common.errors import Ended, TouchdownError
-from ...common.progress import UNSEEN, Progress
+from ...common.progress import SILENT_PROGRESS, Progress
 from ...results.run import run_scene
 from ...results.spectra import lines as tallest
 from ...results.spectra import on_grid, waterfall
@@ -43,7 +43,7 @@ def compare_rotors(
     folder: Path,
     long: bool = False,
     jobs: int = 2,
-    progress: Progress = UNSEEN,
+    progress: Progress = SILENT_PROGRESS,
 ) -> str:
     """Run everything and write rotors.txt into `folder`; returns the text.
 

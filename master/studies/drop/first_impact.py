@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ....modelkit.ports import PARTED
+from ....modelkit.ports import PARTING_TOLERANCE
 from ...components.component import FORCE, POSITION
 from ...coupling.connections import Attachment
 from ...coupling.observer import Moment, Observer
@@ -23,7 +23,7 @@ from ...coupling.system import System
 from ...results.summary import seat_name
 from ...scene.scene import Scene
 
-SHORT = 2e-3  # s
+MIN_SPAN = 2e-3  # s
 
 
 def shortened(scene: Scene) -> Scene:
@@ -38,21 +38,21 @@ def shortened(scene: Scene) -> Scene:
             for name, component in system.components.items()
             if "shutdown_time" in component.variables
         }
-    early = min(times.values(), default=0.0) - scene.run.start_time - SHORT
+    early = min(times.values(), default=0.0) - scene.run.start_time - MIN_SPAN
     if early <= 0.0:
         return scene
     return scene.set({f"{name}.shutdown_time": time - early for name, time in times.items()})
 
 
-AVERAGE = 50e-6  # s
+AVERAGING_TIME = 50e-6  # s
 ROUNDING = 1e-12  # s
 PEAKS = ("contact.peak_force", "contact.peak_indentation")  # of a touchdown bearing, since the start
 CONTACT = "force"  # of journal and ring, beside the parts of INSIDE
-INSIDE = {  # of those bearings that have them, N since the start
+INNER_PEAKS = {  # of those bearings that have them, N since the start
     "ball": ("balls.peak_force",),
     "side": ("neighbours.peak_force", "pockets.peak_force"),
 }
-LEAST = 1.0  # N; a smaller peak is a graze, whose changes say nothing
+MIN_PEAK = 1.0  # N; a smaller peak is a graze, whose changes say nothing
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class Trace:
 
     def peaks(self, end: float) -> Peaks:
         """Largest values up to `end` (s from zero)."""
-        part = self.time <= end + AVERAGE
+        part = self.time <= end + AVERAGING_TIME
         time, step = self.time[part], self.time[1] - self.time[0]
         averages = [_averaged(time, step * np.cumsum(f[part])) for f in (self.fx, self.fy)]
         at = self._last(end)
@@ -107,7 +107,7 @@ class Peaks:
 
 def reported_inside(variables: Container[str]) -> Mapping[str, str]:
     """By part of INSIDE: which of a bearing's variables tells its peak."""
-    return {part: name for part, names in INSIDE.items() for name in names if name in variables}
+    return {part: name for part, names in INNER_PEAKS.items() for name in names if name in variables}
 
 
 def forces_text(peaks: Mapping[str, float]) -> str:
@@ -118,12 +118,12 @@ def forces_text(peaks: Mapping[str, float]) -> str:
 
 def _free(step: float) -> float:
     """How long a journal has been free once it has parted (s): PARTED, and at least one macro step."""
-    return max(PARTED, 1.5 * step)
+    return max(PARTING_TOLERANCE, 1.5 * step)
 
 
 def _averaged(time: np.ndarray, impulse: np.ndarray) -> np.ndarray:
     """Mean force over AVERAGE before each time, or over a macro step where that is longer."""
-    span = max(AVERAGE, time[1] - time[0])
+    span = max(AVERAGING_TIME, time[1] - time[0])
     return (impulse - np.interp(time - span, time, impulse, left=0.0)) / span
 
 

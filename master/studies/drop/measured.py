@@ -17,10 +17,10 @@ from ...coupling.system import System
 from ...results.summary import seat_name, touchdown_seats
 from ...scene.scene import Scene
 from ...scene.schemes import DEFAULT
-from .first_impact import CONTACT, LEAST, ROUNDING, Stop, Trace, reported_inside, run_watched
+from .first_impact import CONTACT, MIN_PEAK, ROUNDING, Stop, Trace, reported_inside, run_watched
 
-FINE = 1e-6  # s, macro step of what peak forces are measured against
-LONGEST = 5e-3  # s after the first contact
+FINE_STEP = 1e-6  # s, macro step of what peak forces are measured against
+MAX_SPAN = 5e-3  # s after the first contact
 FINE_SETTINGS = {"interface.tolerance": 1e-9, "micro_step": 0.0}  # as far as a bearing has them
 
 
@@ -50,7 +50,7 @@ class Landing:
         errors: dict[str, float] = {}
         for seat, (time, forces) in found.items():
             for part, exact in self.traces[seat].momentary_until(time).items():
-                if exact >= LEAST:
+                if exact >= MIN_PEAK:
                     errors[part] = max(errors.get(part, 0.0), abs(forces[part] / exact - 1.0))
         return errors
 
@@ -78,12 +78,12 @@ def land(scene: Scene, duration: float | None) -> Landing:
     Without one until the first impact is over at every seat, at most LONGEST. Raises TouchdownError where
     there is no touchdown bearing, nothing touches, or the run stops.
     """
-    scene = fine(scene, FINE)
+    scene = fine(scene, FINE_STEP)
     with opened(scene, True) as system:
         seats = touchdown_seats(system)
         if not seats:
             raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
-        stop = Stop(LONGEST if duration is None else duration, early=duration is None)
+        stop = Stop(MAX_SPAN if duration is None else duration, early=duration is None)
         outcome, traces = run_watched(scene, system, seats, stop)
     impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
     if not impacts:

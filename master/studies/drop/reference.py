@@ -25,7 +25,7 @@ from ...coupling.observer import Moment, Observer
 from ...coupling.simulation import opened, simulate
 from ...coupling.system import System
 from ...scene.scene import Scene
-from .measured import FINE, fine
+from .measured import FINE_STEP, fine
 from .monolithic import Monolith
 
 
@@ -41,7 +41,7 @@ class Refined:
         return f"its own steps of {1e6 * self.step:g} us"
 
 
-REFINED = (Refined(0.5 * FINE), Refined(FINE))
+REFINED = (Refined(0.5 * FINE_STEP), Refined(FINE_STEP))
 """The reference, and what it must agree with."""
 
 
@@ -80,9 +80,9 @@ class _Kept(Observer):
 
 
 POSITION, VELOCITY = slice(0, 2), slice(2, 4)  # of a journal's motion
-MOST_IMPLICIT = 120  # states that an implicit solver takes: each Jacobian is as many evaluations
+MAX_IMPLICIT_STATES = 120  # states that an implicit solver takes: each Jacobian is as many evaluations
 
-IMPLICIT = ("Radau", "BDF", "LSODA")  # methods of scipy's
+IMPLICIT_METHODS = ("Radau", "BDF", "LSODA")  # methods of scipy's
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Solver:
     @property
     def implicit(self) -> bool:
         """Whether its steps solve for the state, with a Jacobian."""
-        return self.method in IMPLICIT
+        return self.method in IMPLICIT_METHODS
 
     @property
     def title(self) -> str:
@@ -103,9 +103,9 @@ class Solver:
         return f"{self.method} {self.tolerance:g}"
 
 
-FIRST = Solver("DOP853", 1e-9)
-SECOND = Solver("Radau", 1e-6)
-SECOND_OF_MANY = Solver("RK45", 1e-8)  # where there are too many states for an implicit one
+FIRST_SOLVER = Solver("DOP853", 1e-9)
+SECOND_SOLVER = Solver("Radau", 1e-6)
+SECOND_SOLVER_OF_MANY = Solver("RK45", 1e-8)  # where there are too many states for an implicit one
 
 
 class Titled(Protocol):
@@ -182,7 +182,9 @@ def solve(scene: Scene, seats: Sequence[Attachment], times: np.ndarray, solver: 
 
 def pair(scene: Scene) -> tuple[Solver, Solver]:
     """The two solvers for a scene: of different kind where its size allows."""
-    return FIRST, SECOND if Monolith(scene).moving <= MOST_IMPLICIT else SECOND_OF_MANY
+    return FIRST_SOLVER, SECOND_SOLVER if Monolith(
+        scene
+    ).moving <= MAX_IMPLICIT_STATES else SECOND_SOLVER_OF_MANY
 
 
 def reference(times: np.ndarray, first: Solve, second: Solve, agreed: float) -> Reference:

@@ -16,20 +16,27 @@ from dataclasses import dataclass
 from ...common.errors import Ended, TouchdownError
 from ...common.files import replace_text, writing_to
 from ...common.pool import cores
-from ...common.progress import UNSEEN, Progress
+from ...common.progress import SILENT_PROGRESS, Progress
 from ...coupling.simulation import opened
-from ...results.folder import SUMMARY
+from ...results.folder import SUMMARY_FILE
 from ...results.result import Result
 from ...results.summary import SPREAD, touchdown_seats
 from ...scene.scene import Scene
 from ..sweep.members import Member
 from ..sweep.sweep import Execution, Task, run_tasks
 
-APART = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
-GOLDEN = math.pi * (3.0 - math.sqrt(5.0))  # rad from one sibling's direction to the next: none is alike
-SPREADS = ("peak_", "first_impact_", "largest_displacement_um", "settling_time_s")  # begin figures' keys
-PLACED = re.compile("_stress_(node|time_s)")  # within them: where and when a peak was
-LEAST = 2  # draws that have a figure
+START_OFFSET = 1e-9  # m, of the first sibling's start from the run's; of the next ones as much more each
+GOLDEN_ANGLE = math.pi * (
+    3.0 - math.sqrt(5.0)
+)  # rad from one sibling's direction to the next: none is alike
+SPREAD_KEYS = (
+    "peak_",
+    "first_impact_",
+    "largest_displacement_um",
+    "settling_time_s",
+)  # begin figures' keys
+PLACE_KEY = re.compile("_stress_(node|time_s)")  # within them: where and when a peak was
+MIN_DRAWS = 2  # draws that have a figure
 
 
 @dataclass(frozen=True)
@@ -42,7 +49,7 @@ class Spread:
 
 
 def spread(
-    result: Result, siblings: int, jobs: int | None = None, progress: Progress = UNSEEN
+    result: Result, siblings: int, jobs: int | None = None, progress: Progress = SILENT_PROGRESS
 ) -> list[str]:
     """Run `siblings` of a run that is over, and add the spread of its figures to its summary, on disk too.
 
@@ -60,11 +67,11 @@ def spread(
     done = [member for member in members if not member.failed]
     result.summary[SPREAD] = {
         "siblings": len(done),
-        "apart_nm": 1e9 * APART,
+        "apart_nm": 1e9 * START_OFFSET,
         "figures": {key: vars(one) for key, one in _spreads(result.summary, done).items()},
     }
     with writing_to(result.folder):
-        replace_text(result.folder / SUMMARY, json.dumps(result.summary, indent=2) + "\n")
+        replace_text(result.folder / SUMMARY_FILE, json.dumps(result.summary, indent=2) + "\n")
     return [f"sibling {m.number} of {siblings} does not count: {m.failed}" for m in members if m.failed]
 
 
@@ -83,7 +90,7 @@ def _siblings(scene: Scene, count: int) -> Iterator[Task]:
     """In process, where that is possible: the same to the bit, and faster."""
     starts = _starts(scene)
     for number in range(1, count + 1):
-        away, angle = APART * number, GOLDEN * number
+        away, angle = START_OFFSET * number, GOLDEN_ANGLE * number
         moved = {"x": away * math.cos(angle), "y": away * math.sin(angle)}
         settings: dict[str, object] = {
             f"{body}.{axis}": at[axis] + moved[axis] for body, at in starts.items() for axis in moved
@@ -111,9 +118,9 @@ def _spreads(summary: Mapping[str, object], siblings: Sequence[Member]) -> dict[
     found: dict[str, Spread] = {}
     draws = [summary, *(member.summary for member in siblings)]
     for key in summary:
-        if not key.startswith(SPREADS) or PLACED.search(key):
+        if not key.startswith(SPREAD_KEYS) or PLACE_KEY.search(key):
             continue
         drawn = [value for one in draws if isinstance(value := one.get(key), float)]
-        if len(drawn) >= LEAST:
+        if len(drawn) >= MIN_DRAWS:
             found[key] = Spread(min(drawn), statistics.median(drawn), max(drawn))
     return found

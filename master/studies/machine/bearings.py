@@ -10,9 +10,9 @@ from ....bearings import catalogue
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
 from ...common.errors import TouchdownError, one_of, with_remedy
 
-SHOWN = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
-MICRO = ("play",)  # in um
-CLOSE = 1e-6  # m, of a bore asked for
+DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
+MICROMETRE_KEYS = ("play",)  # in um
+BORE_TOLERANCE = 1e-6  # m, of a bore asked for
 
 
 def known(folder: Path) -> dict[str, Bearing]:
@@ -41,7 +41,7 @@ def described(bearing: Bearing) -> str:
     lines = [bearing.designation]
     for name, value in bearing.numbers().items():
         unit, meaning = NUMBERS[name]
-        factor, shown = (1e6, "um") if name in MICRO else SHOWN.get(unit, (1.0, unit))
+        factor, shown = (1e6, "um") if name in MICROMETRE_KEYS else DISPLAY_UNITS.get(unit, (1.0, unit))
         lines.append(f"  {name:<16}{factor * value:>12.5g} {shown:<8}{meaning} ({bearing.origins[name]})")
     rated = bearing.capacity()
     if bearing.balls.rows > 1:
@@ -51,7 +51,7 @@ def described(bearing: Bearing) -> str:
 
 def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
     """A line per bearing: its size in mm, balls, ratings of a row in kN. bore: m, of those to list."""
-    chosen = {n: b for n, b in bearings.items() if bore is None or abs(b.bore - bore) < CLOSE}
+    chosen = {n: b for n, b in bearings.items() if bore is None or abs(b.bore - bore) < BORE_TOLERANCE}
     if not chosen:
         there = ", ".join(f"{1e3 * size:g}" for size in sorted({b.bore for b in bearings.values()}))
         raise TouchdownError(

@@ -13,23 +13,23 @@ from dataclasses import dataclass
 from ....bearings.catalogue import Bearing
 from ....modelkit.model import ModelError
 from ....rotor.beams.shaft import Shaft
-from ....rotor.modal.modes import RIGID, basis
+from ....rotor.modal.modes import RIGID_MODES, basis
 from ....rotor.statics import at_rest
 from ...common.errors import TouchdownError, one_of
-from ...scene.plausible import FAST, MOST_BORE_SPEED, RPM
+from ...scene.plausible import MAX_BORE_SPEED, RPM, SPEED_RATIO_LIMIT
 from ..rotor.report import pulling
 
 GRAVITY = 9.81  # m/s2
-LEVITATION = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
+LEVITATION_FREQUENCY = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its magnetic bearing
 LEVITATION_DAMPING = 0.3  # ratio
-FORCE = 6.0  # limit of a magnetic bearing's force over the static load
-BELOW_BENDING = 0.7  # speed over the first bending frequency
-CONTACT = 6e10  # N/m^(10/9) per m of width, journal in ring
+FORCE_LIMIT_RATIO = 6.0  # limit of a magnetic bearing's force over the static load
+MAX_SPEED_RATIO = 0.7  # speed over the first bending frequency
+CONTACT_STIFFNESS_PER_M = 6e10  # N/m^(10/9) per m of width, journal in ring
 HOUSING_SHARE = 0.15  # housing over what it carries
-LEAST_HOUSING = 2.0  # kg
+MIN_HOUSING_MASS = 2.0  # kg
 HOUSING_FREQUENCY = 2.0 * math.pi * 500.0  # rad/s
 HOUSING_DAMPING = 0.2  # ratio
-MOST_KEPT = 8  # modes per plane, the two rigid ones included
+MAX_MODES_KEPT = 8  # modes per plane, the two rigid ones included
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Design:
                     f"of {bearing.designation}, C0 = {1e-3 * limit:.3g} kN"
                 )
         usual = sensible_speed(self.bending, self.bearings)
-        if self.speed > FAST * usual:
+        if self.speed > SPEED_RATIO_LIMIT * usual:
             told.append(
                 f"speed = {self.speed / RPM:.0f} rpm is more than such a machine runs "
                 f"({usual / RPM:.0f} rpm by the rule); a number without a unit is in rad/s"
@@ -116,13 +116,13 @@ def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) ->
 
 def first_bending(shaft: Shaft) -> float:
     """The lowest bending frequency of the free rotor (Hz)."""
-    return float(basis(shaft, 0).omega[RIGID]) / (2.0 * math.pi)
+    return float(basis(shaft, 0).omega[RIGID_MODES]) / (2.0 * math.pi)
 
 
 def sensible_speed(bending: float | None, bearings: Sequence[Bearing]) -> float:
     """A speed (rad/s) below the first bending frequency (Hz) that ball bearings run, two digits of rpm."""
-    fastest = MOST_BORE_SPEED / max(bearing.bore for bearing in bearings)
-    below = math.inf if bending is None else BELOW_BENDING * bending * 60.0
+    fastest = MAX_BORE_SPEED / max(bearing.bore for bearing in bearings)
+    below = math.inf if bending is None else MAX_SPEED_RATIO * bending * 60.0
     return rounded(min(below, fastest), down=True) * RPM
 
 

@@ -19,12 +19,12 @@ from ...common.files import keep_other, writing_to
 from ...scene.file import SCENE_FILE
 from ..rotor.report import find_rotor
 from .bearings import find_bearing
-from .design import GRAVITY, MOST_KEPT, Design, Support, first_bending, sensible_speed, supports
+from .design import GRAVITY, MAX_MODES_KEPT, Design, Support, first_bending, sensible_speed, supports
 from .scene_text import scene_text
 
-LEVITATED = re.compile(r"^levitated_at\s*=\s*\[[^\]]*\]", re.MULTILINE)
-TABLE = re.compile(r"^\[", re.MULTILINE)
-STATIONS = re.compile(r"^\[stations\][^\n]*\n", re.MULTILINE)
+LEVITATED_LINE = re.compile(r"^levitated_at\s*=\s*\[[^\]]*\]", re.MULTILINE)
+TABLE_HEAD = re.compile(r"^\[", re.MULTILINE)
+STATIONS_HEAD = re.compile(r"^\[stations\][^\n]*\n", re.MULTILINE)
 
 
 def with_places(shaft: Shaft, seats: Sequence[str], magnets: Sequence[str]) -> tuple[Shaft, list[str]]:
@@ -58,15 +58,15 @@ def rewritten(text: str, shaft: Shaft, wanted: Shaft) -> str:
         return text
     names = ", ".join(f'"{name}"' for name in wanted.levitated_at)
     line = f"levitated_at = [{names}]"
-    changed, found = LEVITATED.subn(line, text, count=1)
+    changed, found = LEVITATED_LINE.subn(line, text, count=1)
     if not found:
-        first = TABLE.search(text)
+        first = TABLE_HEAD.search(text)
         at = first.start() if first else len(text)
         changed = f"{text[:at]}{line}  # who holds the rotor at the start\n\n{text[at:]}"
     added = [s for s in wanted.stations if s not in shaft.stations]
     lines = "".join(f"{s.name} = {s.node}\n" for s in added)
     if added:
-        changed = STATIONS.sub(lambda match: match[0] + lines, changed, count=1)
+        changed = STATIONS_HEAD.sub(lambda match: match[0] + lines, changed, count=1)
     try:
         if _same(parse(changed, "the rotor"), wanted):
             return changed
@@ -206,7 +206,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         title=shaft.title,
         mass=shaft.mass,
         inertia=None,
-        modes=min(MOST_KEPT, shaft.coordinates),
+        modes=min(MAX_MODES_KEPT, shaft.coordinates),
         bending=bending,
         speed=sensible_speed(bending, kinds) if wanted.speed is None else wanted.speed,
         clearance=_checked_clearance(wanted.clearance, kinds),

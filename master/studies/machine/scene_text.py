@@ -7,18 +7,18 @@ import math
 from collections.abc import Iterator
 
 from ....bearings.catalogue import Bearing
-from ...scene.plausible import MOST_BORE_SPEED, RPM
+from ...scene.plausible import MAX_BORE_SPEED, RPM
 from .design import (
-    BELOW_BENDING,
-    CONTACT,
-    FORCE,
+    CONTACT_STIFFNESS_PER_M,
+    FORCE_LIMIT_RATIO,
     GRAVITY,
     HOUSING_DAMPING,
     HOUSING_FREQUENCY,
     HOUSING_SHARE,
-    LEAST_HOUSING,
-    LEVITATION,
     LEVITATION_DAMPING,
+    LEVITATION_FREQUENCY,
+    MAX_SPEED_RATIO,
+    MIN_HOUSING_MASS,
     Design,
     rounded,
 )
@@ -70,10 +70,10 @@ def _rotor(d: Design) -> Iterator[str]:
 
 def _speed_rule(d: Design) -> str:
     """How fast `sensible_speed` has a machine turn."""
-    bore = f"{MOST_BORE_SPEED * MM:,.0f} mm rpm over the bore"
+    bore = f"{MAX_BORE_SPEED * MM:,.0f} mm rpm over the bore"
     if d.bending is None:
         return bore
-    return f"{BELOW_BENDING:g} of the first bending frequency, {d.bending:.4g} Hz, and at most {bore}"
+    return f"{MAX_SPEED_RATIO:g} of the first bending frequency, {d.bending:.4g} Hz, and at most {bore}"
 
 
 def _bearings(d: Design) -> Iterator[str]:
@@ -97,18 +97,19 @@ def _bearings(d: Design) -> Iterator[str]:
 
 def _magnetic(d: Design) -> Iterator[str]:
     mass = d.levitated_mass
-    stiffness = rounded(mass * LEVITATION**2)
-    damping = rounded(2.0 * LEVITATION_DAMPING * mass * LEVITATION)
-    force = rounded(FORCE * mass * GRAVITY)
+    stiffness = rounded(mass * LEVITATION_FREQUENCY**2)
+    damping = rounded(2.0 * LEVITATION_DAMPING * mass * LEVITATION_FREQUENCY)
+    force = rounded(FORCE_LIMIT_RATIO * mass * GRAVITY)
     yield from (
         "",
         f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that bears most",
         "",
         _shared(d, [s.component for s in d.magnetic]),
         'shutdown_time = "20 ms"',
-        f"stiffness = {_stiffness(stiffness)}  # that mass swings with {LEVITATION / HERTZ:.3g} Hz",
+        f"stiffness = {_stiffness(stiffness)}  # that mass swings with "
+        f"{LEVITATION_FREQUENCY / HERTZ:.3g} Hz",
         f'damping = "{damping:g} N.s/m"  # {LEVITATION_DAMPING:g} of critical',
-        f'force_limit = "{force:g} N"  # {FORCE:g} times what it bears at rest',
+        f'force_limit = "{force:g} N"  # {FORCE_LIMIT_RATIO:g} times what it bears at rest',
         'bandwidth = "12566 rad/s"  # of the amplifier: 2 kHz',
     )
 
@@ -129,7 +130,7 @@ def _touchdown(d: Design) -> Iterator[str]:
 
 
 def _housings(d: Design) -> Iterator[str]:
-    mass = max(rounded(HOUSING_SHARE * d.landed_mass), LEAST_HOUSING)
+    mass = max(rounded(HOUSING_SHARE * d.landed_mass), MIN_HOUSING_MASS)
     stiffness = rounded(mass * HOUSING_FREQUENCY**2)
     damping = rounded(2.0 * HOUSING_DAMPING * mass * HOUSING_FREQUENCY)
     yield from (
@@ -137,7 +138,7 @@ def _housings(d: Design) -> Iterator[str]:
         "# -- what holds the touchdown bearings",
         "",
         _shared(d, [_housing(s.component) for s in d.touchdown]),
-        f'mass = "{mass:g} kg"  # {HOUSING_SHARE:g} of what it carries, {LEAST_HOUSING:g} kg at least',
+        f'mass = "{mass:g} kg"  # {HOUSING_SHARE:g} of what it carries, {MIN_HOUSING_MASS:g} kg at least',
         f"stiffness = {_stiffness(stiffness)}  # {HOUSING_FREQUENCY / HERTZ:.3g} Hz by itself",
         f'damping = "{damping:g} N.s/m"  # {HOUSING_DAMPING:g} of critical',
     )
@@ -147,9 +148,10 @@ def _housings(d: Design) -> Iterator[str]:
 
 def _fitted(bearing: Bearing, clearance: float) -> Iterator[str]:
     """What hangs on the bearing's size."""
-    radius, contact = 0.5 * bearing.bore - clearance, CONTACT * bearing.width
+    radius, contact = 0.5 * bearing.bore - clearance, CONTACT_STIFFNESS_PER_M * bearing.width
     yield f'journal_radius = "{radius * MM:g} mm"  # half the bore less the clearance'
-    yield f"contact.stiffness = {contact:g}  # N/m^(10/9), {CONTACT / MM:g} per mm of the width"
+    per_mm = CONTACT_STIFFNESS_PER_M / MM
+    yield f"contact.stiffness = {contact:g}  # N/m^(10/9), {per_mm:g} per mm of the width"
     if bearing.damping == 0.0:
         yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not tell'
 

@@ -19,34 +19,36 @@ from ....rotor.beams.element import Element
 from ....rotor.beams.shaft import Shaft
 from ....rotor.modal.data import seats
 from ....rotor.modal.whirl_speeds import Held
-from ....rotor.properties import Portrait
+from ....rotor.properties import RotorProperties
 from ...results.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, sheet, sized
 from .supported_figure import held_campbell
 
 RPM = 60.0 / (2.0 * math.pi)
 MM = 1e3
-MOST = 6  # modes drawn
+MAX_MODES_DRAWN = 6  # modes drawn
 COLOURS = (BLACK, GREY, BLUE, ORANGE, GREEN, PURPLE)  # of the modes
 AXIS = "position along the rotor's axis [mm]"
 CORE, SLEEVE, DISC, EDGE = "#c8d3dc", "#ece3d0", "#b3c6b1", "#7f8a93"
 WIDTH = 9.0  # inch, of a picture with side views
-BESIDE = 1.5  # inch of it that labels take
-BEYOND = 1.6  # of the largest radius: a side view's half height
-FLATTEST, HIGHEST = 0.2, 0.4  # height over width of a side view
-SHAPE = 0.78  # of a side view's half height: a shape's 1
+LABEL_INCHES = 1.5  # inch of it that labels take
+VIEW_HEIGHT = 1.6  # of the largest radius: a side view's half height
+MIN_ASPECT, MAX_ASPECT = 0.2, 0.4  # height over width of a side view
+SHAPE_HEIGHT = 0.78  # of a side view's half height: a shape's 1
 
 
-def draw_pictures(portrait: Portrait, folder: Path, held: Mapping[str, tuple[Held, str]]) -> list[Path]:
+def draw_pictures(
+    properties: RotorProperties, folder: Path, held: Mapping[str, tuple[Held, str]]
+) -> list[Path]:
     """campbell.png, modes.png and, where two nodes hold it, critical.png and rest.png in `folder`.
 
     held: Campbell diagrams in bearings and their titles, by the names of their pictures.
     """
     pictures = {"campbell": campbell, "modes": modes}
-    if portrait.critical:
+    if properties.critical:
         pictures["critical"] = critical
-    if portrait.rest is not None:
+    if properties.rest is not None:
         pictures["rest"] = rest
-    drawn = {name: partial(picture, portrait=portrait) for name, picture in pictures.items()}
+    drawn = {name: partial(picture, properties=properties) for name, picture in pictures.items()}
     drawn |= {name: partial(held_campbell, held=one, title=title) for name, (one, title) in held.items()}
     made: list[Path] = []
     for name, picture in drawn.items():
@@ -57,21 +59,25 @@ def draw_pictures(portrait: Portrait, folder: Path, held: Mapping[str, tuple[Hel
     return made
 
 
-def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+def campbell(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     """Whirl frequencies of the free rotor [Hz] over speed [rpm], with the line where both are equal.
 
-    The first of the portrait's speeds is the one asked for, the others make the lines.
+    The first of the properties' speeds is the one asked for, the others make the lines.
     """
-    asked, speeds = RPM * portrait.speeds[0], RPM * portrait.speeds[1:]
+    asked, speeds = RPM * properties.speeds[0], RPM * properties.speeds[1:]
     axes = sized(figure, 9.0, 6.5).subplots()
-    drawn = range(1, min(len(portrait.kinds), MOST))
+    drawn = range(1, min(len(properties.kinds), MAX_MODES_DRAWN))
     for k in drawn:
         axes.plot(
-            speeds, portrait.forward[1:, k], color=COLOURS[k], lw=1.4, label=f"{portrait.kinds[k]}, forward"
+            speeds,
+            properties.forward[1:, k],
+            color=COLOURS[k],
+            lw=1.4,
+            label=f"{properties.kinds[k]}, forward",
         )
-        if portrait.frequencies[k] > 0.0:
-            label = f"{portrait.kinds[k]}, backward"
-            axes.plot(speeds, portrait.backward[1:, k], "--", color=COLOURS[k], lw=1.2, label=label)
+        if properties.frequencies[k] > 0.0:
+            label = f"{properties.kinds[k]}, backward"
+            axes.plot(speeds, properties.backward[1:, k], "--", color=COLOURS[k], lw=1.2, label=label)
     axes.plot(speeds, speeds / 60.0, ":", color=BLACK, lw=1.2, label="1x, once per turn")
     axes.axvline(asked, color=GREY, lw=0.8, label=f"{asked:.5g} rpm")
     axes.set_xlim(0.0, float(speeds[-1]))
@@ -79,20 +85,20 @@ def campbell(figure: FigureBase, portrait: Portrait) -> list[Axes]:
     axes.set_xlabel("rotor speed [rpm]")
     axes.set_ylabel("whirl frequency of the free rotor [Hz]")
     figure.legend(loc="outside right upper", fontsize="small")
-    figure.suptitle(f"{portrait.shaft.title}: Campbell diagram")
+    figure.suptitle(f"{properties.shaft.title}: Campbell diagram")
     return [axes]
 
 
-def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+def critical(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     """Undamped critical speeds [rpm] over the stiffness of the supports [N/m], for each way it is held.
 
     Dashed: the shaft's own supports there, with dots for its critical speeds on them, or dotted lines where
-    the planes differ; grey: the first of the portrait's speeds.
+    the planes differ; grey: the first of the properties' speeds.
     """
-    panels = sized(figure, 9.0, 1.0 + 4.2 * len(portrait.critical)).subplots(
-        len(portrait.critical), 1, squeeze=False
+    panels = sized(figure, 9.0, 1.0 + 4.2 * len(properties.critical)).subplots(
+        len(properties.critical), 1, squeeze=False
     )
-    for axes, found in zip(panels[:, 0], portrait.critical, strict=True):
+    for axes, found in zip(panels[:, 0], properties.critical, strict=True):
         axes.loglog(found.stiffness, RPM * found.speeds, color=BLUE, lw=1.4)
         names = ", ".join(s.name for s in found.places)
         for support in found.marked:
@@ -110,23 +116,23 @@ def critical(figure: FigureBase, portrait: Portrait) -> list[Axes]:
             axes.plot(
                 np.full(len(found.own), middle), RPM * found.own, "o", color=ORANGE, ms=5, label=label
             )
-        if portrait.speeds[0] > 0.0:
-            asked = RPM * portrait.speeds[0]
+        if properties.speeds[0] > 0.0:
+            asked = RPM * properties.speeds[0]
             axes.axhline(asked, color=GREY, lw=1.0, label=f"{asked:.5g} rpm")
         axes.set_xlabel(f"stiffness of each support at {names} [N/m]")
         axes.set_ylabel("critical speed, forward [rpm]")
         axes.grid(True, which="major", color=GREY, lw=0.3)
         if axes.get_legend_handles_labels()[0]:
             axes.legend(loc="lower right", fontsize="small")
-    figure.suptitle(f"{portrait.shaft.title}: undamped critical speeds")
+    figure.suptitle(f"{properties.shaft.title}: undamped critical speeds")
     return list(panels[:, 0])
 
 
-def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+def modes(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     """Shapes of the rigid and the first bending modes over the rotor's side view, to scale."""
-    shaft, count = portrait.shaft, min(len(portrait.kinds), MOST)
+    shaft, count = properties.shaft, min(len(properties.kinds), MAX_MODES_DRAWN)
     panels = _stack(figure, shaft, count)
-    height = SHAPE * _window(shaft).reach
+    height = SHAPE_HEIGHT * _window(shaft).reach
 
     def to_shape(values: ArrayLike) -> np.ndarray:
         return np.divide(values, height)
@@ -136,25 +142,25 @@ def modes(figure: FigureBase, portrait: Portrait) -> list[Axes]:
 
     for k, axes in enumerate(panels):
         side_view(axes, shaft, named=k == 0)
-        shape = portrait.shapes[:, k]
+        shape = properties.shapes[:, k]
         axes.plot(MM * shaft.positions(), height * shape, ".-", color=ORANGE, lw=1.5, ms=4)
         right = axes.secondary_yaxis("right", functions=(to_shape, from_shape))
         right.set_ylabel("shape [1]", color=ORANGE)
         right.set_yticks([-1.0, 0.0, 1.0])
-        what = "rigid" if portrait.frequencies[k] == 0.0 else f"{portrait.frequencies[k]:.1f} Hz"
+        what = "rigid" if properties.frequencies[k] == 0.0 else f"{properties.frequencies[k]:.1f} Hz"
         _to_scale(axes, shaft)
-        axes.set_title(f"{portrait.kinds[k]}, {what}", fontsize="medium", pad=14 if k == 0 else 4)
+        axes.set_title(f"{properties.kinds[k]}, {what}", fontsize="medium", pad=14 if k == 0 else 4)
     panels[-1].set_xlabel(AXIS)
     figure.suptitle(f"{shaft.title}: modes of the free rotor at rest")
     return panels
 
 
-def rest(figure: FigureBase, portrait: Portrait) -> list[Axes]:
+def rest(figure: FigureBase, properties: RotorProperties) -> list[Axes]:
     """Side view to scale, deflection [µm] and bending stress [MPa] of the rotor on rigid seats.
 
-    Only for a portrait with `rest`; a superelement has no stress.
+    Only for properties with `rest`; a superelement has no stress.
     """
-    shaft, lying = portrait.shaft, portrait.rest
+    shaft, lying = properties.shaft, properties.rest
     assert lying is not None
     position = MM * shaft.positions()
     view_height = _window(shaft).height
@@ -191,15 +197,15 @@ class _Window:
     @property
     def height(self) -> float:
         """Of a panel to scale (inch)."""
-        return (WIDTH - BESIDE) * 2.0 * self.reach / (self.right - self.left)
+        return (WIDTH - LABEL_INCHES) * 2.0 * self.reach / (self.right - self.left)
 
 
 def _window(shaft: Shaft) -> _Window:
     length = MM * float(shaft.positions()[-1])
     radius = 0.5 * MM * max((e.widest for e in shaft.elements), default=0.0)
     radius = max(radius, *(0.5 * MM * _disc(point, shaft)[0] for point in shaft.points), 0.0)
-    half = max(0.52 * length, BEYOND * radius / HIGHEST)
-    reach = max(BEYOND * radius, FLATTEST * half)
+    half = max(0.52 * length, VIEW_HEIGHT * radius / MAX_ASPECT)
+    reach = max(VIEW_HEIGHT * radius, MIN_ASPECT * half)
     return _Window(0.5 * length - half, 0.5 * length + half, reach)
 
 

@@ -16,7 +16,7 @@ from ....rotor.file import find, shipped
 from ....rotor.imports.formats import ARCHIVE, MODELS, TABLES
 from ....rotor.modal.data import seats
 from ....rotor.modal.whirl_speeds import CriticalMap
-from ....rotor.properties import Portrait, portrait
+from ....rotor.properties import RotorProperties, rotor_properties
 from ....rotor.statics import Rest
 from ...common.errors import TouchdownError, one_of
 from ...results.run import make_writable
@@ -28,14 +28,14 @@ RPM = 60.0 / (2.0 * math.pi)
 SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
-BEYOND = 2.0  # times the speed asked for: its end
+MAX_SPEED_RATIO = 2.0  # times the speed asked for: its end
 FOREIGN = {  # what files of others hold
     **dict.fromkeys(TABLES, "a table of sections"),
     **dict.fromkeys(MODELS, "ROSS's files"),
     ARCHIVE: "matrices or modal data",
     ".mtx": "the matrices in that folder",
 }
-ANY = "a table of sections, of ROSS's files, of matrices or modal data"
+FOREIGN_SOURCES = "a table of sections, of ROSS's files, of matrices or modal data"
 TO_REST = (
     "needs two stations or more, at different nodes, that are not in levitated_at, for the rotor to lie on"
 )
@@ -63,15 +63,15 @@ def report(
     supports: stiffness in N/m of stations by name, beside the supports of the rotor's file. Raises
     TouchdownError where there is no such rotor or station, or its file has a mistake.
     """
-    portrait = described(supported(find_rotor(name), supports or {}), speed, modes)
+    properties = described(supported(find_rotor(name), supports or {}), speed, modes)
     make_writable(folder)
     from .figure import draw_pictures  # matplotlib is slow to import
 
     held = {}
-    if portrait.held is not None:
-        title = f"{portrait.shaft.title} {on_supports(portrait)}"
-        held["campbell_supports"] = portrait.held, title
-    return Report(report_text(portrait), draw_pictures(portrait, folder, held))
+    if properties.held is not None:
+        title = f"{properties.shaft.title} {on_supports(properties)}"
+        held["campbell_supports"] = properties.held, title
+    return Report(report_text(properties), draw_pictures(properties, folder, held))
 
 
 def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
@@ -88,11 +88,11 @@ def supported(shaft: Shaft, supports: Mapping[str, float]) -> Shaft:
     return replace(shaft, supports=(*kept, *springs))
 
 
-def described(shaft: Shaft, speed: float, modes: int) -> Portrait:
-    """The portrait of `shaft` at `speed` (rad/s), then over speeds for its Campbell diagram."""
-    end = BEYOND * abs(speed) or BEYOND * SPEED
+def described(shaft: Shaft, speed: float, modes: int) -> RotorProperties:
+    """The properties of `shaft` at `speed` (rad/s), then over speeds for its Campbell diagram."""
+    end = MAX_SPEED_RATIO * abs(speed) or MAX_SPEED_RATIO * SPEED
     try:
-        return portrait(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
+        return rotor_properties(shaft, modes, [speed, *np.linspace(0.0, end, SPEEDS)])
     except ModelError as error:
         raise TouchdownError(str(error)) from None
 
@@ -137,26 +137,26 @@ def _foreign(path: Path) -> str:
         return ""
     if path.is_dir() and not any(path.glob("*.mtx")):
         return ""
-    of = "its matrices" if path.is_dir() else FOREIGN.get(kind, ANY)
+    of = "its matrices" if path.is_dir() else FOREIGN.get(kind, FOREIGN_SOURCES)
     if kind == ".mtx":
         source = path.parent
     return f"{path} is no rotor's file; `touchdown import-rotor {source}` makes one of {of}"
 
 
-def report_text(portrait: Portrait) -> str:
-    """All figures as text; the frequencies are split at the first of the portrait's speeds."""
-    shaft = portrait.shaft
+def report_text(properties: RotorProperties) -> str:
+    """All figures as text; the frequencies are split at the first of the properties' speeds."""
+    shaft = properties.shaft
     lines = [
         shaft.title,
         *_two_columns(_body(shaft)),
         "",
         *_places(shaft),
         "",
-        *_frequencies(portrait),
+        *_frequencies(properties),
         "",
-        *_held(portrait),
-        *(line for found in portrait.critical for line in _critical(found)),
-        *_rest(shaft, portrait.rest),
+        *_held(properties),
+        *(line for found in properties.critical for line in _critical(found)),
+        *_rest(shaft, properties.rest),
     ]
     return "\n".join(lines)
 
@@ -205,25 +205,25 @@ def _places(shaft: Shaft) -> list[str]:
     return [head, *(f"  {n:<{width}}  {k:<16}  {i:4d}  {1e3 * position[i - 1]:13.1f}" for n, k, i in rows)]
 
 
-def _frequencies(portrait: Portrait) -> list[str]:
-    speed = f"{RPM * portrait.speeds[0]:.6g} rpm"
+def _frequencies(properties: RotorProperties) -> list[str]:
+    speed = f"{RPM * properties.speeds[0]:.6g} rpm"
     head = f"  {'free rotor':<12}  {'at rest [Hz]':>12}  {'backward [Hz]':>14}  {'forward [Hz]':>14}"
     lines = [f"  backward and forward whirl at {speed}", head]
     for kind, still, back, ahead in zip(
-        portrait.kinds, portrait.frequencies, portrait.backward[0], portrait.forward[0], strict=True
+        properties.kinds, properties.frequencies, properties.backward[0], properties.forward[0], strict=True
     ):
         lines.append(f"  {kind:<12}  {still:12.2f}  {back:14.2f}  {ahead:14.2f}")
     return lines
 
 
-def _held(portrait: Portrait) -> list[str]:
+def _held(properties: RotorProperties) -> list[str]:
     """Modes on the shaft's own supports."""
-    return [] if portrait.held is None else list(held_lines(portrait.held, on_supports(portrait)))
+    return [] if properties.held is None else list(held_lines(properties.held, on_supports(properties)))
 
 
-def on_supports(portrait: Portrait) -> str:
+def on_supports(properties: RotorProperties) -> str:
     """How the rotor is held by its own supports, in words."""
-    return f"on its {len(portrait.shaft.supports)} supports"
+    return f"on its {len(properties.shaft.supports)} supports"
 
 
 def _critical(found: CriticalMap) -> list[str]:

@@ -17,9 +17,9 @@ from ....rotor.modal.supported import dynamic_stiffness
 from ...common.errors import TouchdownError
 from ...components.component import FORCE, MOUNTED, POSITION, Component
 
-AMPLITUDE = 1e-6  # m
-NO_LAG = 1e-7  # s; a lag this short is none
-PLAIN = 1e-3  # misfit of a law without a lag that needs none
+SHAKE_AMPLITUDE = 1e-6  # m
+MIN_LAG = 1e-7  # s; a lag this short is none
+LAGLESS_MISFIT = 1e-3  # misfit of a law without a lag that needs none
 ROUNDING = 1e-6  # of the stiffness, what measuring may add
 
 
@@ -95,9 +95,10 @@ def _response(rig: Rig, sensed: bool) -> Response | None:
     columns = np.empty((len(frequencies), 2, 2), complex)  # frequency, motion, force
     for k in reversed(range(len(frequencies))):  # a short swing says whether there is a force
         columns[k] = [
-            rig.dynamic_stiffness(frequencies[k], axis, AMPLITUDE, sensed=sensed) for axis in np.eye(2)
+            rig.dynamic_stiffness(frequencies[k], axis, SHAKE_AMPLITUDE, sensed=sensed)
+            for axis in np.eye(2)
         ]
-        if AMPLITUDE * np.max(np.abs(columns[k])) <= NO_FORCE:
+        if SHAKE_AMPLITUDE * np.max(np.abs(columns[k])) <= NO_FORCE:
             return None
     return Response(frequencies, columns.transpose(0, 2, 1))
 
@@ -105,10 +106,10 @@ def _response(rig: Rig, sensed: bool) -> Response | None:
 def fitted(found: Response) -> Law:
     """The law nearest to a response, every frequency weighing as much; with a lag only if one is there."""
     plain = _least_squares(found, False)
-    if plain.misfit <= PLAIN:
+    if plain.misfit <= LAGLESS_MISFIT:
         return plain
     law = _least_squares(found, True)
-    return law if law.lag > NO_LAG else plain
+    return law if law.lag > MIN_LAG else plain
 
 
 def _least_squares(found: Response, lags: bool) -> Law:
@@ -153,21 +154,29 @@ def _cleared(matrix: np.ndarray, measured: float) -> np.ndarray:
 
 
 FREQUENCIES = (10.0, 40.0, 160.0, 640.0)  # Hz, at which a bearing is shaken
-STEPS = 256  # macro steps of a period, of what takes any
-FEWEST = 8  # of what takes only its own; at frequencies for which there are less it is not shaken
-PERIODS = 40  # at most, until one is as the last
-ALIKE, NEARLY = 1e-8, 1e-3  # of a period's answer to the last one's: aimed at, and told all the same
+STEPS_PER_PERIOD = 256  # macro steps of a period, of what takes any
+MIN_STEPS_PER_PERIOD = (
+    8  # of what takes only its own; at frequencies for which there are less it is not shaken
+)
+MAX_PERIODS = 40  # at most, until one is as the last
+PERIOD_TOLERANCE, PERIOD_LIMIT = (
+    1e-8,
+    1e-3,
+)  # of a period's answer to the last one's: aimed at, and told all the same
 NO_FORCE = 1e-9  # N
 AT_REST = np.zeros(2)
 SPIN = "omega"  # at a journal's port
 
-DESCENT = 0.01  # m/s, of a journal that is lowered onto its bearing
-DEEPEST = 0.002  # m that it is lowered at most
-FINE = 20e-6  # s, macro step of that
-SETTLING, LISTENING = 4e-3, 2e-3  # s, until a bearing has come to rest, and over which its force is read
-PRESSES = 25  # at most, until the load is met
-MET = 1e-3  # of the load
-NEAR = 0.02  # of the load, by which a pressed journal is moved on for the slope
+LOWERING_SPEED = 0.01  # m/s, of a journal that is lowered onto its bearing
+MAX_LOWERING = 0.002  # m that it is lowered at most
+LOWERING_STEP = 20e-6  # s, macro step of that
+SETTLING_TIME, MEASURING_TIME = (
+    4e-3,
+    2e-3,
+)  # s, until a bearing has come to rest, and over which its force is read
+MAX_PRESSES = 25  # at most, until the load is met
+LOAD_TOLERANCE = 1e-3  # of the load
+SLOPE_SHARE = 0.02  # of the load, by which a pressed journal is moved on for the slope
 
 
 @dataclass(frozen=True)
@@ -217,7 +226,7 @@ class Rig:
         if self._own_step is None:
             return np.array(FREQUENCIES)
         counts = np.array([round(1.0 / (f * self._own_step)) for f in FREQUENCIES])
-        counts = counts[counts >= FEWEST]
+        counts = counts[counts >= MIN_STEPS_PER_PERIOD]
         if not len(counts):
             raise TouchdownError(
                 f"{self._component.name} takes steps of {self._own_step:g} s, too long to be shaken at "
@@ -227,7 +236,7 @@ class Rig:
 
     def sagitta(self) -> np.ndarray:
         """Of a swing, what a chord leaves out that lasts a macro step (F,), by frequency."""
-        steps = np.array([self._step_of(1.0 / (STEPS * f)) for f in self.frequencies])
+        steps = np.array([self._step_of(1.0 / (STEPS_PER_PERIOD * f)) for f in self.frequencies])
         return (2.0 * math.pi * self.frequencies * steps) ** 2 / 8.0
 
     def dynamic_stiffness(
@@ -236,15 +245,15 @@ class Rig:
         direction: np.ndarray,
         amplitude: float,
         about: np.ndarray = AT_REST,
-        alike: float = ALIKE,
+        alike: float = PERIOD_TOLERANCE,
         sensed: bool = True,
     ) -> np.ndarray:
         """Force against the motion over it (2,), complex, N/m, in a swing (m) along `direction` (2,).
 
         frequency: Hz, one of `frequencies`; alike: of two periods' answers, over their size; sensed: by its
-        sensors, too. Raises TouchdownError where answers do not become `NEARLY` alike.
+        sensors, too. Raises TouchdownError where answers do not become `PERIOD_LIMIT` alike.
         """
-        step = self._step_of(1.0 / (STEPS * frequency))
+        step = self._step_of(1.0 / (STEPS_PER_PERIOD * frequency))
         count = round(1.0 / (frequency * step))
         omega = 2.0 * math.pi / (count * step)
         turn = np.exp(1j * omega * step * np.arange(count + 1))
@@ -254,7 +263,7 @@ class Rig:
         bend = 2.0 * (np.diff(here) - step * rate[:-1]) / step**2  # parabolas that end where the swing does
         middle = np.conj(turn[:-1]) * np.exp(-0.5j * omega * step) / np.sinc(1.0 / count)
         last = np.full(2, np.nan + 0j)
-        for _ in range(PERIODS):
+        for _ in range(MAX_PERIODS):
             forces = np.empty((count, 2))
             for k in range(count):
                 forces[k] = self._take(
@@ -265,7 +274,7 @@ class Rig:
             if apart <= alike * np.max(np.abs(answer)) + NO_FORCE / amplitude:
                 return answer
             last = answer
-        if apart <= NEARLY * np.max(np.abs(answer)):
+        if apart <= PERIOD_LIMIT * np.max(np.abs(answer)):
             return answer
         raise TouchdownError(
             f"{self._component.name}: its force does not follow a swing of {amplitude:.3g} m at "
@@ -279,12 +288,12 @@ class Rig:
         if depth is None:
             return None
         depth, slope = self._met(load, depth)
-        move, down = NEAR * load / slope, self._below(depth)
+        move, down = SLOPE_SHARE * load / slope, self._below(depth)
         side, up = np.eye(2)
         across, along = (self._slope(down, move * axis) for axis in (side, up))
         self._listen(down)
         highest = self.frequencies[-2:]
-        swings = [self.dynamic_stiffness(f, up, move, down, NEARLY)[1] for f in highest]
+        swings = [self.dynamic_stiffness(f, up, move, down, PERIOD_LIMIT)[1] for f in highest]
         rates = 2.0 * math.pi * highest
         return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
 
@@ -295,27 +304,27 @@ class Rig:
 
     def _lowered(self, load: float) -> float | None:
         """How deep (m) the journal is once the bearing first carries `load`."""
-        step = self._step_of(FINE)
-        rate = np.array([0.0, -DESCENT])
-        for k in range(round(DEEPEST / (DESCENT * step))):
-            if self._take(self._below(k * step * DESCENT), rate, AT_REST, step)[1] > load:
-                return (k + 1) * step * DESCENT
+        step = self._step_of(LOWERING_STEP)
+        rate = np.array([0.0, -LOWERING_SPEED])
+        for k in range(round(MAX_LOWERING / (LOWERING_SPEED * step))):
+            if self._take(self._below(k * step * LOWERING_SPEED), rate, AT_REST, step)[1] > load:
+                return (k + 1) * step * LOWERING_SPEED
         return None
 
     def _met(self, load: float, depth: float) -> tuple[float, float]:
         """The depth (m) at which the bearing, come to rest, carries `load`, and the force's slope (N/m)."""
         force = self._listen(self._below(depth))[1]
-        other, slope = depth - 0.25 * self._step_of(FINE) * DESCENT, 0.0
-        for _ in range(PRESSES):
+        other, slope = depth - 0.25 * self._step_of(LOWERING_STEP) * LOWERING_SPEED, 0.0
+        for _ in range(MAX_PRESSES):
             there = self._listen(self._below(other))[1]
             if (
-                slope == 0.0 or abs(there - force) > NEAR * load
+                slope == 0.0 or abs(there - force) > SLOPE_SHARE * load
             ):  # nearer, what is left of rattling would tell
                 slope = (there - force) / (other - depth)
             if not slope > 0.0:
                 break
             depth, force = other, there
-            if abs(load - force) <= MET * load:
+            if abs(load - force) <= LOAD_TOLERANCE * load:
                 return depth, slope
             other = depth + (load - force) / slope
         raise TouchdownError(
@@ -329,10 +338,12 @@ class Rig:
 
     def _listen(self, off: np.ndarray) -> np.ndarray:
         """Mean force (2,) once the journal has stood `off` (2,) its place (m) for a while."""
-        step = self._step_of(FINE)
-        for _ in range(round(SETTLING / step)):
+        step = self._step_of(LOWERING_STEP)
+        for _ in range(round(SETTLING_TIME / step)):
             self._take(off, AT_REST, AT_REST, step)
-        heard = [self._take(off, AT_REST, AT_REST, step) for _ in range(max(1, round(LISTENING / step)))]
+        heard = [
+            self._take(off, AT_REST, AT_REST, step) for _ in range(max(1, round(MEASURING_TIME / step)))
+        ]
         return np.mean(heard, axis=0)
 
     def _step_of(self, wanted: float) -> float:

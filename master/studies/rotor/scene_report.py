@@ -18,14 +18,14 @@ from ....rotor.imports.formats import Places
 from ....rotor.modal.modes import fullest
 from ....rotor.modal.supported import static_stiffness
 from ....rotor.modal.whirl_speeds import CriticalMap, critical_map
-from ....rotor.properties import Portrait
+from ....rotor.properties import RotorProperties
 from ...common.errors import TouchdownError
 from ...results.run import make_writable
 from ...scene.scene import Scene
 from .report import MODES, SPEED, Report, described, report_text
 from .rig import Answer
 from .supported import held_lines
-from .supports import Bearing, Seen, Situation, seen_in, situations
+from .supports import Bearing, Seen, SupportCondition, seen_in, support_conditions
 
 
 def import_rotor(
@@ -72,10 +72,10 @@ def _found(source: Any, speed: float | None) -> Shaft:
     return from_ross(source, speed)
 
 
-MISFIT = 1e-2  # of a law; above, it is said
-ALIKE = 1e-6  # directions of a support that differ by less are the same
+MISFIT_LIMIT = 1e-2  # of a law; above, it is said
+ISOTROPY_TOLERANCE = 1e-6  # directions of a support that differ by less are the same
 SPEEDS = 41  # speeds of a Campbell diagram
-BEYOND = 2.0  # times the speed asked for: its end
+MAX_SPEED_RATIO = 2.0  # times the speed asked for: its end
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ class SceneRotor:
     """All that is known of a scene's rotor before it is dropped."""
 
     scene: Scene
-    portrait: Portrait  # free; its maps of critical speeds mark what the situations' bearings have
-    situations: tuple[Situation, ...]
+    properties: RotorProperties  # free; its maps of critical speeds mark what the situations' bearings have
+    support_conditions: tuple[SupportCondition, ...]
     unheld: tuple[str, ...]  # a line for each situation that there is not
     remarks: tuple[str, ...]  # what a run of the scene would say before its first step
 
@@ -100,8 +100,8 @@ def described_in(
     seen = seen_in(scene)
     seen = seen if speed is None else replace(seen, speed=speed)
     asked = abs(seen.speed)
-    end = BEYOND * (asked or SPEED)
-    found, unheld = situations(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
+    end = MAX_SPEED_RATIO * (asked or SPEED)
+    found, unheld = support_conditions(seen, [asked, *np.linspace(0.0, end, SPEEDS)], load)
     free = described(replace(seen.shaft, supports=()), asked, modes)
     maps = [one for situation in found if (one := _map(seen, situation)) is not None]
     free = replace(free, critical=tuple(maps))
@@ -114,25 +114,25 @@ def report_scene(scene: Scene, folder: Path, speed: float | None, modes: int, lo
     make_writable(folder)
     from .figure import draw_pictures  # matplotlib is slow to import
 
-    held = {one.name: (one.held, title_of(found, one)) for one in found.situations}
-    pictures = draw_pictures(found.portrait, folder, held)
+    held = {one.name: (one.held, title_of(found, one)) for one in found.support_conditions}
+    pictures = draw_pictures(found.properties, folder, held)
     return Report(scene_text(found), pictures, found.remarks)
 
 
-def title_of(found: SceneRotor, situation: Situation) -> str:
+def title_of(found: SceneRotor, situation: SupportCondition) -> str:
     """Of a situation's Campbell diagram."""
-    return f"{found.portrait.shaft.title} in {found.scene.name}: {situation.name}"
+    return f"{found.properties.shaft.title} in {found.scene.name}: {situation.name}"
 
 
 def scene_text(found: SceneRotor) -> str:
     """All figures as text."""
-    lines = [report_text(found.portrait)]
-    for situation in found.situations:
+    lines = [report_text(found.properties)]
+    for situation in found.support_conditions:
         lines += ["", *_situation(situation)]
     return "\n".join([*lines, *(f"  {line}" for line in found.unheld)])
 
 
-def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
+def _map(seen: Seen, situation: SupportCondition) -> CriticalMap | None:
     """Critical speeds over the stiffness of a situation's bearings, theirs marked; None: at one node."""
     nodes = dict.fromkeys(b.node for b in situation.bearings)
     if len(nodes) < 2:
@@ -147,14 +147,14 @@ def _map(seen: Seen, situation: Situation) -> CriticalMap | None:
 def _support(node: int, bearings: list[Bearing]) -> Support:
     """The springs that bearings at a node are."""
     across, upright = np.diag(static_stiffness(p for b in bearings for p in b.parts)).tolist()
-    alike = abs(across - upright) <= ALIKE * max(abs(across), abs(upright))
+    alike = abs(across - upright) <= ISOTROPY_TOLERANCE * max(abs(across), abs(upright))
     return Support(node, across, None if alike else upright)
 
 
 # -- as text -----------------------------------------------------------------------------------------
 
 
-def _situation(situation: Situation) -> Iterator[str]:
+def _situation(situation: SupportCondition) -> Iterator[str]:
     yield f"  {situation.name}"
     for bearing in situation.bearings:
         yield from _pressed(bearing) if bearing.pressed is not None else _floating(bearing)
@@ -180,9 +180,9 @@ def _law(answer: Answer) -> Iterator[str]:
     law, response = answer.law, answer.response
     lag = f", behind a lag of {1e6 * law.lag:.4g} us ({1.0 / law.lag:.5g} rad/s)" if law.lag else ""
     yield f"      {_both(law.stiffness, 'N/m')}, {_both(law.damping, 'N s/m')}{lag}"
-    if law.misfit > MISFIT:
+    if law.misfit > MISFIT_LIMIT:
         yield f"      off by up to {100.0 * law.misfit:.2g} % of what it answers, as the modes may be"
-    if law.lag or law.misfit > MISFIT:
+    if law.lag or law.misfit > MISFIT_LIMIT:
         yield "      at " + "".join(f"{f:11.0f} Hz" for f in response.frequencies)
         yield "      N/m" + "".join(f"{k:13.4g} " for k in response.real[:, 0])[1:]
         yield "      N s/m" + "".join(f"{c:13.4g} " for c in response.damping[:, 0])[3:]

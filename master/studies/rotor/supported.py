@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....rotor.modal.supported import DAMPED, damping_ratios, log_decrements
+from ....rotor.modal.supported import MIN_DAMPING_RATIO, damping_ratios, log_decrements
 from ....rotor.modal.whirl_speeds import Held
 
 RPM = 60.0 / (2.0 * math.pi)
-TOLD = 8  # modes
-PLANAR = 0.1  # of a circle's turning; below, a whirl is told as planar
+MAX_LISTED_MODES = 8  # modes
+PLANAR_LIMIT = 0.1  # of a circle's turning; below, a whirl is told as planar
 HEAD = f"{'[Hz]':>12}  {'[rpm]':>10}  {'damping ratio':>14}  {'log decrement':>14}  {'whirl':>10}"
 
 
@@ -23,9 +23,9 @@ def held_lines(held: Held, title: str) -> Iterator[str]:
         verdict += ", but not held everywhere: it may drift"
     yield f"  {title} at {RPM * held.speed:.6g} rpm: {verdict}"
     yield f"  {'mode':<10}{HEAD}"
-    for number, k in enumerate(held.swinging[:TOLD], 1):
+    for number, k in enumerate(held.swinging[:MAX_LISTED_MODES], 1):
         root = complex(held.whirl.roots[k])
-        grows = "  grows" if held.whirl.damping_ratios[k] < -DAMPED else ""
+        grows = "  grows" if held.whirl.damping_ratios[k] < -MIN_DAMPING_RATIO else ""
         yield f"  {number:<10}{_row(root, float(held.whirl.sense[k]))}{grows}"
     slow = len(held.whirl.roots) - len(held.swinging)
     if slow:
@@ -38,7 +38,7 @@ def held_lines(held: Held, title: str) -> Iterator[str]:
 
 def whirl_name(sense: float) -> str:
     """Which way a mode turns, in a word."""
-    return "planar" if abs(sense) < PLANAR else "forward" if sense > 0.0 else "backward"
+    return "planar" if abs(sense) < PLANAR_LIMIT else "forward" if sense > 0.0 else "backward"
 
 
 def _row(root: complex, sense: float) -> str:

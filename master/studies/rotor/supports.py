@@ -15,7 +15,7 @@ import numpy as np
 from ....modelkit.model import ModelError
 from ....rotor.beams.shaft import Shaft
 from ....rotor.modal.data import most_modes, seats
-from ....rotor.modal.modes import RIGID, Basis, basis
+from ....rotor.modal.modes import RIGID_MODES, Basis, basis
 from ....rotor.modal.supported import Foundation, HeldRotor, LinearBearing, static_stiffness
 from ....rotor.modal.whirl_speeds import Held, held
 from ....rotor.statics import at_rest
@@ -26,7 +26,7 @@ from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.scene import Scene
 from .report import find_rotor
-from .rig import DEEPEST, Answer, Place, Pressed, Rig, answers
+from .rig import MAX_LOWERING, Answer, Place, Pressed, Rig, answers
 
 
 def balanced(scene: Scene, bodies: Iterable[str]) -> bool:
@@ -38,9 +38,9 @@ def balanced(scene: Scene, bodies: Iterable[str]) -> bool:
         return False
 
 
-SHUTDOWN, NEVER = "shutdown_time", 1e9  # a parameter of magnetic bearings; s
-LINES = 12  # followed over the speed
-MOST = 16  # modes per plane
+SHUTDOWN, NO_SHUTDOWN = "shutdown_time", 1e9  # a parameter of magnetic bearings; s
+CAMPBELL_LINES = 12  # followed over the speed
+MAX_MODES = 16  # modes per plane
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Bearing:
 
 
 @dataclass(frozen=True)
-class Situation:
+class SupportCondition:
     """The rotor held by some of its scene's bearings."""
 
     name: str  # "levitated" or "resting"
@@ -93,9 +93,9 @@ class Seen:
     remarks: tuple[str, ...]  # what a run of the scene would say before its first step
 
 
-def situations(
+def support_conditions(
     seen: Seen, speeds: Sequence[float] | np.ndarray, load: float = 1.0
-) -> tuple[list[Situation], list[str]]:
+) -> tuple[list[SupportCondition], list[str]]:
     """Levitated and resting, where the rotor is, and a line for each of the two that it is not.
 
     speeds: rad/s, not negative; the one that modes are told at, then those of the diagram. load: of the
@@ -117,7 +117,7 @@ def situations(
 
 def _situation(
     seen: Seen, name: str, found: Mapping[str, Bearing | str], speeds: Sequence[float] | np.ndarray
-) -> Situation | None:
+) -> SupportCondition | None:
     bearings = tuple(b for b in found.values() if isinstance(b, Bearing))
     if not bearings:
         return None
@@ -127,7 +127,7 @@ def _situation(
         parts = [replace(p, stiffness=flip * p.stiffness, damping=flip * p.damping) for p in parts]
     rotor = HeldRotor(seen.basis, parts, seen.damping_ratio)
     left_out = tuple(f"{bearing} {why}" for bearing, why in found.items() if isinstance(why, str))
-    return Situation(name, bearings, held(rotor, speeds, LINES), left_out)
+    return SupportCondition(name, bearings, held(rotor, speeds, CAMPBELL_LINES), left_out)
 
 
 # -- what the scene says -----------------------------------------------------------------------------
@@ -163,10 +163,12 @@ def seen_in(scene: Scene) -> Seen:
 
 
 def _basis(shaft: Shaft, modes: int, residual_at: tuple[int, ...]) -> Basis:
-    """As the rotor has it; of more than `MOST` modes that many, and the flexibility of the others."""
-    if RIGID <= modes <= MOST:
+    """As the rotor has it; of more than `MAX_MODES` modes that many, and the flexibility of the others."""
+    if RIGID_MODES <= modes <= MAX_MODES:
         return basis(shaft, modes, residual_at)
-    return basis(shaft, min(MOST, most_modes(shaft)), tuple(dict.fromkeys(s.node for s in shaft.stations)))
+    return basis(
+        shaft, min(MAX_MODES, most_modes(shaft)), tuple(dict.fromkeys(s.node for s in shaft.stations))
+    )
 
 
 def _of_elements(scene: Scene, body: str) -> Shaft:
@@ -238,7 +240,7 @@ def _foundation(system: System, mount: str) -> Foundation | None:
 def _rig(seen: Seen, idle: System, a: Attachment) -> Rig:
     component = idle.components[a.bearing]
     if SHUTDOWN in component.variables:
-        component.set({SHUTDOWN: NEVER})
+        component.set({SHUTDOWN: NO_SHUTDOWN})
     step = seen.scene.run.macro_step * idle.every[a.bearing]
     return Rig(component, a.bearing_port, seen.places[a.bearing], step)
 
@@ -328,7 +330,7 @@ def _pressed(seen: Seen, a: Attachment, rig: Rig, load: float) -> Bearing | str:
         return "carries none of the rotor's weight"
     pressed = rig.pressed(load)
     if pressed is None:
-        return f"lets the journal sink by more than {1e3 * DEEPEST:g} mm"
+        return f"lets the journal sink by more than {1e3 * MAX_LOWERING:g} mm"
     mount, foundation = _stands_on(seen, a)
     part = LinearBearing(
         seen.shaft.node(a.body_port),

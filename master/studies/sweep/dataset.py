@@ -15,7 +15,12 @@ from .report import counted, keys
 
 MEMBER = "member"
 ENDED, FAILED = "ended", "failed"
-REPEATED = ("scene", "completed", "ended", "stopped_because")  # of a summary: said once for all, or above
+LEFT_OUT_FIGURES = (
+    "scene",
+    "completed",
+    "ended",
+    "stopped_because",
+)  # of a summary: said once for all, or above
 UNIT = re.compile(r"_(m_s|rad_s|um|N|Hz|rpm|deg|J|MPa|s)(?=_|$)")  # in the name of a figure
 
 
@@ -35,7 +40,7 @@ def dataset(definition: Definition, members: Sequence[Member]) -> xarray.Dataset
         FAILED: _column([member.failed for member in members], long_name="why it failed"),
     }
     for key in keys(members):
-        if key not in REPEATED:
+        if key not in LEFT_OUT_FIGURES:
             values = [counted(member.summary.get(key)) for member in members]
             variables[key] = _figure(_without_component(key, definition), values)
     attributes = {

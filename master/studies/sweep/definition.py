@@ -406,12 +406,12 @@ def _refuse_too_many(count: int) -> None:
         )
 
 
-FILE = "sweep.json"
-UNSAID = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
-TOLD = ("about", "values", "changes", "run_changes")  # of a definition: the same
-NEEDED = ("name", "title", "run", "components")  # of a scene, by what reads a sweep
-OF_COMPONENT = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
-SAID = 3  # differences that are told
+DEFINITION_FILE = "sweep.json"
+IGNORED_FIELDS = ("name", "title", "about", "folder", "own")  # of a scene: they change no number
+IGNORED_DEFINITION_FIELDS = ("about", "values", "changes", "run_changes")  # of a definition: the same
+NEEDED_FIELDS = ("name", "title", "run", "components")  # of a scene, by what reads a sweep
+COMPONENT_SETTINGS = ("preset", "every", "isolate", "native")  # said of a component, not a variable of it
+MAX_DIFFERENCES = 3  # differences that are told
 
 
 @dataclass(frozen=True)
@@ -466,7 +466,7 @@ class Definition:
 
     def write(self, folder: Path) -> None:
         """Write it into `folder`. Raises OSError."""
-        replace_text(folder / FILE, json.dumps(asdict(self), default=str) + "\n")
+        replace_text(folder / DEFINITION_FILE, json.dumps(asdict(self), default=str) + "\n")
 
 
 def define(scene: Scene, design: Design, in_process: bool) -> Definition:
@@ -603,7 +603,7 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
     if component == "run":
         taken = getattr(varied.run, variable)
         return float(taken) if variable in UNITS else str(getattr(taken, "name", taken))
-    if variable in OF_COMPONENT:
+    if variable in COMPONENT_SETTINGS:
         return str(given)
     return float(checked(system.components[component], variable, given))
 
@@ -613,16 +613,16 @@ def _si_value(first: Scene, system: System, setting: str, given: object) -> obje
 
 def read_definition(folder: Path) -> Definition:
     """What the sweep in `folder` was asked. Raises TouchdownError where there is none that can be read."""
-    path = folder / FILE
+    path = folder / DEFINITION_FILE
     try:
         given = json.loads(path.read_text(encoding="utf-8"))
         columns = [Column(c["name"], tuple(c["settings"]), c["unit"]) for c in given.pop("columns")]
-        if absent := [key for key in NEEDED if key not in given["scene"]]:
+        if absent := [key for key in NEEDED_FIELDS if key not in given["scene"]]:
             raise KeyError(absent[0])
         lists = {key: tuple(given[key]) for key in ("part", "changes", "run_changes")}
         return Definition(**{**given, **lists, "columns": tuple(columns)})
     except FileNotFoundError:
-        raise TouchdownError(f"there is no sweep in {folder}: it has no {FILE}") from None
+        raise TouchdownError(f"there is no sweep in {folder}: it has no {DEFINITION_FILE}") from None
     except OSError as error:
         raise TouchdownError(f"cannot read {path}: {error.strerror}") from None
     except (ValueError, TypeError, KeyError):
@@ -637,7 +637,11 @@ def differences(there: Definition, here: Definition) -> list[str]:
     if len(there.points) != len(here.points):  # told by their number
         del one["point"], other["point"]
     said = list(_differences(one, other, ""))
-    return said if len(said) <= SAID else [*said[:SAID], f"and {len(said) - SAID} more"]
+    return (
+        said
+        if len(said) <= MAX_DIFFERENCES
+        else [*said[:MAX_DIFFERENCES], f"and {len(said) - MAX_DIFFERENCES} more"]
+    )
 
 
 def refuse_other(folder: Path, there: Definition, here: Definition) -> None:
@@ -654,7 +658,7 @@ def _compared(definition: Definition) -> dict[str, Any]:
     """All of it that changes a number, as JSON has it."""
     plain = cast(dict[str, Any], json.loads(json.dumps(asdict(definition), default=str)))
     scene, columns = plain.pop("scene"), plain.pop("columns")
-    for told in TOLD:
+    for told in IGNORED_DEFINITION_FIELDS:
         del plain[told]
     points, part = plain.pop("points"), plain.pop("part")
     for component in scene["components"].values():
@@ -662,7 +666,7 @@ def _compared(definition: Definition) -> dict[str, Any]:
     names = [column["name"] for column in columns]
     return {
         **plain,
-        **{key: value for key, value in scene.items() if key not in UNSAID},
+        **{key: value for key, value in scene.items() if key not in IGNORED_FIELDS},
         "varied": ", ".join(names),
         "settings": {column["name"]: ", ".join(column["settings"]) for column in columns},
         "shard": "/".join(map(str, part)),

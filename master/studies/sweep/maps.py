@@ -85,7 +85,7 @@ def field(
     return Field(tuple(title for title, _ in columns), spots, " and ".join(rest))
 
 
-MOST_TICKS = 12
+MAX_TICKS = 12
 
 
 def cells(axes: Axes, field: Field[Value]) -> Iterator[tuple[int, int, Value]]:
@@ -102,7 +102,7 @@ def cells(axes: Axes, field: Field[Value]) -> Iterator[tuple[int, int, Value]]:
 
 def _ticks(values: Sequence[object]) -> tuple[list[int], list[str]]:
     """Places and labels, thinned where they would not fit."""
-    every = -(-len(values) // MOST_TICKS)
+    every = -(-len(values) // MAX_TICKS)
     places = list(range(0, len(values), every))
     labels = [f"{values[i]:.6g}" if isinstance(values[i], float) else str(values[i]) for i in places]
     return places, labels
@@ -123,8 +123,8 @@ def legend_below(axes: Axes, patches: Sequence[Patch]) -> None:
 
 
 SCALE = "cividis"  # even for eyes that tell no red from green, and in grey
-ROOM = 1.08  # of the largest value, up to the frame
-MOST_TOLD = 100  # cells with their numbers in words
+SCALE_MARGIN = 1.08  # of the largest value, up to the frame
+MAX_LABELLED_CELLS = 100  # cells with their numbers in words
 
 Values = list[float]  # of the drops at one place
 
@@ -166,7 +166,7 @@ def _value_cells(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
         grid[y, x] = max(values, default=np.nan)
     image = axes.imshow(grid, origin="lower", aspect="auto", cmap=SCALE, interpolation="nearest")
     axes.figure.colorbar(image, ax=axes, label=quantity.label)
-    if grid.size > MOST_TOLD:
+    if grid.size > MAX_LABELLED_CELLS:
         return
     middle = 0.5 * (np.nanmin(grid) + np.nanmax(grid))
     for (y, x), value in np.ndenumerate(grid):
@@ -190,14 +190,14 @@ def _line(axes: Axes, field: Field[Values], quantity: Quantity) -> None:
     largests, smallests = ([pick(field.spots[(x,)]) for x in places] for pick in (max, min))
     axes.plot(places, largests, "-o", color=BLUE, ms=4)
     axes.fill_between(places, smallests, largests, color=BLUE, alpha=0.18, lw=0)
-    axes.set_ylim(0.0, ROOM * max(largests) or 1.0)
+    axes.set_ylim(0.0, SCALE_MARGIN * max(largests) or 1.0)
     axes.set_ylabel(quantity.label)
 
 
 COLOURS: Mapping[Kind, str] = {Kind.SETTLES: "#dddddd", Kind.TRANSIENT: BLUE, Kind.SUSTAINED: ORANGE}
 HATCHES = {Kind.SUSTAINED: "////"}  # told apart in grey, too
 MARKERS = {Kind.SETTLES: "o", Kind.TRANSIENT: "s", Kind.SUSTAINED: "^"}
-FILLED = 0.96  # of a cell; the rest parts it from the next
+CELL_FILL = 0.96  # of a cell; the rest parts it from the next
 MARGIN = 4.0  # % beyond none and all
 
 Kinds = Counter[Kind]  # how many drops of each
@@ -248,13 +248,13 @@ def _kinds(members: list[Member]) -> Kinds:
 
 def _whirl_cells(axes: Axes, field: Field[Kinds]) -> None:
     """A cell per place, filled from the left by the parts of its verdicts."""
-    told = len(field.spots) <= MOST_TOLD
+    told = len(field.spots) <= MAX_LABELLED_CELLS
     for x, y, kinds in cells(axes, field):
-        left = x - 0.5 * FILLED
+        left = x - 0.5 * CELL_FILL
         for one in reversed(Kind):
-            width = FILLED * kinds[one] / kinds.total() if kinds.total() else 0.0
+            width = CELL_FILL * kinds[one] / kinds.total() if kinds.total() else 0.0
             fill = {"facecolor": COLOURS[one], "hatch": HATCHES.get(one), "edgecolor": "#ffffff80"}
-            axes.add_patch(Rectangle((left, y - 0.5 * FILLED), width, FILLED, lw=0, **fill))
+            axes.add_patch(Rectangle((left, y - 0.5 * CELL_FILL), width, CELL_FILL, lw=0, **fill))
             left += width
         if told and kinds.total() != 1:
             box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}

@@ -15,10 +15,10 @@ from ...results.whirl.verdict import verdict_class
 from .definition import number_and_unit
 from .members import Member
 
-MOST_ROWS = 40  # shown; all are in the file
-MOST_REASONS = 5  # why members failed, or are warned of
+MAX_ROWS = 40  # shown; all are in the file
+MAX_REASONS = 5  # why members failed, or are warned of
 
-PICKS = (  # shown beside the verdicts where none are asked for
+DEFAULT_FIGURES = (  # shown beside the verdicts where none are asked for
     "whirl_*_revolutions",
     "first_impact_contact_force_N*",
     "peak_contact_force_N*",
@@ -59,7 +59,7 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
     wanted = list(picks)
     chosen = [] if wanted else verdict_keys(members)
     complaints: list[str] = []
-    for pick in wanted or PICKS:
+    for pick in wanted or DEFAULT_FIGURES:
         matches = [key for key in known if fnmatchcase(key, pick)]
         chosen += matches
         if wanted and known and not matches:
@@ -92,11 +92,9 @@ def _most_frequent(said: Sequence[tuple[int, str]]) -> list[str]:
     """Of members' numbers and what is said of them: a line each, how often, and of whom first."""
     counts = Counter(what for _, what in said)
     first = {what: number for number, what in reversed(said)}
-    lines = [f"  {n} x {what} (member {first[what]})" for what, n in counts.most_common(MOST_REASONS)]
+    lines = [f"  {n} x {what} (member {first[what]})" for what, n in counts.most_common(MAX_REASONS)]
     return (
-        lines
-        if len(counts) <= MOST_REASONS
-        else [*lines, f"  and {len(counts) - MOST_REASONS} reasons more"]
+        lines if len(counts) <= MAX_REASONS else [*lines, f"  and {len(counts) - MAX_REASONS} reasons more"]
     )
 
 
@@ -113,7 +111,7 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
         return "no members"
     names = list(members[0].settings)
     rows = [["", *names, *figures, ""]]
-    for m in members[:MOST_ROWS]:
+    for m in members[:MAX_ROWS]:
         row = [str(m.number), *(str(m.settings[name]) for name in names)]
         row += [_shown(m.summary.get(key)) for key in figures]
         rows.append([*row, f"failed: {m.failed}" if m.failed else ""])
@@ -122,8 +120,8 @@ def table(members: Sequence[Member], figures: Sequence[str]) -> str:
         "  ".join([f"{cell:>{width}}" for cell, width in zip(row[:-1], widths, strict=False)] + row[-1:])
         for row in rows
     ]
-    if len(members) > MOST_ROWS:
-        aligned.append(f"... and {len(members) - MOST_ROWS} more")
+    if len(members) > MAX_ROWS:
+        aligned.append(f"... and {len(members) - MAX_ROWS} more")
     return "\n".join(line.rstrip() for line in aligned)
 
 

@@ -95,7 +95,7 @@ def merge(folders: Iterable[Path], folder: Path | None) -> Sweep:
     sweeps, or have different figures for a member.
     """
     parts = list(folders)
-    if folder is not None and (folder / definition.FILE).exists() and folder not in parts:
+    if folder is not None and (folder / definition.DEFINITION_FILE).exists() and folder not in parts:
         parts.append(folder)
     if not parts:
         raise TouchdownError("nothing to merge; name a folder of a sweep")

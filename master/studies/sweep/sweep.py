@@ -22,11 +22,11 @@ from .definition import Definition, Design, define, read_definition, refuse_othe
 from .members import MEMBERS_FILE, Journal, Member, cut_torn_line, read_journal
 from .results import DATASET, TABLE, Sweep, write_results
 
-MADE_OF_IT = (  # what an earlier sweep may have left, beside its journal
+DERIVED_FILES = (  # what an earlier sweep may have left, beside its journal
     *(DATASET, TABLE, "whirl-map.png", "force-map.png", "stress-map.png"),
     *("report.html", "report.pdf"),
 )
-UNDER_WAY = ".under-way"  # where members run whose recordings are not kept
+SCRATCH_FOLDER = ".under-way"  # where members run whose recordings are not kept
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def sweep(
         members = [now[n] if n in now else lines.members[n] for n in asked.numbers]
         found = Sweep(asked, tuple(members), folder)
         with writing_to(folder):
-            shutil.rmtree(folder / UNDER_WAY, ignore_errors=True)
+            shutil.rmtree(folder / SCRATCH_FOLDER, ignore_errors=True)
             write_results(found, folder)
     return found
 
@@ -102,13 +102,13 @@ def sweep(
 def _opened(folder: Path, asked: Definition, running: Running) -> Journal:
     """The journal of the sweep in `folder`, which is begun or goes on. Raises TouchdownError."""
     path = folder / MEMBERS_FILE
-    begun = (folder / definition.FILE).exists()
+    begun = (folder / definition.DEFINITION_FILE).exists()
     if begun and not running.anew:
         refuse_other(folder, read_definition(folder), asked)
     with writing_to(folder):
-        shutil.rmtree(folder / UNDER_WAY, ignore_errors=True)
+        shutil.rmtree(folder / SCRATCH_FOLDER, ignore_errors=True)
         if not begun or running.anew:
-            for left in (MEMBERS_FILE, *MADE_OF_IT):
+            for left in (MEMBERS_FILE, *DERIVED_FILES):
                 (folder / left).unlink(missing_ok=True)
             asked.write(folder)
         cut_torn_line(path)
@@ -146,7 +146,7 @@ class _Tasks(Sequence[Task]):
         execution = Execution(running.in_process, running.keep, passing=not running.keep)
         where = self.kept_in(number)
         if where is None and not running.cluster:  # whose workers may be anywhere, and find a place there
-            where = self.folder / UNDER_WAY / str(number)
+            where = self.folder / SCRATCH_FOLDER / str(number)
         scene = self.asked.at(self.scene, number)
         return Task(number, self.asked.settings(number), scene, where, execution)
 

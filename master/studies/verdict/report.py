@@ -39,7 +39,7 @@ from .study import (
     windows,
 )
 
-INNERMOST = 1.0  # radius, in rings
+INNER_RADIUS = 1.0  # radius, in rings
 
 
 def circles(study: Study) -> Figure:
@@ -48,8 +48,8 @@ def circles(study: Study) -> Figure:
     axes = figure.add_subplot(projection="polar")
     assert isinstance(axes, PolarAxes)
     for ring, circle in enumerate(study.circles):
-        _ring(axes, circle, INNERMOST + ring)
-    outermost = INNERMOST + len(study.circles)
+        _ring(axes, circle, INNER_RADIUS + ring)
+    outermost = INNER_RADIUS + len(study.circles)
     axes.plot([np.radians(study.phase)] * 2, [0.0, outermost], color=GREY, ls="--", lw=1)
     axes.set_ylim(0.0, outermost)
     axes.set_yticks([])
@@ -71,7 +71,7 @@ def _ring(axes: PolarAxes, circle: Circle, inner: float) -> None:
         axes.plot(np.radians(phase), inner + 0.45, ".", color=BLACK, ms=3)
 
 
-MOST_ROWS = 4  # of phases with equal verdicts in a window, to be told one by one
+MAX_ROWS = 4  # of phases with equal verdicts in a window, to be told one by one
 SETTLES = "no whirl"  # in words, where a circle has ""
 
 
@@ -149,7 +149,7 @@ def _window_lines(circle: Circle) -> Iterator[str]:
 def ways(verdicts: Verdicts, window: Window) -> str:
     """How the phases of a window whirl: from where to where, or how often where it changes too often."""
     rows = [(words, list(row)) for words, row in itertools.groupby(window.phases, key=verdicts.__getitem__)]
-    if 1 < len(rows) <= MOST_ROWS:
+    if 1 < len(rows) <= MAX_ROWS:
         return ", ".join(f"{row[0]:g} to {row[-1]:g} {words}" for words, row in rows)
     counted = Counter(verdicts[phase] for phase in window.phases).most_common()
     return ", ".join(f"{n} x {words}" for words, n in counted)

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...common.errors import Ended, TouchdownError
-from ...common.progress import UNSEEN, Progress
+from ...common.progress import SILENT_PROGRESS, Progress
 from ...coupling.simulation import opened, refuse_endless
 from ...coupling.system import System
 from ...results.run import make_writable
@@ -244,12 +244,12 @@ def _runs(whirls: Mapping[float, bool]) -> list[list[float]]:
     return rows
 
 
-GRID = 12.0  # deg; windows of rotor I are 16 to 20 wide
+PHASE_GRID = 12.0  # deg; windows of rotor I are 16 to 20 wide
 RESOLUTION = 4.0  # deg
-LEAST = 0.1  # deg; nothing turns about that exactly, and a circle has thousands of runs by then
-REFERENCE = 5e-6  # s
-LONGER = 4.0  # times the scene's duration, at most, so that a whirl that dies away is seen to
-NEVER = 1e9  # a residual of the ledger at which no run stops: how many would have is counted
+MIN_RESOLUTION = 0.1  # deg; nothing turns about that exactly, and a circle has thousands of runs by then
+REFERENCE_STEP = 5e-6  # s
+MAX_LONGER = 4.0  # times the scene's duration, at most, so that a whirl that dies away is seen to
+NO_STOP_RESIDUAL = 1e9  # a residual of the ledger at which no run stops: how many would have is counted
 
 
 @dataclass(frozen=True)
@@ -257,7 +257,7 @@ class Plan:
     """Which phases, and with which steps."""
 
     spacing: float = (
-        GRID  # deg, between the phases that are looked at first; narrower windows may be missed
+        PHASE_GRID  # deg, between the phases that are looked at first; narrower windows may be missed
     )
     resolution: float = RESOLUTION  # deg, to which edges are found
     macro_steps: tuple[float, ...] = ()  # s; none: the scene's own
@@ -265,12 +265,13 @@ class Plan:
 
     def __post_init__(self) -> None:
         for name, value in (("grid", self.spacing), ("resolution", self.resolution)):
-            if not LEAST <= value <= 0.5 * CIRCLE:
+            if not MIN_RESOLUTION <= value <= 0.5 * CIRCLE:
                 meant = math.radians(value)  # what a number without a unit was
-                if value < LEAST or meant > 0.5 * CIRCLE:
-                    meant = GRID
+                if value < MIN_RESOLUTION or meant > 0.5 * CIRCLE:
+                    meant = PHASE_GRID
                 raise TouchdownError(
-                    f'{name} = {value:g} deg must be from {LEAST} to 180 deg; write "{meant:g} deg"'
+                    f"{name} = {value:g} deg must be from {MIN_RESOLUTION} to 180 deg; "
+                    f'write "{meant:g} deg"'
                 )
         if self.resolution > self.spacing:
             raise TouchdownError(
@@ -321,7 +322,7 @@ def study_verdict(
     plan: Plan,
     folder: Path,
     running: Running = Running(),
-    progress: Progress = UNSEEN,
+    progress: Progress = SILENT_PROGRESS,
 ) -> Study:
     """Run `scene` round the circle of its unbalance's phase, as `plan` has it.
 
@@ -362,7 +363,7 @@ def answering(scene: Scene) -> Scene:
     """`scene` until its drops settle, LONGER times its duration at most, where nobody has said how long."""
     if {"duration", "until"} & set(scene.own) or scene.run.until == SETTLED:
         return scene
-    return scene.set({"run.duration": LONGER * scene.run.duration, "run.until": SETTLED})
+    return scene.set({"run.duration": MAX_LONGER * scene.run.duration, "run.until": SETTLED})
 
 
 def _looked_at(scene: Scene) -> tuple[dict[str, float], Sequence[str]]:
@@ -405,7 +406,7 @@ def _with_step(scene: Scene, step: float) -> _Stepped:
     changes: dict[str, object] = {"run.macro_step": step, "run.record_every": every}
     name = f"{1e6 * step:g}us"
     return _Stepped(
-        f"macro step {1e6 * step:g} us", name, scene.set({**changes, "run.stop_residual": NEVER})
+        f"macro step {1e6 * step:g} us", name, scene.set({**changes, "run.stop_residual": NO_STOP_RESIDUAL})
     )
 
 

@@ -10,7 +10,7 @@ from friction_records import prepared
 
 from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, FrictionLaw, coefficient
 from touchdown.bearings.contact.journal import (
-    FAR,
+    MAX_REACH,
     ContactMemory,
     ContactReport,
     Touch,
@@ -333,7 +333,7 @@ def test_the_time_to_the_touch_is_that_of_straight_ways(seed: int) -> None:
         back = [x + v * t for x, v in ((ring.x, ring.vx), (ring.y, ring.vy))]
         return math.hypot(away[0] - back[0], away[1] - back[1])
 
-    assert 0.0 < time < FAR
+    assert 0.0 < time < MAX_REACH
     assert distance(time) == pytest.approx(CLEARANCE, rel=1e-9)
     assert all(distance(s * time) < CLEARANCE for s in (0.1, 0.5, 0.99))
 
@@ -341,7 +341,7 @@ def test_the_time_to_the_touch_is_that_of_straight_ways(seed: int) -> None:
 @pytest.mark.parametrize("speed", [0.0, 1e-6, 1e-30])
 def test_a_journal_that_hardly_moves_is_far_off(speed: float) -> None:
     still = Motion(0.0, 0.0, 0.0, 0.0, 0.0)
-    assert time_to_touch(Motion(0.0, 1e-4, 0.0, -speed, 0.0), still, CLEARANCE) == FAR
+    assert time_to_touch(Motion(0.0, 1e-4, 0.0, -speed, 0.0), still, CLEARANCE) == MAX_REACH
 
 
 @every_seed

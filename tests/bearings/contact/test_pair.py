@@ -13,9 +13,9 @@ from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Frict
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
 from touchdown.bearings.contact.pair import (
     INSIDE,
+    NO_KICK,
     OUTSIDE,
-    PLENTY,
-    STILL,
+    UNLIMITED_ENERGY,
     Kick,
     Place,
     Press,
@@ -37,7 +37,7 @@ from touchdown.bearings.rolling.ball_bodies import (
     pressing,
     with_friction,
 )
-from touchdown.bearings.rolling.ball_set import MOST_BALLS
+from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.balls import Total
 from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
 from touchdown.bearings.rolling.ring import rounded
@@ -93,7 +93,7 @@ def random_kick(rng: np.random.Generator, h: float) -> Kick:
     return Kick(Beat(h, 0.5 * h), across, along, *(h * rng.normal(0.0, 5e3, 2)))
 
 
-def pressed(pair: Pair, side: float, law: Any, friction: Any, kick: Kick = STILL) -> Press:
+def pressed(pair: Pair, side: float, law: Any, friction: Any, kick: Kick = NO_KICK) -> Press:
     """The contact of a pair."""
     return Press(*press(*pair, side, law, friction, kick))
 
@@ -336,7 +336,7 @@ def empty_contacts() -> Any:
     contacts = np.zeros(1, dtype=layout(Contacts))[0]
     for name in Contacts.__dataclass_fields__:
         contacts[name][:] = math.nan
-    contacts["stored"][:] = PLENTY
+    contacts["stored"][:] = UNLIMITED_ENERGY
     return contacts
 
 
@@ -349,7 +349,7 @@ def random_bunch(rng: np.random.Generator, side: float, count: int, damping: flo
     ring = Motion(*rng.normal(0.0, 1e-3, 2), *rng.normal(0.0, 0.1, 2), rng.normal(0.0, 300.0))
     angles = rng.uniform(-math.pi, math.pi, count)
     out = radius - side * (BALL - rng.uniform(-10e-6, 40e-6, count))
-    room = np.full((10, 2 * MOST_BALLS), math.nan)
+    room = np.full((10, 2 * MAX_BALLS), math.nan)
     room[0, :count], room[1, :count] = ring.x + out * np.cos(angles), ring.y + out * np.sin(angles)
     room[2:4, :count] = rng.normal(0.0, 0.1, (2, count))
     room[4, :count] = rng.normal(0.0, 900.0, count)
@@ -405,7 +405,7 @@ def rub_all(bunch: Bunch, h: float, friction: Any) -> None:
     moved = Moved(h * at.vx, h * at.vy, h * at.spin)
     push = Push(heavy * at.vx, heavy * at.vy, heavy * at.spin, heavy, heavy)
     around = Around(moved, push, Bore(1.0, 0.0, 1e-2, 0.0, 0.0))
-    where = Inner(c["nx"][:n], c["ny"][:n], c["second"][:n], np.full(MOST_BALLS, 0.3)[:n])
+    where = Inner(c["nx"][:n], c["ny"][:n], c["second"][:n], np.full(MAX_BALLS, 0.3)[:n])
     races = (this, other) if side == INSIDE else (other, this)
     rub(h, count, curve(friction), answers, around, where, *races, unwritten_lines())
 

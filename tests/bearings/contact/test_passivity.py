@@ -11,7 +11,7 @@ from places import ROOT
 
 from touchdown.bearings import detailed_caged, detailed_cageless, simplified_cageless
 from touchdown.bearings.catalogue import bearing
-from touchdown.bearings.contact.passivity import KEPT, NO_BEAT, Beat, passive, settled
+from touchdown.bearings.contact.passivity import ELASTIC_RESERVE, NO_BEAT, Beat, passive, settled
 from touchdown.modelkit.kernel import kernel
 
 STIFFNESS, MASS = 2e10, 5e-5  # N/m^1.5, kg: a ball between races
@@ -51,7 +51,7 @@ def test_while_bodies_stay_it_keeps_most_of_what_presses_them() -> None:
     for elastic, scale, stored, rate, others, answer, beat in random_contacts():
         force = passive(elastic, scale, stored, rate, others, answer, beat)
         asked = given(elastic, rate, others, answer, beat)
-        reserve = KEPT * elastic * (scale + beat.drift * (rate + others - answer * elastic))
+        reserve = ELASTIC_RESERVE * elastic * (scale + beat.drift * (rate + others - answer * elastic))
         if force < elastic and reserve > 0.0 and stored > asked:
             gave = given(force, rate, others, answer, beat)
             assert gave == pytest.approx(max(stored - reserve, 0.5 * asked), rel=1e-9)

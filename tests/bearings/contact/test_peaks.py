@@ -12,7 +12,7 @@ from touchdown.bearings import bushing, simplified_cageless
 from touchdown.bearings.contact.journal import ContactMemory, ContactReport, Touched, watch_contact
 from touchdown.bearings.contact.peaks import Samples, crest
 from touchdown.modelkit.instance import Instance
-from touchdown.modelkit.ports import PARTED, Motion
+from touchdown.modelkit.ports import PARTING_TOLERANCE, Motion
 from touchdown.modelkit.variables import as_record, as_tuple, layout
 
 PHASES = np.linspace(0.0, 1.0, 41)
@@ -157,7 +157,7 @@ def test_bushing_finds_the_peak_of_hertz(macro, tolerance):
 
 
 def test_the_first_impact_has_its_largest_ball_force():
-    """A disk on a cageless bearing whose ring rattles: what balls bore until it was free for `PARTED`."""
+    """A disk on a cageless bearing whose ring rattles: what balls bore until it was free."""
     instance = Instance(simplified_cageless.MODEL)
     m = instance.memory
     law = m["p"]["contact"]
@@ -176,7 +176,7 @@ def test_the_first_impact_has_its_largest_ball_force():
         free = 0 if touching or report["contact"]["first_time"] < 0.0 else free + 1
         if free == 1:
             partings.append(float(report["balls"]["peak_force"]))
-        if peak == 0.0 and free * step > PARTED + 2.0 * step:
+        if peak == 0.0 and free * step > PARTING_TOLERANCE + 2.0 * step:
             peak = float(report["balls"]["peak_force"])
     assert len(partings) > 1
     assert peak > 10.0 * partings[0]  # that was the ring's rattle
@@ -184,7 +184,7 @@ def test_the_first_impact_has_its_largest_ball_force():
 
 
 def test_the_first_impact_outlasts_a_rattle():
-    """A ring that parts from the journal for less than `PARTED` does not end it; a bounce does."""
+    """A ring that parts from the journal for less than PARTING_TOLERANCE does not end it; a bounce does."""
     report, memory = memory_of(ContactReport), memory_of(ContactMemory)
     step = 1e-5
 
@@ -193,7 +193,7 @@ def test_the_first_impact_outlasts_a_rattle():
             touched = as_record(Touched(max(indentation, 0.0), indentation, 0.0))
             watch_contact(number * step, Motion(0.0, 0.0, 0.0, 0.0, 0.0), touched, report, memory)
 
-    free = round(PARTED / step)
+    free = round(PARTING_TOLERANCE / step)
     watch(0, 5, -1.0)
     watch(5, 9, 1.0)
     watch(9, 8 + free, -1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from touchdown.bearings.contact.laws import ContactLaw
-from touchdown.bearings.contact.pair import STILL, Place
+from touchdown.bearings.contact.pair import NO_KICK, Place
 from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
 from touchdown.bearings.rolling.sides import SideContacts, lay
 from touchdown.fmus.recipes import recipe
@@ -45,5 +45,5 @@ def test_damping_is_no_stiffness() -> None:
     """A dashpot pushes at once where bodies meet, over no indentation: no step could resolve that."""
     law = as_record(ContactLaw(exponent=1.5, stiffness=1e8, viscous=250.0))
     contacts = as_record(SideContacts())
-    lay(contacts, 3, Place(1.0, 0.0, 1e-9, 1e-3, 1e-3, 0.0), 0.0, 0.1, STILL, law)
+    lay(contacts, 3, Place(1.0, 0.0, 1e-9, 1e-3, 1e-3, 0.0), 0.0, 0.1, NO_KICK, law)
     assert contacts["stiffness"][3] == pytest.approx(1.5 * 1e8 * 1e-9**1.5 / 1e-9, rel=1e-6)

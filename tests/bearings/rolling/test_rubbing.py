@@ -16,7 +16,7 @@ from touchdown.bearings.contact.friction import COULOMB, MAKKAR, STRIBECK, Curve
 from touchdown.bearings.contact.pair import friction_line
 from touchdown.bearings.rolling import ball_bodies as bodies
 from touchdown.bearings.rolling import ring, row
-from touchdown.bearings.rolling.ball_set import MOST_BALLS
+from touchdown.bearings.rolling.ball_set import MAX_BALLS
 from touchdown.bearings.rolling.friction import Answers, Around, Bore, Inner, Moved, Push, Rubbed, rub
 from touchdown.bearings.rolling.micro_step import RESOLUTION
 from touchdown.bearings.rolling.ring import BALLS, rounded
@@ -91,13 +91,13 @@ def by_kernel(given: Set, h: float, law: Curve) -> tuple[np.ndarray, np.ndarray,
     of_balls, _ = jacobians(given)
     races = []
     for k in range(2):
-        arrays = np.full((len(Rubbed._fields), MOST_BALLS), np.nan)  # what lies past the balls is no matter
+        arrays = np.full((len(Rubbed._fields), MAX_BALLS), np.nan)  # what lies past the balls is no matter
         arrays[0, :count], arrays[1, :count], arrays[3, :count] = (
             given.normal[k], given.last[k], given.sliding[k]
         )  # fmt: skip
         arrays[4, :count] = h * np.sum(of_balls[k] * given.others, axis=1)
         races.append(Rubbed(*(row[:n] for row in arrays)))
-    room = np.full((4, MOST_BALLS), np.nan)
+    room = np.full((4, MAX_BALLS), np.nan)
     t = along(given.angles)
     room[:, :count] = t[1, :, 1], -t[1, :, 0], given.lever, np.sum(t[0] * t[1], axis=1)
     answers = Answers(h / MASS, h / MASS, h * RADIUS**2 / INERTIA)

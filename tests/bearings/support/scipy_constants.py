@@ -18,7 +18,7 @@ from touchdown.bearings import seat
 from touchdown.bearings.contact.friction import MAKKAR, FrictionLaw
 from touchdown.bearings.contact.laws import ContactLaw
 from touchdown.bearings.rolling.ball_set import BallSet
-from touchdown.bearings.rolling.micro_step import MICRO_STEP, RESOLUTION, STEPS_A_HIT
+from touchdown.bearings.rolling.micro_step import HIT_RESOLUTION, MICRO_STEP, RESOLUTION
 
 Values = dict[str, Any]
 
@@ -154,7 +154,7 @@ def step_limits(longest: float, contacts: list[tuple[ContactLaw, float]]) -> Val
     steps = [longest]
     for law, mass in contacts:
         energy = 0.5 * (law.exponent + 1.0) * mass * speed**2 / law.stiffness
-        steps.append(finer * STEPS_A_HIT * 3.0 * energy ** (1.0 / (law.exponent + 1.0)) / speed)
+        steps.append(finer * HIT_RESOLUTION * 3.0 * energy ** (1.0 / (law.exponent + 1.0)) / speed)
     return {"micro_step": min(steps), "resolution": finer * RESOLUTION}
 
 

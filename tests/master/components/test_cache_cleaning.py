@@ -55,7 +55,7 @@ def test_old_ones_go_by_themselves(own_cache: Path) -> None:
     old, new = filled("machine-code", "old", 40), filled("machine-code", "new", 1)
     cache.tidy()
     assert old.exists()  # looked at a while ago
-    os.utime(own_cache / TAG, (time.time() - 2 * cache.PAUSE,) * 2)
+    os.utime(own_cache / TAG, (time.time() - 2 * cache.LOOK_INTERVAL_S,) * 2)
     cache.tidy()
     assert not old.exists()
     assert new.exists()

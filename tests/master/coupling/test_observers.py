@@ -14,7 +14,7 @@ import pytest
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.components import component
 from touchdown.master.coupling import simulation
-from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
+from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
@@ -70,7 +70,7 @@ def test_each_macro_step_is_told_once() -> None:
     assert outcome.reason == ""
     assert outcome.steps == STEPS
     assert diary.times == [STEP * (k + 1) for k in range(STEPS)]
-    assert beats == [*range(BEAT, STEPS, BEAT), STEPS]
+    assert beats == [*range(LOOK_INTERVAL_STEPS, STEPS, LOOK_INTERVAL_STEPS), STEPS]
     assert diary.left == ["amb"]
 
 

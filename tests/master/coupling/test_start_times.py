@@ -22,12 +22,12 @@ from touchdown.master.report.sweeps import report_on_sweep
 from touchdown.master.results.figures.style import beginning
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
-from touchdown.master.results.spectra import BEGIN, LENGTH, windows
+from touchdown.master.results.spectra import WINDOW_S, WINDOW_START_S, windows
 from touchdown.master.scene.file import load_scene, parse, read_resolved
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.comparison.models import compare_models
 from touchdown.master.studies.comparison.schemes import Asked, compare_schemes
-from touchdown.master.studies.drop.first_impact import SHORT, shortened
+from touchdown.master.studies.drop.first_impact import MIN_SPAN, shortened
 from touchdown.master.studies.drop.measured import land, plan
 from touchdown.master.studies.drop.monolithic import Monolith
 from touchdown.master.studies.drop.reference import REFINED, refine
@@ -198,8 +198,8 @@ def test_pictures_begin_with_the_run() -> None:
 
 
 def test_spectra_begin_after_the_landing() -> None:
-    time = START + 1e-4 * np.arange(math.ceil(1e4 * (BEGIN + 2.0 * LENGTH)) + 1)
-    assert windows(time) == pytest.approx([START + BEGIN, START + BEGIN + LENGTH])
+    time = START + 1e-4 * np.arange(math.ceil(1e4 * (WINDOW_START_S + 2.0 * WINDOW_S)) + 1)
+    assert windows(time) == pytest.approx([START + WINDOW_START_S, START + WINDOW_START_S + WINDOW_S])
 
 
 def test_pictures_of_a_scene_without_a_zero(tmp_path: Path) -> None:
@@ -254,7 +254,7 @@ def test_what_is_timed_is_warmed_up_from_the_start_on() -> None:
 
 def test_levitation_is_cut_short_from_the_start_on() -> None:
     scene = shortened(disk(START, **{"amb.shutdown_time": START + 1.0}))
-    assert scene.components["amb"].set["shutdown_time"] == pytest.approx(START + SHORT)
+    assert scene.components["amb"].set["shutdown_time"] == pytest.approx(START + MIN_SPAN)
 
 
 def test_outcomes_say_how_long_they_were() -> None:

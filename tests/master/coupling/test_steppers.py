@@ -142,7 +142,7 @@ def test_repeating_a_step_replaces_the_interface_model(exact: np.ndarray, peak: 
 
 def test_a_step_that_does_not_converge_is_divided(monkeypatch: pytest.MonkeyPatch, peak: float) -> None:
     """The shorter the step, the nearer the motion of the last one."""
-    monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MOST", 3)
+    monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MAX_REPETITIONS", 3)
     _, force, outcome = ended(disk("iterated", 5e-5, tolerance=1e-16))
     assert not outcome.reason
     assert outcome.coupling["smallest_step_us"] < 50.0
@@ -150,7 +150,7 @@ def test_a_step_that_does_not_converge_is_divided(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_step_that_never_converges_stops_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MOST", 1)
+    monkeypatch.setattr("touchdown.master.coupling.steppers.iterated.MAX_REPETITIONS", 1)
     _, _, outcome = ended(disk("iterated", 5e-5, tolerance=1e-18))
     assert "does not converge" in outcome.reason
     assert "smaller macro step" in outcome.reason

@@ -26,7 +26,7 @@ from pool import Ran, inside, run_cases
 from touchdown.fmus.recipes import recipe
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, STOPPED
-from touchdown.master.interop.ssp.xml import HEART
+from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.scene.file import shipped
 from touchdown.master.scene.run_spec import READERS
 from touchdown.master.verbs import ALL
@@ -106,11 +106,11 @@ WRONG = ("nosuch", "", "x.toml", "/dev/null", "/", ".toml", "x.ssp", "/dev/full.
 def package(rng: Rng) -> list[str]:
     """An SSP package."""
     content = {
-        HEART: bases.STRUCTURE.encode(),
+        SSD_FILE: bases.STRUCTURE.encode(),
         "b.ssv": bases.VALUES.encode(),
         "resources/m.fmu": archive(FMU),
     }
-    heart = pick(rng, (HEART, HEART, "b.ssv"))
+    heart = pick(rng, (SSD_FILE, SSD_FILE, "b.ssv"))
     Path("scene.ssp").write_bytes(damaged_archive(rng, content, heart))
     return ["scenes", "scene.ssp"]
 
@@ -118,7 +118,7 @@ def package(rng: Rng) -> list[str]:
 def fmu(rng: Rng) -> list[str]:
     """An FMU in a package that is right. Its library is never loaded: `scenes` reads what it declares."""
     content = {
-        HEART: bases.STRUCTURE.encode(),
+        SSD_FILE: bases.STRUCTURE.encode(),
         "b.ssv": bases.VALUES.encode(),
         "resources/m.fmu": damaged_archive(rng, FMU, "modelDescription.xml"),
     }

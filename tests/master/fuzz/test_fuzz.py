@@ -13,11 +13,11 @@ from commands import Command
 from mutators import archive
 from pool import run_cases
 
-from touchdown.master.interop.ssp.xml import HEART
+from touchdown.master.interop.ssp.xml import SSD_FILE
 
 CASES = 700
 PACKAGE = {
-    HEART: bases.STRUCTURE.encode(),
+    SSD_FILE: bases.STRUCTURE.encode(),
     "b.ssv": bases.VALUES.encode(),
     "resources/m.fmu": archive(FMU),
 }

@@ -19,7 +19,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
-from touchdown.master.interop.ssp.xml import CHOICES, HEART, NAMESPACES
+from touchdown.master.interop.ssp.xml import CHOICES, NAMESPACES, SSD_FILE
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
 
@@ -40,7 +40,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def structure(path: Path) -> etree._Element:
     with zipfile.ZipFile(path) as archive:
-        return etree.fromstring(archive.read(HEART))
+        return etree.fromstring(archive.read(SSD_FILE))
 
 
 # -- written -----------------------------------------------------------------------------------------------
@@ -223,7 +223,7 @@ def pack(tmp_path: Path) -> Pack:
     def make(text: str | None, **more: str) -> Path:
         """A package of `text` and FMUs, with files changed as `more` says."""
         files: Mapping[str, str | bytes] = {
-            HEART: foreign() if text is None else text,
+            SSD_FILE: foreign() if text is None else text,
             "parameters/rotor.ssv": more.get("ssv", SSV),
             "parameters/rotor.ssm": more.get("ssm", SSM),
             "resources/rigid_rotor.fmu": cached(recipe("rigid_rotor")).read_bytes(),
@@ -348,7 +348,7 @@ def test_a_document_type_is_refused_in_every_encoding(encoding: str, tmp_path: P
     path = tmp_path / "foreign.ssp"
     with zipfile.ZipFile(path, "w") as archive:
         mark = "\ufeff" if encoding == "utf-16-le" else ""
-        archive.writestr(HEART, (mark + text).encode(encoding))
+        archive.writestr(SSD_FILE, (mark + text).encode(encoding))
     with pytest.raises(TouchdownError, match="declares a document type"):
         find_scene(str(path))
 
@@ -393,7 +393,7 @@ def test_broken_archives_are_refused(tmp_path: Path, package: Path) -> None:
     with pytest.raises(TouchdownError, match=r"it has no SystemStructure\.ssd"):
         find_scene(str(path))
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr(HEART, foreign())
+        archive.writestr(SSD_FILE, foreign())
         archive.writestr("../outside", "x")
     with pytest.raises(TouchdownError, match="leads out of its folder"):
         find_scene(str(path))

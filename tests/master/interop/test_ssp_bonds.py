@@ -13,7 +13,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.read import RUN_KEYS
 from touchdown.master.interop.ssp.write import write_package
-from touchdown.master.interop.ssp.xml import HEART
+from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.results.run import run_scene
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import Scene
@@ -83,7 +83,7 @@ def test_a_broken_bond_is_named(unitless: Path, old: str, new: str, expected: st
     with zipfile.ZipFile(whole) as archive, zipfile.ZipFile(broken, "w") as other:
         for name in archive.namelist():
             content = archive.read(name)
-            if name == HEART:
+            if name == SSD_FILE:
                 assert old.encode() in content
                 content = content.replace(old.encode(), new.encode())
             other.writestr(name, content)

@@ -12,7 +12,7 @@ from touchdown.master.cli import main
 from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
-from touchdown.master.interop.ssp.xml import HEART, NAMESPACES
+from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.scene import Scene
 
 CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"}
@@ -21,7 +21,7 @@ CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"}
 def structure(package: Path) -> Element:
     """SystemStructure.ssd of a package."""
     with zipfile.ZipFile(package) as archive:
-        return fromstring(archive.read(HEART))
+        return fromstring(archive.read(SSD_FILE))
 
 
 def connected(root: Element) -> set[str]:

@@ -14,7 +14,7 @@ from touchdown.fmus.recipes import recipe
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.interop.scenes import find_scene
-from touchdown.master.interop.ssp.xml import HEART, NAMESPACES
+from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.scene import Scene
 
 ROOT = " ".join(f'xmlns:{prefix}="{uri}"' for prefix, uri in NAMESPACES.items())
@@ -110,7 +110,7 @@ def pack(tmp_path: Path) -> Pack:
         path = tmp_path / "others.ssp"
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr(
-                HEART,
+                SSD_FILE,
                 f'<ssd:SystemStructureDescription {ROOT} version="{version}" name="others">{whole}{more}'
                 f"<ssd:DefaultExperiment {times}/></ssd:SystemStructureDescription>",
             )

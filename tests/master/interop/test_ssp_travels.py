@@ -22,7 +22,7 @@ from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.container import Making
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import identifiers, write_package
-from touchdown.master.interop.ssp.xml import HEART, NAMESPACES
+from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.file import parse
 from touchdown.master.scene.scene import Scene
 
@@ -94,7 +94,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def root(package: Path) -> Element:
     """Its structure."""
     with zipfile.ZipFile(package) as archive:
-        return fromstring(archive.read(HEART))
+        return fromstring(archive.read(SSD_FILE))
 
 
 def attribute(root: Element, path: str, name: str) -> str:

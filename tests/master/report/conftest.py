@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import touchdown
-from touchdown.master.report.page import BROWSERS, QUIET, alone
+from touchdown.master.report.page import BROWSER_FLAGS, BROWSERS, alone
 
 
 @pytest.fixture(scope="session")
@@ -39,7 +39,7 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[object]:
     options = webdriver.ChromeOptions()
     options.binary_location = chromium
     profile = tmp_path_factory.mktemp("profile")
-    for argument in (*QUIET, *alone(), f"--user-data-dir={profile}", "--window-size=1280,1000"):
+    for argument in (*BROWSER_FLAGS, *alone(), f"--user-data-dir={profile}", "--window-size=1280,1000"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(chromedriver))

@@ -19,7 +19,7 @@ from touchdown.master.cli import main
 from touchdown.master.report.blocks import Folded, Remark, Table
 from touchdown.master.report.contents import CHAPTERS, section
 from touchdown.master.report.numbers import digits, label, listed, quantity
-from touchdown.master.report.series import IMPACT_ROWS, MOST_ROWS, chosen_rows
+from touchdown.master.report.series import IMPACT_ROWS, MAX_ROWS, chosen_rows
 from touchdown.master.report.subject import Subject
 from touchdown.master.report.sweeps import _is_sample, _spread
 from touchdown.master.studies.sweep.members import Member
@@ -186,7 +186,7 @@ def test_the_rows_of_a_chart_keep_all_peaks() -> None:
     columns[0][123_456] = 99.0
     columns[2][-1] = -99.0
     rows = chosen_rows(time, columns, 1.0)
-    assert len(rows) <= MOST_ROWS + 10
+    assert len(rows) <= MAX_ROWS + 10
     assert {0, 123_456, time.size - 1} <= set(rows.tolist())
     first = int(np.searchsorted(time, 1.0))
     assert set(range(first, first + IMPACT_ROWS // 2)) <= set(rows.tolist())

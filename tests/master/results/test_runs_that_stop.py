@@ -20,7 +20,7 @@ from places import COMMAND
 from touchdown.master.common import interrupts
 from touchdown.master.common.errors import FAILED, STOPPED
 from touchdown.master.common.interrupts import ended_as_by_ctrl_c, interrupts_noted
-from touchdown.master.coupling.observer import BEAT
+from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS
 from touchdown.master.coupling.recorder import Recorder
 from touchdown.master.coupling.recording_file import CHUNK
 from touchdown.master.coupling.simulation import Outcome
@@ -186,7 +186,7 @@ def test_a_ctrl_c_that_comes_twice_at_once_is_one(monkeypatch: pytest.MonkeyPatc
         for _ in range(2):
             signal.raise_signal(signal.SIGINT)
         assert noted.is_set()
-        monkeypatch.setattr(interrupts, "TOGETHER", -1.0)
+        monkeypatch.setattr(interrupts, "SAME_SIGNAL_S", -1.0)
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
 
@@ -213,7 +213,7 @@ def test_batch_systems_end_a_run_as_ctrl_c_does(
     assert f"interrupted by {by.name}" in ended.line
     summary, kept = left_behind(tmp_path / "out")
     assert (summary["ended"], kept) == ("interrupted", rows)
-    assert 9 <= rows < 9 + BEAT
+    assert 9 <= rows < 9 + LOOK_INTERVAL_STEPS
     assert signal.getsignal(by) is signal.SIG_DFL
 
 

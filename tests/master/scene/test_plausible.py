@@ -11,7 +11,7 @@ from commands import SCENE, Command
 
 import touchdown
 from touchdown.master.coupling.simulation import opened
-from touchdown.master.scene.plausible import Seat, remarks
+from touchdown.master.scene.plausible import Seat, plausibility_warnings
 from touchdown.master.studies.sweep.members import Journal, Member, read_journal
 from touchdown.master.studies.sweep.report import warned
 
@@ -31,10 +31,10 @@ def with_value(name: str, value: float) -> Seat:
 
 
 def test_a_usual_machine_is_not_remarked_on() -> None:
-    assert remarks([SEAT, SEAT]) == []
+    assert plausibility_warnings([SEAT, SEAT]) == []
     bushing = {name: value for name, value in VALUES.items() if name != "balls.count"}
-    assert remarks([Seat("bushing", bushing, None, None, "rotor", 20000.0)]) == []  # no balls
-    assert remarks([Seat("probe", {}, None, None, "rotor", None)]) == []
+    assert plausibility_warnings([Seat("bushing", bushing, None, None, "rotor", 20000.0)]) == []  # no balls
+    assert plausibility_warnings([Seat("probe", {}, None, None, "rotor", None)]) == []
 
 
 @pytest.mark.parametrize("name", ["disk-caged-detailed", "rotor1-18000", "rotor2-case1"])
@@ -68,7 +68,7 @@ def test_nor_are_scenes_that_come_along(name: str) -> None:
     ],
 )
 def test_what_hardly_can_be_is_said_once(seat: Seat, said: str) -> None:
-    (line,) = remarks([seat, seat])
+    (line,) = plausibility_warnings([seat, seat])
     assert said in line
 
 

@@ -13,7 +13,7 @@ from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.comparison.modes import Comparison, compare_modes, parse_modes, runs
 from touchdown.master.studies.comparison.modes_report import report_lines, write_report
-from touchdown.master.studies.drop.first_impact import AVERAGE, Trace
+from touchdown.master.studies.drop.first_impact import AVERAGING_TIME, Trace
 
 ROTOR_I = "rotor1-9000"
 SHORT = ("--set", "amb_A.shutdown_time=1 ms", "--set", "amb_B.shutdown_time=1 ms", "--macro-step", "5 us")
@@ -41,7 +41,7 @@ def test_the_first_impact_ends_where_the_journal_stays_free() -> None:
 
 def test_an_average_does_not_hang_on_the_macro_step() -> None:
     """A half sine of 1 ms: its mean over AVERAGE at the top, also with steps that do not divide it."""
-    exact = 400.0 * np.sin(np.pi * AVERAGE / 2e-3) / (np.pi * AVERAGE / 2e-3)
+    exact = 400.0 * np.sin(np.pi * AVERAGING_TIME / 2e-3) / (np.pi * AVERAGING_TIME / 2e-3)
     for step in (1e-6, 3e-6, 7e-6):
         time = step * np.arange(1, round(2e-3 / step))
         edges = np.concatenate([[0.0], time])

@@ -8,17 +8,17 @@ import pytest
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.master.scene.file import load_scene
-from touchdown.master.studies.drop.first_impact import SHORT, shortened
+from touchdown.master.studies.drop.first_impact import MIN_SPAN, shortened
 from touchdown.master.studies.drop.reference import (
-    FIRST,
+    FIRST_SOLVER,
     POSITION,
-    SECOND,
+    SECOND_SOLVER,
     VELOCITY,
     Solve,
     pair,
     reference,
 )
-from touchdown.master.studies.drop.reference import SECOND_OF_MANY as EXPLICIT
+from touchdown.master.studies.drop.reference import SECOND_SOLVER_OF_MANY as EXPLICIT
 
 TIMES = 1e-3 * np.arange(1, 11)
 AGREED = 1e-8  # m
@@ -31,7 +31,7 @@ def solves(apart: np.ndarray) -> tuple[Solve, Solve]:
     off = motion.copy()
     off[:, 1, 1] += apart
     off[:, 1, 3] += 3.0 * apart
-    return Solve(FIRST, motion, 1, 1.0), Solve(SECOND, off, 1, 1.0)
+    return Solve(FIRST_SOLVER, motion, 1, 1.0), Solve(SECOND_SOLVER, off, 1, 1.0)
 
 
 def test_the_horizon_is_where_the_solvers_part() -> None:
@@ -70,14 +70,14 @@ def test_a_distance_is_the_largest_of_any_seat_and_instant() -> None:
 
 
 def test_many_states_take_explicit_solvers() -> None:
-    assert pair(load_scene("disk-caged-simplified")) == (FIRST, SECOND)
-    assert pair(load_scene("rotor1-9000")) == (FIRST, EXPLICIT)
+    assert pair(load_scene("disk-caged-simplified")) == (FIRST_SOLVER, SECOND_SOLVER)
+    assert pair(load_scene("rotor1-9000")) == (FIRST_SOLVER, EXPLICIT)
 
 
 def test_levitation_is_shortened_by_the_same_for_all() -> None:
     scene = load_scene("rotor1-9000").set({"amb_B.shutdown_time": "25 ms"})
     with opened(shortened(scene), in_process=True) as system:
-        assert system.value("amb_A.shutdown_time") == pytest.approx(SHORT)
-        assert system.value("amb_B.shutdown_time") == pytest.approx(SHORT + 5e-3)
+        assert system.value("amb_A.shutdown_time") == pytest.approx(MIN_SPAN)
+        assert system.value("amb_B.shutdown_time") == pytest.approx(MIN_SPAN + 5e-3)
     early = scene.set({"amb_A.shutdown_time": "1 ms"})
     assert shortened(early) is early

@@ -21,10 +21,10 @@ from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
 from touchdown.master.studies.comparison import stability_report as stability_study
 from touchdown.master.studies.comparison.stability import (
-    FIRST,
-    GROWTH,
+    FIRST_STEP,
+    GROWTH_LIMIT,
     STEPS,
-    VISIBLE,
+    VISIBLE_ERROR,
     Attempt,
     Bounds,
     Finding,
@@ -72,7 +72,7 @@ def test_the_search_finds_both_limits(
     expected: tuple[float | None, ...],
     tried: tuple[float, float],
 ) -> None:
-    found = search(judged(right_up_to, stable_up_to), STEPS, FIRST)
+    found = search(judged(right_up_to, stable_up_to), STEPS, FIRST_STEP)
     assert limits(found) == expected
     steps = [attempt.step for attempt in found]
     assert (steps[0], steps[-1]) == tried
@@ -88,7 +88,7 @@ def test_a_limit_is_what_all_smaller_steps_bear() -> None:
 
 def test_the_ledger_is_asked_at_the_first_step_that_is_wrong() -> None:
     def called(warned: bool, limit: float) -> bool | None:
-        return Finding("case", "scheme", search(judged(limit, 1.0, warned), STEPS, FIRST)).called
+        return Finding("case", "scheme", search(judged(limit, 1.0, warned), STEPS, FIRST_STEP)).called
 
     assert called(True, 1e-5) is True
     assert called(False, 1e-5) is False
@@ -96,9 +96,9 @@ def test_the_ledger_is_asked_at_the_first_step_that_is_wrong() -> None:
 
 
 def test_what_is_right() -> None:
-    fine = Attempt(1e-5, (1.0,), VISIBLE, 0.0, False)
+    fine = Attempt(1e-5, (1.0,), VISIBLE_ERROR, 0.0, False)
     assert fine.right
-    assert not replace(fine, error=1.001 * VISIBLE).right
+    assert not replace(fine, error=1.001 * VISIBLE_ERROR).right
     assert not replace(fine, error=math.nan).right
     assert not replace(fine, broke="lost").right
 
@@ -121,7 +121,7 @@ def test_a_run_is_broken_off_beyond_its_bounds(y: float, vy: float, breaks: bool
         assert (bounds.farthest, bounds.fastest) == (0.9, 0.9)
 
 
-def attempts_at_bounce(scheme: str, step: float = FIRST) -> Attempt:
+def attempts_at_bounce(scheme: str, step: float = FIRST_STEP) -> Attempt:
     case = bounce()
     assert case.theory is not None
     return attempted(case, scheme, step, case.theory)
@@ -191,8 +191,12 @@ def test_cases_are_chosen_by_name() -> None:
 def test_tables_show_limits_and_where_the_ledger_was_silent() -> None:
     case = bounce()
     found = {
-        (case.name, "hold"): Finding(case.name, "hold", search(judged(1e-5, 5e-5, False), STEPS, FIRST)),
-        (case.name, "interface"): Finding(case.name, "interface", search(judged(1.0, 1.0), STEPS, FIRST)),
+        (case.name, "hold"): Finding(
+            case.name, "hold", search(judged(1e-5, 5e-5, False), STEPS, FIRST_STEP)
+        ),
+        (case.name, "interface"): Finding(
+            case.name, "interface", search(judged(1.0, 1.0), STEPS, FIRST_STEP)
+        ),
     }
     right = Right((1.0,), 1.0, 1.0, rate=1e4)
     schemes = ("hold", "interface", "velocity")
@@ -281,5 +285,5 @@ def test_bounds_are_a_factor_of_what_is_right() -> None:
     assert case.theory is not None
     speed = attempts_at_bounce("jacobi-hold").values[0]
     for factor, stable in ((0.99, False), (1.01, True)):
-        given = replace(case.theory, speed=max(0.1, factor * speed) / GROWTH)
-        assert attempted(case, "jacobi-hold", FIRST, given).stable is stable
+        given = replace(case.theory, speed=max(0.1, factor * speed) / GROWTH_LIMIT)
+        assert attempted(case, "jacobi-hold", FIRST_STEP, given).stable is stable

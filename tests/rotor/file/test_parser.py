@@ -9,7 +9,7 @@ import pytest
 
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.beams.body import PointMass
-from touchdown.rotor.beams.shaft import MOST_NODES, Shaft, Station, Unbalance
+from touchdown.rotor.beams.shaft import MAX_NODES, Shaft, Station, Unbalance
 from touchdown.rotor.file import RotorFileError, load, shipped
 
 GOOD = """
@@ -257,7 +257,7 @@ MISTAKES = {
     "one bracket": ("[[disc]]", "[disc]", ("disc = {", "each written [[disc]]")),
     "count of nothing": ("count = 3", "count = 0", ("element[2].count = 0 must be an integer from 1",)),
     "count of a half": ("count = 3", "count = 1.5", ("element[2].count = 1.5 must be an integer",)),
-    "too many nodes": ("count = 3", "count = 100000", ("element[2]", f"at most {MOST_NODES}")),
+    "too many nodes": ("count = 3", "count = 100000", ("element[2]", f"at most {MAX_NODES}")),
     "angle without unit": ('angle = "90 deg"', "angle = 90", ("unbalance[1].angle = 90", "rad, deg")),
 }
 
@@ -282,10 +282,10 @@ def test_no_material(tmp_path: Path):
 
 
 def test_most_nodes(tmp_path: Path):
-    text = GOOD.replace("count = 3", f"count = {MOST_NODES - 3}").replace('position = "0.11 m"', "")
-    assert read(tmp_path, text).nodes == MOST_NODES
-    text = text.replace(f"count = {MOST_NODES - 3}", f"count = {MOST_NODES - 2}")
-    assert f"element[3] brings the rotor to {MOST_NODES + 1} nodes" in complaint(tmp_path, text)
+    text = GOOD.replace("count = 3", f"count = {MAX_NODES - 3}").replace('position = "0.11 m"', "")
+    assert read(tmp_path, text).nodes == MAX_NODES
+    text = text.replace(f"count = {MAX_NODES - 3}", f"count = {MAX_NODES - 2}")
+    assert f"element[3] brings the rotor to {MAX_NODES + 1} nodes" in complaint(tmp_path, text)
 
 
 def test_a_byte_order_mark_is_understood(tmp_path: Path):

@@ -11,7 +11,7 @@ from touchdown.rotor.beams.superelement import Superelement, checked
 from touchdown.rotor.file import RotorFileError, find, parse, written
 from touchdown.rotor.flexible import flexible_rotor
 from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.properties import portrait
+from touchdown.rotor.properties import rotor_properties
 from touchdown.rotor.statics import at_rest
 
 SPINDLE = find("rotor_I")
@@ -76,7 +76,7 @@ def test_what_takes_diameters_is_absent() -> None:
         assert model.rename(name) is None
     assert model.rename("station[1].x") == f"{shaft.stations[0].name}.x"
     assert "40 coordinates per plane" in model.about
-    lying = portrait(shaft, 4, [0.0]).rest
+    lying = rotor_properties(shaft, 4, [0.0]).rest
     assert lying is not None
     assert len(lying.bending) == 0
 

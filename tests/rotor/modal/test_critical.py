@@ -15,8 +15,8 @@ from touchdown.rotor.file import find
 from touchdown.rotor.modal.modes import basis
 from touchdown.rotor.modal.supported import HeldRotor, LinearBearing
 from touchdown.rotor.modal.whirl_speeds import (
-    DECADES,
-    LINES,
+    MAP_DECADES,
+    MAP_LINES,
     critical_map,
     critical_speeds,
     whirl_frequencies,
@@ -63,7 +63,7 @@ def test_at_a_critical_speed_a_forward_whirl_is_as_fast_as_the_spin(name: str) -
     modes = basis(shaft, 0)
     held = [Support(shaft.node("amb_A"), 2e7), Support(shaft.node("amb_B"), 2e7)]
     springs = [(s.node, s.stiffness) for s in held]
-    for speed in critical_speeds(modes, held)[:LINES]:
+    for speed in critical_speeds(modes, held)[:MAP_LINES]:
         whirl = whirl_frequencies(modes, [speed], springs)[0]
         assert np.min(np.abs(whirl / speed - 1.0)) < 1e-8
 
@@ -72,11 +72,13 @@ def test_a_map_marks_what_the_shaft_stands_on() -> None:
     places = [Station("A", 1), Station("B", 3), Station("also_B", 3)]
     shaft = replace(SLENDER, supports=(*ENDS, Support(2, 5.0)))
     found = critical_map(shaft, basis(shaft, 0), places)
-    assert found.speeds.shape == (len(found.stiffness), LINES)
-    assert np.log10(found.stiffness[-1] / found.stiffness[0]) == pytest.approx(DECADES[1] - DECADES[0])
+    assert found.speeds.shape == (len(found.stiffness), MAP_LINES)
+    assert np.log10(found.stiffness[-1] / found.stiffness[0]) == pytest.approx(
+        MAP_DECADES[1] - MAP_DECADES[0]
+    )
     assert (np.diff(found.speeds[:, 0]) > 0.0).all()
     assert found.marked == ENDS
-    assert found.own == pytest.approx(critical_speeds(basis(shaft, 0), ENDS)[:LINES])
+    assert found.own == pytest.approx(critical_speeds(basis(shaft, 0), ENDS)[:MAP_LINES])
     assert not len(critical_map(SLENDER, basis(SLENDER, 0), places).own)
 
 

@@ -10,9 +10,9 @@ import pytest
 from touchdown.rotor.beams.element import split
 from touchdown.rotor.beams.shaft import Shaft, Support
 from touchdown.rotor.file import find
-from touchdown.rotor.modal.data import MOST_ENDS, MOST_MODES, tabulate
-from touchdown.rotor.modal.modes import MOST_SOLVED, basis, flexibility, fullest
-from touchdown.rotor.modal.stresses import MOST_WATCHED, watched
+from touchdown.rotor.modal.data import MAX_ENDS, MAX_MODES, tabulate
+from touchdown.rotor.modal.modes import MAX_SOLVED, basis, flexibility, fullest
+from touchdown.rotor.modal.stresses import MAX_STRESS_NODES, watched
 from touchdown.rotor.modal.whirl_speeds import critical_speeds
 
 
@@ -39,19 +39,19 @@ HELD = [s.node for s in FINE.stations]
 
 def test_modes_by_either_solver_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     few = basis(FINE, 20)
-    monkeypatch.setattr("touchdown.rotor.modal.modes.MOST_SOLVED", 2 * FINE.nodes)
+    monkeypatch.setattr("touchdown.rotor.modal.modes.MAX_SOLVED", 2 * FINE.nodes)
     dense = basis(FINE, 20)
     assert few.omega == pytest.approx(dense.omega, rel=1e-9)
     assert np.abs(few.shapes - dense.shapes).max() < 1e-6 * np.abs(dense.shapes).max()
 
 
 def test_so_many_modes_are_kept() -> None:
-    assert 2 * FINE.nodes > MOST_SOLVED
-    assert basis(FINE, 0).kept == MOST_SOLVED
+    assert 2 * FINE.nodes > MAX_SOLVED
+    assert basis(FINE, 0).kept == MAX_SOLVED
     gram = basis(FINE, 0)
-    with pytest.raises(Exception, match=f"has {MOST_SOLVED} modes per plane to keep"):
-        basis(FINE, MOST_SOLVED + 1)
-    assert len(gram.omega) == MOST_SOLVED
+    with pytest.raises(Exception, match=f"has {MAX_SOLVED} modes per plane to keep"):
+        basis(FINE, MAX_SOLVED + 1)
+    assert len(gram.omega) == MAX_SOLVED
 
 
 def test_held_nodes_keep_their_flexibility() -> None:
@@ -71,7 +71,7 @@ def test_held_nodes_keep_their_flexibility() -> None:
 def test_which_nodes_are_watched() -> None:
     assert watched(find("rotor_II")) == tuple(range(1, 26))
     nodes = watched(FINE)
-    assert len(nodes) == MOST_WATCHED
+    assert len(nodes) == MAX_STRESS_NODES
     assert nodes == tuple(sorted(set(nodes)))
     assert {1, FINE.nodes, *HELD} <= set(nodes)
     changes = {i + 2 for i, (a, b) in enumerate(zip(FINE.elements, FINE.elements[1:], strict=False))
@@ -83,10 +83,10 @@ def test_the_stresses_of_watched_nodes_are_theirs() -> None:
     """Rows of the table against those of all nodes."""
     table = tabulate(FINE, 10, 1).stress
     nodes, rows = watched(FINE), int(table.ends)
-    assert rows <= MOST_ENDS
+    assert rows <= MAX_ENDS
     assert [nodes[int(place)] for place in table.place[:rows]] == [int(n) for n in table.node[:rows]]
     assert set(table.node[:rows]) == set(nodes)
-    assert table.bending.shape == (MOST_MODES, MOST_ENDS)
+    assert table.bending.shape == (MAX_MODES, MAX_ENDS)
 
 
 def test_a_thousand_nodes() -> None:

@@ -9,8 +9,10 @@ from . import kernel
 # pyright: basic
 
 
-TRIFLE = 1e-4  # of the energy lost by falling; what turns over less is not judged by its own measure
-MINOR = 0.1  # of what all connections turn over; likewise
+FALL_ENERGY_FLOOR = (
+    1e-4  # of the energy lost by falling; what turns over less is not judged by its own measure
+)
+MIN_TURNOVER_SHARE = 0.1  # of what all connections turn over; likewise
 
 BOOK = np.dtype(
     [
@@ -86,7 +88,7 @@ def share_of(books, i, fall):
     turnover = 0.0
     for k in range(len(books)):
         turnover += books[k].turned + books[k].kinetic
-    over = max(books[i].turned + books[i].kinetic, MINOR * turnover) + TRIFLE * fall
+    over = max(books[i].turned + books[i].kinetic, MIN_TURNOVER_SHARE * turnover) + FALL_ENERGY_FLOOR * fall
     return books[i].total / over if over != 0.0 else 0.0
 
 

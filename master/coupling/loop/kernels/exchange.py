@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from .....modelkit.kernel.memory import call_advance, call_exchange, call_step, float64_at, int64_at
-from .....modelkit.ports import PARTED
+from .....modelkit.ports import PARTING_TOLERANCE
 from . import kernel
 from .tables import NOT_FINITE
 
@@ -115,8 +115,10 @@ def answer(status):
 # pyright: basic
 
 
-LASTS = 2.5e-4  # s, from the touch; by then ring and journal have met hardest, and the ring's rattle fades
-AHEAD = 2.0  # steps; within one, the other bearing may turn a journal to its ring
+IMPACT_S = (
+    2.5e-4  # s, from the touch; by then ring and journal have met hardest, and the ring's rattle fades
+)
+LOOK_AHEAD_STEPS = 2.0  # steps; within one, the other bearing may turn a journal to its ring
 
 SEAT = np.dtype(
     [
@@ -133,14 +135,14 @@ def met(seats: np.ndarray, signals: np.ndarray, time: float, step: float) -> boo
     """Whether two bearings hit a body in the step of `step` (s) from `time` (s), one of them newly."""
     for i in range(len(seats)):
         s = seats[i]
-        if signals[s.reach] <= AHEAD * step:
-            if time - s.near > PARTED:
+        if signals[s.reach] <= LOOK_AHEAD_STEPS * step:
+            if time - s.near > PARTING_TOLERANCE:
                 s.since = time
             s.near = time
     for i in range(len(seats)):
         for k in range(i):
             a, b = seats[i], seats[k]
-            touching = time - min(a.near, b.near) <= PARTED
-            if a.body == b.body and touching and time - max(a.since, b.since) < LASTS:
+            touching = time - min(a.near, b.near) <= PARTING_TOLERANCE
+            if a.body == b.body and touching and time - max(a.since, b.since) < IMPACT_S:
                 return True
     return False

@@ -10,10 +10,10 @@ import numpy as np
 
 from ....coupling.simulation import opened
 from ....results.figures.forces import draw_contacts, forces
-from ....results.figures.spectra import HARMONICS, LOW, RPM, spectrum
+from ....results.figures.spectra import HARMONICS, LOW_BAND_HZ, RPM, spectrum
 from ....results.figures.style import BLUE, GREY, ORANGE, sheet
 from ....results.result import Result
-from ....results.spectra import LENGTH, POINTS, lines, velocity_spectrum, windows
+from ....results.spectra import POINTS, WINDOW_S, lines, velocity_spectrum, windows
 from ....scene.file import load_scene
 from ..bearings import COUNTS, MEMBERS, READINGS, SCENES, STEP_APART, TABLE_7, member, values_of
 from .disk_motion import CAGED, CAGELESS, NEAR_HZ, SWINGS, Pair, column, ending_part, pair, stacked
@@ -52,7 +52,7 @@ def fig_27(drops: Drops) -> Exhibit:
 
 SOURCE_RPM = 8450.0
 NEVER_SLOWS = "the stated models lose 25 to 50 rpm in 5 s; a drag (rotor.drag) would slow it as much"
-LOPSIDED = (
+ASYMMETRY_NOTE = (
     "a swing alike to both sides has odd multiples alone; what makes the source's lopsided is not stated"
 )
 SUPPORT = (700.0, 1500.0)  # Hz, where the housing's mode is looked for
@@ -73,13 +73,13 @@ def fig_28(drops: Drops) -> Exhibit:
         start = windows(run.recording.time)[-1]
         frequency, amplitude = _spectrum(run, start)
         speed = _speed(run, start)
-        shown = frequency <= LOW
-        label = f"{name}, {speed:.0f} rpm, {start:.2f} s to {start + LENGTH:.2f} s"
+        shown = frequency <= LOW_BAND_HZ
+        label = f"{name}, {speed:.0f} rpm, {start:.2f} s to {start + WINDOW_S:.2f} s"
         axes.semilogy(frequency[shown], amplitude[shown], color=colour, lw=0.8, label=label)
         rows += _spectrum_rows(name, run, speed, frequency, amplitude)
     for k in range(1, HARMONICS + 1):
         axes.axvline(28.0 * k, color=GREY, lw=0.6, ls=":", zorder=0)
-    axes.set_xlim(0.0, LOW)
+    axes.set_xlim(0.0, LOW_BAND_HZ)
     axes.set_ylim(bottom=1e-8)
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("velocity amplitude of the inner ring, x [m/s]")
@@ -100,14 +100,14 @@ def fig_29(drops: Drops) -> Exhibit:
 
 
 def _spectrum(run: Result, start: float) -> tuple[np.ndarray, np.ndarray]:
-    return velocity_spectrum(run.recording.time, column(run, "ring.x"), start, LENGTH, POINTS)
+    return velocity_spectrum(run.recording.time, column(run, "ring.x"), start, WINDOW_S, POINTS)
 
 
 def _speed(run: Result, start: float) -> float:
     """Mean rotor speed of the window that begins at `start` s (rpm)."""
     time = run.recording.time
     omega = run.recording[seats_of(run)[0].motion("omega")]
-    return RPM * float(np.mean(omega[(time >= start) & (time <= start + LENGTH)]))
+    return RPM * float(np.mean(omega[(time >= start) & (time <= start + WINDOW_S)]))
 
 
 def _spectrum_rows(name: str, run: Result, speed: float, f: np.ndarray, v: np.ndarray) -> list[Row]:
@@ -125,7 +125,7 @@ def _spectrum_rows(name: str, run: Result, speed: float, f: np.ndarray, v: np.nd
             HARMONICS,
             seen,
             near=0.1,
-            why=LOPSIDED,
+            why=ASYMMETRY_NOTE,
         ),
     ]
     if name == "detailed":
@@ -140,7 +140,7 @@ def _fourth(heights: Sequence[float]) -> Row:
         "the 4th is the tallest",
         ours,
         holds=heights[3] > max(heights[1:3]),
-        why=LOPSIDED,
+        why=ASYMMETRY_NOTE,
     )
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ....common.errors import Ended, TouchdownError
 from ....common.pool import run_all
-from ....common.progress import UNSEEN, Progress
+from ....common.progress import SILENT_PROGRESS, Progress
 from ....coupling.connections import Attachment
 from ....coupling.steppers.carried import carrying
 from ....results.ending import Finished
@@ -131,7 +131,7 @@ class Drops:
 
     folder: Path
     jobs: int = 2
-    progress: Progress = UNSEEN
+    progress: Progress = SILENT_PROGRESS
     _made: list[Result] = field(default_factory=list[Result])
 
     def of(self, scenes: Sequence[Scene]) -> list[Result]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import cast
 
 from ....common.errors import TouchdownError, one_of
-from ....common.progress import UNSEEN, Progress
+from ....common.progress import SILENT_PROGRESS, Progress
 from ....results.figures.style import darkened, styled
 from .exhibit import Drops, Exhibit
 
@@ -111,7 +111,7 @@ def entry(name: str) -> Entry:
 
 
 @contextmanager
-def dropping(jobs: int, progress: Progress = UNSEEN) -> Iterator[Drops]:
+def dropping(jobs: int, progress: Progress = SILENT_PROGRESS) -> Iterator[Drops]:
     """Drops whose recordings are gone at the end."""
     with tempfile.TemporaryDirectory(prefix="touchdown_") as folder:
         yield Drops(Path(folder), jobs, progress)

@@ -50,15 +50,15 @@ FITTED = "fitted to it"
 
 def fig_12(drops: Drops) -> Exhibit:
     """Side view to scale, and what the text states of the machine."""
-    portrait = described(find_rotor("rotor_I"), SPEED, modes=5)
-    shaft = portrait.shaft
+    properties = described(find_rotor("rotor_I"), SPEED, modes=5)
+    shaft, bending = properties.shaft, float(properties.frequencies[2])
     figure = sheet()
     drawing(figure, shaft)
     rows = [
         Row("mass [kg]", 3.3, shaft.mass, near=0.005, why=FITTED),
         Row("polar inertia [kg.m2]", 0.001, shaft.polar_inertia, near=0.005, why=FITTED),
         Row("diametral inertia [kg.m2]", 0.017, shaft.diametral_inertia, near=0.005, why=FITTED),
-        Row("first bending frequency [Hz]", 1600.0, float(portrait.frequencies[2]), near=0.01, why=FITTED),
+        Row("first bending frequency [Hz]", 1600.0, bending, near=0.01, why=FITTED),
         Row("unbalance [g.mm]", 3.0, 1e6 * sum(one.moment for one in shaft.unbalances), near=1e-6),
         *_machine(),
     ]

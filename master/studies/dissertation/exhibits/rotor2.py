@@ -168,11 +168,11 @@ ZERO = 1e-3  # of the largest stress
 
 def fig_19(drops: Drops) -> Exhibit:
     """The rotor at rest; how far its bearings give way stands in the rows."""
-    portrait = described(find_rotor("rotor_II"), SPEED, modes=5)
-    lying, shaft = portrait.rest, portrait.shaft
+    properties = described(find_rotor("rotor_II"), SPEED, modes=5)
+    lying, shaft = properties.rest, properties.shaft
     assert lying is not None
     figure = sheet()
-    rest(figure, portrait)
+    rest(figure, properties)
     stress = np.abs(lying.bending)
     largest = float(np.max(stress))
     middle = (1e3 * lying.position > MOTOR[0]) & (1e3 * lying.position < MOTOR[1])
@@ -272,10 +272,10 @@ RIGID = 2
 
 def table_2(drops: Drops) -> Exhibit:
     """The surrogate's, beside the source's simulated and measured ones."""
-    portrait = described(find_rotor("rotor_II"), SPEED, modes=RIGID + len(BENDING))
-    ours = [float(value) for value in portrait.frequencies[RIGID:]]
+    properties = described(find_rotor("rotor_II"), SPEED, modes=RIGID + len(BENDING))
+    ours = [float(value) for value in properties.frequencies[RIGID:]]
     figure = sheet()
-    modes(figure, portrait)
+    modes(figure, properties)
     rows = [
         Row(f"bending mode {k + 1}, simulated [Hz]", source, ours[k], near=0.005, why="fitted to it")
         for k, source in enumerate(BENDING)

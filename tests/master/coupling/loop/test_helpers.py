@@ -113,7 +113,7 @@ def test_who_refuses_a_step_says_why(threads: Threads) -> None:
 
 def test_helpers_leave_and_come_back(threads: Threads, monkeypatch: pytest.MonkeyPatch) -> None:
     """With no patience at all they are gone before each stretch."""
-    monkeypatch.setattr(helpers, "PATIENCE", 0)
+    monkeypatch.setattr(helpers, "MAX_IDLE_LOOKS", 0)
     threads.compared(landing(run__duration=3e-3))
 
 
@@ -200,7 +200,7 @@ def test_each_step_is_taken_once_by_somebody(
     count: int, threads: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whoever that is: on a busy machine helpers may take all steps or none."""
-    monkeypatch.setattr(helpers, "PATIENCE", 2**60)  # none leaves before it is counted
+    monkeypatch.setattr(helpers, "MAX_IDLE_LOOKS", 2**60)  # none leaves before it is counted
     group = Group(count)
     crew = Helpers(threads, group.turns, helpers._leave_address())
     try:
@@ -216,7 +216,7 @@ def test_each_step_is_taken_once_by_somebody(
 
 def test_a_helper_steps_beside_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two steps that are only over when both have begun: the run takes one, its helper the other."""
-    monkeypatch.setattr(helpers, "PATIENCE", 2**60)  # however long the helper waits for its processor
+    monkeypatch.setattr(helpers, "MAX_IDLE_LOOKS", 2**60)  # however long the helper waits for its processor
     group = Group(2, threading.Barrier(2))
     crew = Helpers(1, group.turns, helpers._leave_address())
     try:

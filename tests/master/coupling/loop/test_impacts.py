@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.coupling.loop.division import LONG_AGO, Impacts
-from touchdown.master.coupling.loop.kernels.exchange import LASTS, SEAT, met
+from touchdown.master.coupling.loop.division import NO_CONTACT_TIME, Impacts
+from touchdown.master.coupling.loop.kernels.exchange import IMPACT_S, SEAT, met
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers import stepper
 from touchdown.master.scene.file import load_scene
-from touchdown.modelkit.ports import PARTED
+from touchdown.modelkit.ports import PARTING_TOLERANCE
 
 STEP = 2e-5  # s
 FAR, NEAR = 1.0, 0.0  # s, until the journal touches
@@ -19,7 +19,7 @@ FAR, NEAR = 1.0, 0.0  # s, until the journal touches
 
 def divided(reaches: list[tuple[float, ...]], bodies: tuple[int, ...] = (0, 0)) -> list[bool]:
     """Which macro steps are divided where the bearings on `bodies` say so step by step."""
-    seats = np.array([(i, body, LONG_AGO, LONG_AGO) for i, body in enumerate(bodies)], SEAT)
+    seats = np.array([(i, body, NO_CONTACT_TIME, NO_CONTACT_TIME) for i, body in enumerate(bodies)], SEAT)
     return [met(seats, np.array(told), number * STEP, STEP) for number, told in enumerate(reaches)]
 
 
@@ -37,14 +37,14 @@ def test_bearings_of_different_bodies_do_not_meet() -> None:
 
 
 def test_contacts_that_last_are_no_impacts() -> None:
-    lasting = round(LASTS / STEP) + 2
+    lasting = round(IMPACT_S / STEP) + 2
     found = divided([(NEAR, NEAR)] * lasting)
     assert found[: lasting - 3] == [True] * (lasting - 3)
     assert not found[-1]
 
 
 def test_a_ring_that_rattles_is_not_hit_anew_and_one_that_was_free_is() -> None:
-    lasting, free = round(LASTS / STEP) + 2, round(PARTED / STEP)
+    lasting, free = round(IMPACT_S / STEP) + 2, round(PARTING_TOLERANCE / STEP)
     rattling = [(NEAR, NEAR)] * lasting + [(NEAR, FAR)] * (free - 2) + [(NEAR, NEAR)]
     parted = [(NEAR, NEAR)] * lasting + [(NEAR, FAR)] * (free + 2) + [(NEAR, NEAR)]
     assert not divided(rattling)[-1]

@@ -19,7 +19,7 @@ from touchdown.master.components.in_process import TwinComponent
 from touchdown.master.coupling.loop import compiled as stretches
 from touchdown.master.coupling.loop import division
 from touchdown.master.coupling.loop.compiled import MacroSteps
-from touchdown.master.coupling.observer import BEAT, EveryBeat, EveryStep, Moment, Observer
+from touchdown.master.coupling.observer import LOOK_INTERVAL_STEPS, EveryBeat, EveryStep, Moment, Observer
 from touchdown.master.coupling.simulation import Outcome, opened, simulate
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene.file import load_scene, parse
@@ -69,7 +69,7 @@ class Both:
         found = self.run(scene, paths[0], observing, in_process)
         assert self.stepped == 1  # the first, which compiles
         with self._patch.context() as patch:
-            patch.setattr(stretches, "AT_ONCE", {})
+            patch.setattr(stretches, "PARALLEL_SEQUENCES", {})
             wanted = self.run(scene, paths[1], observing, in_process)
         assert self.stepped in (wanted.steps, wanted.steps + 1)  # one may fail
         assert repr(found) == repr(wanted)
@@ -93,7 +93,7 @@ def disk(**settings: object) -> Scene:
 
 @pytest.mark.parametrize("scheme", ["interface", "hold", "jacobi-interface", "jacobi-lead"])
 def test_schemes(scheme: str, both: Both) -> None:
-    assert both.compared(disk(run__scheme=scheme)).steps > 3 * BEAT
+    assert both.compared(disk(run__scheme=scheme)).steps > 3 * LOOK_INTERVAL_STEPS
 
 
 @pytest.mark.parametrize("scheme", ["interface", "jacobi-interface"])
@@ -127,7 +127,12 @@ def test_seven_components_of_which_two_retire(both: Both) -> None:
 @pytest.mark.parametrize("scheme", ["interface", "jacobi-lead"])
 def test_macro_steps_that_are_halved(scheme: str, both: Both, monkeypatch: pytest.MonkeyPatch) -> None:
     """As in a whirl, by thresholds that a landing passes."""
-    for name, value in (("WINDOW", 1e-3), ("WHIRL", 1e-3), ("OVER", 0.0), ("GOAL", 1e-12)):
+    for name, value in (
+        ("WINDOW_S", 1e-3),
+        ("WHIRL_TURNOVER", 1e-3),
+        ("WHIRL_END_TURNOVER", 0.0),
+        ("TARGET_ENERGY_MADE", 1e-12),
+    ):
         monkeypatch.setattr(division, name, value)
     assert both.compared(disk(run__scheme=scheme)).shorter_steps
 
@@ -152,7 +157,7 @@ def test_a_model_that_cannot_go_on(both: Both) -> None:
     def spoil(now: Moment) -> None:
         rotor = now.system.components["rotor"]
         assert isinstance(rotor, TwinComponent)
-        if now.done == BEAT:
+        if now.done == LOOK_INTERVAL_STEPS:
             rotor.instance.record["q"][0] = np.nan
 
     outcome = both.compared(disk(), lambda: EveryBeat(spoil))
@@ -164,11 +169,11 @@ def test_ctrl_c(both: Both) -> None:
     """Noted between two stretches, and the recording is whole."""
 
     def interrupt(now: Moment) -> None:
-        if now.done == 2 * BEAT:
+        if now.done == 2 * LOOK_INTERVAL_STEPS:
             os.kill(os.getpid(), signal.SIGINT)
 
     outcome = both.compared(disk(), lambda: EveryBeat(interrupt))
-    assert (outcome.ended, outcome.steps) == (Ended.INTERRUPTED, 2 * BEAT)
+    assert (outcome.ended, outcome.steps) == (Ended.INTERRUPTED, 2 * LOOK_INTERVAL_STEPS)
 
 
 def test_ctrl_c_within_a_stretch(both: Both) -> None:
@@ -179,16 +184,16 @@ def test_ctrl_c_within_a_stretch(both: Both) -> None:
         at_beats_only = True
 
         def stepped(self, now: Moment) -> None:
-            if now.done == BEAT:
+            if now.done == LOOK_INTERVAL_STEPS:
                 hand.start()
 
         def due(self, now: Moment) -> int:
-            return BEAT if now.done < BEAT else now.steps
+            return LOOK_INTERVAL_STEPS if now.done < LOOK_INTERVAL_STEPS else now.steps
 
     scene = disk(run__duration=200.0, run__record_every=1000)
     outcome = both.run(scene, both.folder / "broken-off.h5", Begun)
     assert outcome.ended is Ended.INTERRUPTED
-    assert BEAT < outcome.steps < 0.1 * 200.0 / 2e-5
+    assert LOOK_INTERVAL_STEPS < outcome.steps < 0.1 * 200.0 / 2e-5
     assert both.stepped == 1
 
 
@@ -197,11 +202,11 @@ def test_what_an_observer_keeps_and_ends(both: Both) -> None:
 
     def keep(now: Moment) -> None:
         now.keep()
-        if now.done == 3 * BEAT:
+        if now.done == 3 * LOOK_INTERVAL_STEPS:
             now.stop("seen enough")
 
     outcome = both.compared(disk(run__record_every=5), lambda: EveryBeat(keep))
-    assert (outcome.reason, outcome.steps) == ("seen enough", 3 * BEAT)
+    assert (outcome.reason, outcome.steps) == ("seen enough", 3 * LOOK_INTERVAL_STEPS)
 
 
 # -- FMUs -----------------------------------------------------------------------------------------
@@ -258,7 +263,7 @@ def test_who_looks_at_every_step_sees_every_step(both: Both) -> None:
     scene = disk(run__duration=1e-3)
     both.run(scene, both.folder / "r.h5", lambda: EveryStep(lambda now: seen.append(now.done)))
     assert seen == list(range(1, both.stepped + 1))
-    assert len(seen) > BEAT
+    assert len(seen) > LOOK_INTERVAL_STEPS
 
 
 def test_a_sequence_of_ones_own_is_kept(both: Both, monkeypatch: pytest.MonkeyPatch) -> None:

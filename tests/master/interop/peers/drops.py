@@ -11,7 +11,7 @@ from pathlib import Path
 from systems import AT, LEVITATED, dropped
 
 from touchdown.master.coupling.simulation import Outcome, open_system, simulate
-from touchdown.master.interop.container import AS_IN_SCENE, Making
+from touchdown.master.interop.container import SCENE_SETTINGS, Making
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
@@ -53,7 +53,7 @@ class Fall:
         """The scene coupled by `scheme`."""
         return self.scene.set({"run.scheme": scheme})
 
-    def package(self, scheme: str, folder: Path, making: Making = AS_IN_SCENE) -> Path:
+    def package(self, scheme: str, folder: Path, making: Making = SCENE_SETTINGS) -> Path:
         """An SSP package for tools that connect outputs only."""
         path = folder / f"{self.scene.name}-{scheme}.ssp"
         return write_package(self.with_scheme(scheme), path, True, making).path

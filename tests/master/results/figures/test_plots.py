@@ -15,13 +15,13 @@ from touchdown.master.results.figures.energy import STYLES, energy
 from touchdown.master.results.figures.forces import forces
 from touchdown.master.results.figures.motion import speeds
 from touchdown.master.results.figures.spectra import has_waterfall, motion_waterfall
-from touchdown.master.results.figures.style import LAST, sheet, zooms
+from touchdown.master.results.figures.style import LAST_ZOOM_S, sheet, zooms
 from touchdown.master.results.recording import Recording
 from touchdown.master.results.run import run_scene
 from touchdown.master.results.spectra import (
-    BEGIN,
-    LENGTH,
     POINTS,
+    WINDOW_S,
+    WINDOW_START_S,
     lines,
     on_grid,
     velocity_spectrum,
@@ -47,7 +47,7 @@ def test_a_sine_comes_out_of_the_spectrum(frequency: float) -> None:
     time = times(3.0)
     turn = 2.0 * np.pi * frequency
     position = speed / turn * np.sin(turn * time + 0.7) + 3e-6 - 2e-5 * time
-    f, amplitude = velocity_spectrum(time, position, BEGIN, LENGTH, POINTS)
+    f, amplitude = velocity_spectrum(time, position, WINDOW_START_S, WINDOW_S, POINTS)
     peak = int(np.argmax(amplitude))
     assert f[1] == pytest.approx(RATE / POINTS)
     assert f[peak] == pytest.approx(frequency, abs=f[1])
@@ -58,7 +58,7 @@ def test_two_sines_stay_apart() -> None:
     time = times(3.0)
     first, second = 2.0 * np.pi * 100.0, 2.0 * np.pi * 104.0
     position = 1e-3 / first * np.sin(first * time) + 1e-5 / second * np.sin(second * time)
-    f, amplitude = velocity_spectrum(time, position, BEGIN, LENGTH, POINTS)
+    f, amplitude = velocity_spectrum(time, position, WINDOW_START_S, WINDOW_S, POINTS)
     near = np.abs(f - 104.0) < 0.5
     assert np.max(amplitude[near]) == pytest.approx(1e-5, rel=0.05)
 
@@ -67,7 +67,9 @@ def test_a_fast_vibration_hardly_shows_as_an_alias() -> None:
     speed, frequency = 1.0, 50_400.0
     time = times(3.0)
     turn = 2.0 * np.pi * frequency
-    f, amplitude = velocity_spectrum(time, speed / turn * np.sin(turn * time), BEGIN, LENGTH, POINTS)
+    f, amplitude = velocity_spectrum(
+        time, speed / turn * np.sin(turn * time), WINDOW_START_S, WINDOW_S, POINTS
+    )
     assert f[np.argmax(amplitude)] == pytest.approx(400.0, abs=0.1)
     assert np.max(amplitude) < 0.01 * speed
 
@@ -83,18 +85,18 @@ def test_a_finer_recording_than_the_points_is_not_cut_short() -> None:
 def test_a_window_beyond_the_recording_is_refused() -> None:
     time = times(2.0)
     with pytest.raises(ValueError, match="the recording ends before"):
-        velocity_spectrum(time, np.zeros_like(time), BEGIN, LENGTH, POINTS)
+        velocity_spectrum(time, np.zeros_like(time), WINDOW_START_S, WINDOW_S, POINTS)
 
 
 @pytest.mark.parametrize(
-    ("end", "count"), [(0.1, 0), (2.3, 0), (BEGIN + LENGTH, 1), (2.4, 1), (5.0, 3), (6.2429, 4)]
+    ("end", "count"), [(0.1, 0), (2.3, 0), (WINDOW_START_S + WINDOW_S, 1), (2.4, 1), (5.0, 3), (6.2429, 4)]
 )
 def test_whole_windows_follow_one_another(end: float, count: int) -> None:
     time = np.linspace(0.0, end, 1 + round(end * RATE))
     starts = windows(time)
-    np.testing.assert_allclose(starts, BEGIN + LENGTH * np.arange(count))
+    np.testing.assert_allclose(starts, WINDOW_START_S + WINDOW_S * np.arange(count))
     for start in starts:
-        velocity_spectrum(time, np.zeros_like(time), start, LENGTH, POINTS)
+        velocity_spectrum(time, np.zeros_like(time), start, WINDOW_S, POINTS)
 
 
 @pytest.mark.parametrize("window", ["hann", "boxcar"])
@@ -158,7 +160,7 @@ def test_zooms_of_short_runs_do_not_repeat() -> None:
     assert zooms(times(5.0), 0.5) == [
         (0.0, 0.5),
         (0.0, pytest.approx(5.0)),
-        (pytest.approx(5.0 - LAST), pytest.approx(5.0)),
+        (pytest.approx(5.0 - LAST_ZOOM_S), pytest.approx(5.0)),
     ]
     assert len(zooms(times(0.1), 0.5)) == 2
     assert len(zooms(times(0.02), 0.5)) == 1

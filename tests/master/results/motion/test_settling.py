@@ -7,7 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.master.results.settling import BEAT, REST, Settling, Trend, period, settling
+from touchdown.master.results.settling import (
+    BEAT_PERIODS,
+    REST_AMPLITUDE,
+    Settling,
+    Trend,
+    period,
+    settling,
+)
 from touchdown.master.results.whirl.contacts import Orbit
 
 CLEARANCE = 3e-4  # m
@@ -51,7 +58,7 @@ def test_one_that_keeps_up_is_a_plateau() -> None:
     """It swings in wildly until 0.2 s, and keeps to 40 degrees from then on."""
     late = times(1.2) >= 0.2
     found = swinging(1.2, np.where(late, 40.0, 80.0))
-    assert found.time == pytest.approx(0.2, abs=(BEAT + 1) * PERIOD)
+    assert found.time == pytest.approx(0.2, abs=(BEAT_PERIODS + 1) * PERIOD)
     assert not found.rests
     assert found.words.endswith("swings on steadily")
 
@@ -77,7 +84,7 @@ def test_too_short_a_run_is_not_told() -> None:
 
 def test_rest_is_told_sooner() -> None:
     assert swinging(0.2, 0.0).time == pytest.approx(0.008)
-    assert math.sin(math.radians(5.0)) == pytest.approx(REST, abs=1e-3)
+    assert math.sin(math.radians(5.0)) == pytest.approx(REST_AMPLITUDE, abs=1e-3)
 
 
 @pytest.mark.parametrize(

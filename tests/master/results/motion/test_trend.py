@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from touchdown.master.results.settling import LEAST, Course, Trend, change, course, together, trend
+from touchdown.master.results.settling import MIN_SIZES, Course, Trend, change, course, together, trend
 from touchdown.master.results.whirl.contacts import Orbit
 from touchdown.master.results.whirl.verdict import classify
 
@@ -58,8 +58,8 @@ def test_what_scatters_is_not_told() -> None:
 
 
 def test_few_turns_are_not_told() -> None:
-    assert followed(LEAST - 0.5, force=-3.0).trend is Trend.UNTOLD
-    assert followed(2.0 * LEAST, force=-3.0).trend is Trend.DECAYING
+    assert followed(MIN_SIZES - 0.5, force=-3.0).trend is Trend.UNTOLD
+    assert followed(2.0 * MIN_SIZES, force=-3.0).trend is Trend.DECAYING
 
 
 def test_a_whirl_that_is_over_names_its_time() -> None:

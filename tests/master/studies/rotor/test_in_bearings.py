@@ -22,7 +22,7 @@ from touchdown.master.studies.rotor.rig import FREQUENCIES, Place, Response, Rig
 from touchdown.master.studies.rotor.scene_report import SceneRotor, described_in, scene_text
 from touchdown.master.studies.rotor.supported import held_lines
 from touchdown.master.studies.rotor.supported_figure import held_campbell
-from touchdown.master.studies.rotor.supports import Situation
+from touchdown.master.studies.rotor.supports import SupportCondition
 from touchdown.modelkit.model import ModelError
 from touchdown.rotor.modal.supported import LinearBearing, Whirl
 from touchdown.rotor.modal.whirl_speeds import Lines
@@ -56,8 +56,8 @@ def found() -> SceneRotor:
     return described_in(SCENE)
 
 
-def situation(found: SceneRotor, name: str) -> Situation:
-    return next(one for one in found.situations if one.name == name)
+def situation(found: SceneRotor, name: str) -> SupportCondition:
+    return next(one for one in found.support_conditions if one.name == name)
 
 
 @pytest.mark.parametrize("in_process", [True, False])
@@ -180,7 +180,7 @@ def test_resting_on_the_touchdown_bearings(found: SceneRotor) -> None:
     """Pressed with what the rotor weighs, on housings in series; to the side a pendulum of W / depth."""
     resting = situation(found, "resting")
     assert [b.name for b in resting.bearings] == ["bearing_A", "bearing_B"]
-    weight = 9.81 * found.portrait.shaft.mass
+    weight = 9.81 * found.properties.shaft.mass
     assert sum(b.load for b in resting.bearings) == pytest.approx(weight, rel=1e-6)
     for b in resting.bearings:
         assert b.pressed is not None

@@ -19,7 +19,7 @@ from touchdown.master.studies.rotor.figure import DISC, campbell, critical, draw
 from touchdown.master.studies.rotor.report import TO_REST, report, report_text
 from touchdown.rotor.beams.body import PointMass
 from touchdown.rotor.file import find, shipped
-from touchdown.rotor.properties import Portrait, portrait
+from touchdown.rotor.properties import RotorProperties, rotor_properties
 
 SPEED = math.pi * 600.0  # rad/s, 18000 rpm
 PLAIN = """
@@ -37,9 +37,9 @@ inner_diameter = "8 mm"
 
 
 @pytest.fixture(scope="module", params=sorted(shipped()))
-def found(request: pytest.FixtureRequest) -> Portrait:
+def found(request: pytest.FixtureRequest) -> RotorProperties:
     """What is known of each shipped rotor."""
-    return portrait(find(request.param), 5, [SPEED, 0.0, 0.5 * SPEED, SPEED, 2.0 * SPEED])
+    return rotor_properties(find(request.param), 5, [SPEED, 0.0, 0.5 * SPEED, SPEED, 2.0 * SPEED])
 
 
 def shaft_file(folder: Path, rest_of_it: str) -> Path:
@@ -48,7 +48,7 @@ def shaft_file(folder: Path, rest_of_it: str) -> Path:
     return path
 
 
-def test_lines_start_at_the_frequencies_at_rest_and_split(found: Portrait) -> None:
+def test_lines_start_at_the_frequencies_at_rest_and_split(found: RotorProperties) -> None:
     assert found.kinds == ("translation", "tilt", "bending 1", "bending 2", "bending 3")
     assert found.forward[1] == pytest.approx(found.frequencies, abs=1e-3)
     assert found.backward[1] == pytest.approx(found.frequencies, abs=1e-3)
@@ -61,27 +61,27 @@ def test_a_support_that_would_have_to_pull_is_said(tmp_path: Path) -> None:
     """Seats at 100 and 150 mm of a shaft of 400 mm, of which 200 mm are the middle: 2 G up, G down."""
     path = shaft_file(tmp_path, "[stations]\nA = 3\nB = 4\n")
     shaft = find(str(path))
-    text = report_text(portrait(shaft, 5, [SPEED]))
+    text = report_text(rotor_properties(shaft, 5, [SPEED]))
     assert f"  A would have to pull the rotor down with {9.81 * shaft.mass:.4g} N: " in text
     assert "B would have to pull" not in text
     path = shaft_file(tmp_path, "[stations]\nA = 1\nB = 9\n")
-    assert "pull" not in report_text(portrait(find(str(path)), 5, [SPEED]))
+    assert "pull" not in report_text(rotor_properties(find(str(path)), 5, [SPEED]))
 
 
-def test_a_free_rotor_tilts_forwards_by_the_ratio_of_its_inertias(found: Portrait) -> None:
+def test_a_free_rotor_tilts_forwards_by_the_ratio_of_its_inertias(found: RotorProperties) -> None:
     ratio = found.shaft.polar_inertia / found.shaft.diametral_inertia
     assert found.forward[0, 1] == pytest.approx(300.0 * ratio, rel=1e-2)
     assert not found.backward[:, 1].any()
     assert not found.forward[:, 0].any()
 
 
-def test_the_sense_of_the_spin_does_not_matter(found: Portrait) -> None:
-    other = portrait(found.shaft, 5, [-SPEED])
+def test_the_sense_of_the_spin_does_not_matter(found: RotorProperties) -> None:
+    other = rotor_properties(found.shaft, 5, [-SPEED])
     np.testing.assert_allclose(other.forward[0], found.forward[0])
     np.testing.assert_allclose(other.backward[0], found.backward[0])
 
 
-def test_the_table_tells_all(found: Portrait) -> None:
+def test_the_table_tells_all(found: RotorProperties) -> None:
     text, shaft = report_text(found), found.shaft
     assert text.startswith(f"{shaft.title}\n")
     for label, value in (
@@ -107,7 +107,7 @@ def test_the_table_tells_all(found: Portrait) -> None:
     assert f"A {found.rest.reactions[0]:.4g} N, B {found.rest.reactions[1]:.4g} N" in text
 
 
-def test_the_campbell_diagram_is_labelled(found: Portrait) -> None:
+def test_the_campbell_diagram_is_labelled(found: RotorProperties) -> None:
     (axes,) = campbell(sheet(), found)
     assert axes.get_xlabel() == "rotor speed [rpm]"
     assert axes.get_ylabel() == "whirl frequency of the free rotor [Hz]"
@@ -119,7 +119,7 @@ def test_the_campbell_diagram_is_labelled(found: Portrait) -> None:
     assert "18000 rpm" in lines
 
 
-def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
+def test_the_modes_stand_over_the_rotor_to_scale(found: RotorProperties) -> None:
     figure = sheet()
     modes(figure, found)
     figure.draw_without_rendering()
@@ -137,7 +137,7 @@ def test_the_modes_stand_over_the_rotor_to_scale(found: Portrait) -> None:
     assert "bending 1, " in figure.axes[2].get_title()
 
 
-def test_the_rotor_at_rest_is_labelled(found: Portrait) -> None:
+def test_the_rotor_at_rest_is_labelled(found: RotorProperties) -> None:
     assert found.rest is not None
     view, deflection, bending = rest(sheet(), found)
     assert view.get_ylabel() == "radius [mm]"
@@ -243,7 +243,7 @@ def test_critical_speeds_are_told_and_drawn(tmp_path: Path, capsys: pytest.Captu
     assert [float(speed) for speed in own.groups()] == pytest.approx(30.0 / math.pi * expected[:2], abs=0.5)
 
 
-def test_the_map_of_critical_speeds_is_labelled(found: Portrait) -> None:
+def test_the_map_of_critical_speeds_is_labelled(found: RotorProperties) -> None:
     panels = critical(sheet(), found)
     assert [axes.get_xlabel() for axes in panels] == [
         "stiffness of each support at amb_A, amb_B [N/m]",
