@@ -26,7 +26,7 @@ from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots
 
 Native = Callable[[str], Path]
-CHEAP = ("housing", "rigid_rotor", "bushing", "rotor_I")
+CHEAP = ("housing", "rigid_rotor", "rotor_I")
 every_model = pytest.mark.parametrize(
     "fmu",
     [*CHEAP, *(pytest.param(name, marks=pytest.mark.native) for name in names() if name not in CHEAP)],

@@ -121,6 +121,7 @@ def test_a_mistake_says_what_the_command_says(capfd: pytest.CaptureFixture[str])
 
 
 @pytest.mark.skipif(COMPILER is None, reason="there is no C compiler (cc, gcc)")
+@pytest.mark.native
 def test_native_fmus_are_one_word_away() -> None:
     """With the same recording; what the scene says of them is kept with the results."""
     scene = SCENE.set({"run.duration": "1 ms"})

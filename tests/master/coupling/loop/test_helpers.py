@@ -96,6 +96,7 @@ def test_bearings_of_macro_steps_of_their_own(threads: Threads) -> None:
     threads.compared(landing(run__macro_step="20 us", bearing_B__every=2))
 
 
+@pytest.mark.native
 def test_native_fmus(threads: Threads) -> None:
     threads.compared(natively(landing(run__duration=4e-3)), in_process=False)
 
