@@ -34,7 +34,7 @@ from .description.variables import guid
 AT_START = (Causality.PARAMETER, Causality.INPUT)  # what can be set before the first step
 READABLE = (*AT_START, Causality.OUTPUT)
 NEW, INITIALISING, STEPPING, ENDED = b"0", b"1", b"2", b"3"  # where an instance is in its life
-_LIFE = struct.Struct("<c?2d")  # phase, failed, start time, end of the last step
+_LIFE = struct.Struct("<c?3d")  # phase, failed, start time, stop time, end of the last step
 _CHECK = struct.Struct("<I")  # what serialised states end with: their checksum
 TIME_TOLERANCE = 1e-2  # of a step: how far it may begin from the end of the last one
 
@@ -47,6 +47,8 @@ class ModelSlave(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        if not self.instance_name.strip():
+            raise RuntimeError(messages.NO_NAME)
         self.description = self.model.about
         self._instance = Instance(self.model)
         self._identity = guid(self.model).encode()
@@ -59,6 +61,7 @@ class ModelSlave(Fmi2Slave):
         self._stale = True  # outputs do not yet follow from what was set
         self._failed = ""
         self._start_time = 0.0
+        self._stop_time = math.inf  # what the host announced
         self._living.add(self)
         if self.resources:
             _list_once(str(self.resources))
@@ -77,7 +80,10 @@ class ModelSlave(Fmi2Slave):
             self._raise(messages.SETUP_LATE)
         if not math.isfinite(start_time):
             self._raise(messages.NO_START.format(time=start_time))
-        self._start_time = start_time
+        stop = math.inf if stop_time is None else stop_time
+        if not stop > start_time:
+            self._raise(messages.NO_STOP.format(stop=stop, start=start_time))
+        self._start_time, self._stop_time = start_time, stop
 
     def enter_initialization_mode(self) -> None:
         if self._phase != NEW:
@@ -102,6 +108,8 @@ class ModelSlave(Fmi2Slave):
             self._raise(messages.ENDED if self._phase == ENDED else messages.NOT_STARTED)
         if abs(current_time - self._end) > TIME_TOLERANCE * step_size:
             self._raise(messages.APART.format(time=current_time, step=step_size, end=self._end))
+        if current_time + step_size > self._stop_time + TIME_TOLERANCE * step_size:
+            self._raise(messages.PAST_STOP.format(time=current_time, step=step_size, stop=self._stop_time))
         problem = ""
         try:
             self._instance.step(current_time, step_size)
@@ -228,7 +236,7 @@ class ModelSlave(Fmi2Slave):
     # -- state ---------------------------------------------------------------------------------------
 
     def _get_fmu_state(self) -> bytes:  # type: ignore[override]
-        life = _LIFE.pack(self._phase, bool(self._failed), self._start_time, self._end)
+        life = _LIFE.pack(self._phase, bool(self._failed), self._start_time, self._stop_time, self._end)
         return b"".join((self._identity, life, self._instance.state))
 
     def _set_fmu_state(self, state: bytes) -> None:  # type: ignore[override]
@@ -236,7 +244,8 @@ class ModelSlave(Fmi2Slave):
         head = len(own) + _LIFE.size
         if len(state) != head + len(self._instance.state) or not state.startswith(own):
             self._raise(messages.FOREIGN_STATE)
-        self._phase, failed, self._start_time, self._end = _LIFE.unpack_from(state, len(own))
+        life = _LIFE.unpack_from(state, len(own))
+        self._phase, failed, self._start_time, self._stop_time, self._end = life
         self._instance.restore(memoryview(state)[head:])
         self._stale = self._phase < STEPPING
         self._failed = self._failed or messages.FAILED_STATE if failed else ""

@@ -107,7 +107,7 @@ def cached(recipe: Recipe) -> Path:
 def _code(model: Model, identity: str, held: Held, face: Interface) -> tuple[bytes | None, dict[str, str]]:
     """What a library is made of: kernels as bitcode, if they are not in C, and sources in C by name."""
     side = (SOURCE / face.source).read_text(encoding="utf-8")
-    texts = {face.source: side, "texts.h": header()}
+    texts = {face.source: side, "texts.h": header(face.categories)}
     own = face.tables(model)
     if isinstance(model.advance, InC):
         return None, texts | {"model.c": source(model, identity, held, own, ENTRIES)} | sources(model)

@@ -30,17 +30,18 @@ OWN = {  # what only a native FMU has to say
     "NOT_OFFERED": "the FMU does not offer this",
     "NO_ROOM": "there is too little room for the state",
     "NO_EVENT_MODE": "it has no event mode; instantiate it without",
-    "PAST_STOP": "cannot step from t = {time:.9g} s by {step:g} s; the end was said to be t = {stop:.9g} s",
+    "NO_CATEGORY": "{name} is no log category of this FMU",
     "OTHER_COUNT": "{given:d} values for variables that hold {held:d}",
 }
 _CONVERSIONS = {"": "s", "g": "g", ".9g": ".9g", "d": "u"}
 
 
-def header() -> str:
-    """The file."""
+def header(categories: Iterable[str]) -> str:
+    """The file; categories: of what goes to the host's log."""
     lines = ["/* Written by touchdown.fmus.native.tables. */", *_numbers()]
     for name, template in {**_templates(steps), **_templates(calls), **OWN}.items():
         lines.append(f"#define SAY_{name} {quoted(printf(template)[0])}")
+    lines.append(f"#define LOG_CATEGORIES {', '.join(map(quoted, categories))}")
     return "\n".join(lines) + "\n"
 
 

@@ -56,6 +56,19 @@ def fed(value):
     slave.set({INPUT: value})
     return slave
 
+def bounded():
+    slave = new()
+    slave.fmu.setupExperiment(startTime=0.0, stopTime=1.5 * STEP)
+    slave.fmu.enterInitializationMode()
+    slave.fmu.exitInitializationMode()
+    slave.fmu.doStep(0.0, STEP)
+    return slave
+
+def restored(slave):
+    other = new().start()
+    other.fmu.setFMUstate(other.fmu.deSerializeFMUstate(bytes_of(slave)))
+    return other
+
 def failed():
     slave = running()
     status(slave.fmu.doStep, STEP, -1.0)
@@ -94,6 +107,8 @@ WRONG = {
     "set a real as string": (new, lambda s: s.fmu.setString(of(s, REAL), ["1"])),
     "set an output": (new, lambda s: s.fmu.setReal(of(s, OUTPUT), [1.0])),
     "set up at no time": (new, lambda s: s.fmu.setupExperiment(startTime=math.nan)),
+    "set up to stop at the start": (new, lambda s: s.fmu.setupExperiment(startTime=1.0, stopTime=1.0)),
+    "set up to stop at no time": (new, lambda s: s.fmu.setupExperiment(stopTime=math.nan)),
     "complete initialisation that was not entered": (new, lambda s: s.fmu.exitInitializationMode()),
     "step a new one": (new, lambda s: s.fmu.doStep(0.0, STEP)),
     "set up while initialising": (initialising, lambda s: s.fmu.setupExperiment(startTime=0.0)),
@@ -115,6 +130,9 @@ WRONG = {
     "set one of two wrongly": (running, lambda s: s.fmu.setReal(of(s, INPUT) + of(s, REAL), [0, 1])),
     "step back": (running, lambda s: s.fmu.doStep(0.0, STEP)),
     "leave a gap": (running, lambda s: s.fmu.doStep(3 * STEP, STEP)),
+    "step past the stop time": (bounded, lambda s: s.fmu.doStep(STEP, STEP)),
+    "step past a restored stop time": (
+        lambda: restored(bounded()), lambda s: s.fmu.doStep(STEP, STEP)),
     "step by nothing": (running, lambda s: s.fmu.doStep(STEP, 0.0)),
     "step by less than nothing": (running, lambda s: s.fmu.doStep(STEP, -STEP)),
     "step by no number": (running, lambda s: s.fmu.doStep(STEP, math.nan)),
@@ -170,6 +188,9 @@ REASONS = {  # what the log says of some
     "read what a bad parameter makes": "clearance = -1 m must be above 0 m",
     "set a fixed parameter": "clearance cannot be set as real now; parameters that are not",
     "step back": "the last step ended at 2e-05 s",
+    "set up to stop at the start": "the stop time is 1 s; it must lie after the start time, 1 s",
+    "step past the stop time": "the stop time is 3e-05 s",
+    "step past a restored stop time": "the stop time is 3e-05 s",
     "step one that failed": "stopped before: cannot step",
     "take bytes that were changed": "not one of this FMU, or was changed",
 }
@@ -206,3 +227,43 @@ def test_only_a_step_that_is_too_long_is_discarded(folders: tuple[Path, Path], a
     answers, said = answered(alone(TOO_LONG, folders[0]))
     assert answers == [DISCARD, 0]
     assert "take a smaller macro step" in said
+
+
+NAMES = """
+import json
+from slave_driver import Slave
+made = []
+for name in ("", " \\t", "a b"):
+    try:
+        made.append(bool(Slave(sys.argv[1], name)))
+    except Exception as error:
+        made.append(str(error))
+print(json.dumps(made))
+"""
+
+
+def test_an_instance_needs_a_name(folders: tuple[Path, Path], alone: Alone):
+    refused = "Failed to instantiate model"
+    assert answered(alone(NAMES, folders[0])) == [refused, refused, True]
+
+
+CATEGORIES = """
+import json
+from slave_driver import Slave
+slave = Slave(sys.argv[1])
+answers = []
+for categories in (["logStatusError"], [], ["logStatusError", "everything"]):
+    try:
+        slave.fmu.setDebugLogging(True, categories)
+        answers.append(0)
+    except Exception as error:
+        answers.append(error.status)
+print(json.dumps([answers, slave.said, len(slave.start().run(0, 1))]))
+"""
+
+
+def test_a_native_fmu_knows_its_log_categories(native: Native, alone: Alone):
+    """Others are refused without harm; pythonfmu's library takes any."""
+    answers, said, _ = answered(alone(CATEGORIES, native("bushing")))
+    assert answers == [0, 0, ERROR]
+    assert said == "everything is no log category of this FMU"

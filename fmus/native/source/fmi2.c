@@ -51,15 +51,15 @@ API void fmi2FreeInstance(Fmu *f)
 
 API Status fmi2SetDebugLogging(Fmu *f, int on, size_t count, const char *const categories[])
 {
-    (void)f, (void)on, (void)count, (void)categories; /* there is nothing but what went wrong */
-    return OK;
+    (void)on; /* there is nothing but what went wrong */
+    return known_categories(f, count, categories);
 }
 
 API Status fmi2SetupExperiment(Fmu *f, int tolerance_given, double tolerance, double start_time,
                                int stop_given, double stop_time)
 {
-    (void)tolerance_given, (void)tolerance, (void)stop_given, (void)stop_time;
-    return set_up(f, start_time);
+    (void)tolerance_given, (void)tolerance;
+    return set_up(f, start_time, stop_given ? stop_time : INFINITY);
 }
 
 API Status fmi2EnterInitializationMode(Fmu *f)

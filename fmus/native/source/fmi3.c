@@ -55,17 +55,15 @@ API void fmi3FreeInstance(Fmu *f)
 
 API Status fmi3SetDebugLogging(Fmu *f, bool on, size_t count, const char *const categories[])
 {
-    (void)count, (void)categories;
     f->host.logging = on; /* errors are told in any case: a host cannot ask for their reasons afterwards */
-    return OK;
+    return known_categories(f, count, categories);
 }
 
 API Status fmi3EnterInitializationMode(Fmu *f, bool tolerance_given, double tolerance, double start_time,
                                        bool stop_given, double stop_time)
 {
     (void)tolerance_given, (void)tolerance;
-    if (f->life.phase == NEW && set_up(f, start_time)) return ERROR;
-    if (f->life.phase == NEW && stop_given) f->life.stop = stop_time;
+    if (f->life.phase == NEW && set_up(f, start_time, stop_given ? stop_time : INFINITY)) return ERROR;
     return enter(f);
 }
 

@@ -278,6 +278,26 @@ static const char *unusable(const char *identity)
     return NULL;
 }
 
+static int is_blank(const char *name)
+{
+    return !name || !name[strspn(name, " \t\r\n\v\f")];
+}
+
+/* Whether the host asks for log categories that there are; what it asks for changes nothing. */
+static Status known_categories(Fmu *f, size_t count, const char *const categories[])
+{
+    static const char *const known[] = {LOG_CATEGORIES};
+    for (size_t i = 0; i < count; i++) {
+        size_t k = 0;
+        while (k < sizeof known / sizeof *known && strcmp(categories[i], known[k])) k++;
+        if (k == sizeof known / sizeof *known) {
+            explain(f, SAY_NO_CATEGORY, categories[i]);
+            return tell(f, ERROR);
+        }
+    }
+    return OK;
+}
+
 static Fmu *create(const char *name, const char *identity, Host host, const char *problem)
 {
     Fmu *f = calloc(1, sizeof *f);
@@ -290,6 +310,7 @@ static Fmu *create(const char *name, const char *identity, Host host, const char
     f->settled = calloc(MODEL.inputs - MODEL.parameters + 1, sizeof(double));
     if (!f->name || !f->words || !f->scratch || !f->settled) problem = SAY_NO_MEMORY;
     if (f->name && name) memcpy(f->name, name, length);
+    if (!problem && is_blank(name)) problem = SAY_NO_NAME;
     if (!problem) problem = unusable(identity);
     if (problem) {
         explain(f, "%s", problem);
@@ -301,11 +322,14 @@ static Fmu *create(const char *name, const char *identity, Host host, const char
     return f;
 }
 
-static Status set_up(Fmu *f, double start_time)
+/* stop_time: infinity where the host announces none. */
+static Status set_up(Fmu *f, double start_time, double stop_time)
 {
     if (f->life.phase != NEW) return FAIL(f, SAY_SETUP_LATE);
     if (!isfinite(start_time)) return FAIL(f, SAY_NO_START, plain(start_time));
+    if (!(stop_time > start_time)) return FAIL(f, SAY_NO_STOP, plain(stop_time), start_time);
     f->life.start = start_time;
+    f->life.stop = stop_time;
     f->stale = 1;
     return OK;
 }
