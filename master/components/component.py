@@ -278,6 +278,8 @@ class Component(ABC):
 
     foreign = False  # whether it is an FMU of others'
     any_step = True  # whether it takes steps of any length
+    inner_step: float | None = None  # s, by which it always steps inside, where it says so
+    made_for_step: float | None = None  # s, the macro step that it proposes
     can_save = True  # whether its state can be saved
 
     @abstractmethod

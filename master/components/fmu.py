@@ -7,6 +7,7 @@ call costs the crossing and nothing else.
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -112,6 +113,15 @@ def _step_from(time: float) -> str:
     return f"{Call.STEP} from t = {time:.9g} s"
 
 
+def _seconds(declared: object) -> float | None:
+    """A declared length of steps; None where it is none, or no such thing."""
+    try:
+        length = float(str(declared))
+    except ValueError:
+        return None
+    return length if 0.0 < length < math.inf else None
+
+
 class ArchivedFmu(Component):
     """A component that is an FMU in a file, wherever it is stepped."""
 
@@ -123,6 +133,10 @@ class ArchivedFmu(Component):
         able = self.description.coSimulation
         self.can_save = bool(able.canGetAndSetFMUstate)
         self.any_step = bool(able.canHandleVariableCommunicationStepSize)
+        if self.foreign:
+            experiment = self.description.defaultExperiment
+            self.inner_step = _seconds(getattr(able, "fixedInternalStepSize", None))
+            self.made_for_step = _seconds(experiment.stepSize if experiment else None)
         self.units = units_of(self.description)
         self.path, self._cache, self._own_origin = path, cache, origin
 

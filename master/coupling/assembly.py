@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from ...fmus.recipes import bore_of, preset
@@ -28,6 +28,7 @@ from .connections import (
 from .system import System
 
 UNSCALED_UNITS = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
+STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -72,9 +73,28 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     every = {name: spec.every for name, spec in scene.components.items()}
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     components = hear(components, attachments)
-    told = [*left_out, *plausibility_warnings(seats)]
+    told = [*left_out, *declared_steps(scene, components), *plausibility_warnings(seats)]
     start = scene.run.start_time
     return System(components, attachments, connections, settings, every, told, bonds, start)
+
+
+def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterator[str]:
+    """What FMUs declare of their steps that does not go with the macro step, a line each."""
+    for name, component in components.items():
+        step = scene.run.macro_step * scene.components[name].every
+        inner, proposed = component.inner_step, component.made_for_step
+        if inner and (
+            step < inner * (1.0 - STEP_MATCH) or abs(step / inner - round(step / inner)) > STEP_MATCH
+        ):
+            yield (
+                f"{name} steps by {inner:g} s inside (fixedInternalStepSize of its FMU); its macro step of "
+                f"{step:g} s is no multiple of that"
+            )
+        if proposed and step > proposed * (1.0 + STEP_MATCH):
+            yield (
+                f"{name} was made for steps of {proposed:g} s (stepSize of its FMU's DefaultExperiment); "
+                f"its macro step of {step:g} s is longer"
+            )
 
 
 def _seat(
