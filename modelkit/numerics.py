@@ -87,7 +87,7 @@ def complete(parameter, complement):
 
 
 SERIES_LIMIT = 0.5  # below this k h^2 or c h the closed form cancels and a power series takes its place
-SERIES_TERMS = 16  # of the series, which leaves SERIES^16/16!
+SERIES_TERMS = 16  # of the series, which leaves SERIES_LIMIT^16/16!
 
 
 class Step(NamedTuple):

@@ -17,9 +17,8 @@ from .modal.whirl_speeds import CriticalMap, Held, critical_map, held, whirl_fre
 from .statics import Rest, at_rest
 
 HZ_PER_RAD_S = 0.5 / math.pi
-SUPPORTED_MODES = (
-    12  # modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones
-)
+# Modes per plane on supports, with the residual flexibility there: 1e-6 of the lowest ones
+SUPPORTED_MODES = 12
 CAMPBELL_LINES = 12  # of a Campbell diagram on supports
 CAMPBELL_STRIDE = 2  # of the speeds every which is taken for it
 

@@ -29,14 +29,13 @@ LAWS = Choices(
     ("Coulomb, regularised", "static and dynamic, Stribeck", "Makkar et al."),
 )
 
-# of the search for the peak of Makkar's curve, from 0 to FADED/g3 where all has risen that rises
+# of the search for the peak of Makkar's curve, from 0 to MAX_FADED_RATIO/g3 where all has risen that rises
 MAX_FADED_RATIO = 3.0
 FIRST_SAMPLE = 0.01  # sample, over the steeper of both rises
 SAMPLE_RATIO = 1.5  # samples, as a ratio
 MAX_NEWTON_STEPS = 60  # of Newton's method, held in a bracket
-MAX_STATIC_RATIO = (
-    100.0  # times the static coefficient; a larger g1 stands for a g2 that g3 all but cancels
-)
+# Times the static coefficient; a larger g1 stands for a g2 that g3 all but cancels
+MAX_STATIC_RATIO = 100.0
 
 
 @dataclass(frozen=True)

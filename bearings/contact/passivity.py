@@ -38,9 +38,8 @@ from typing import NamedTuple
 
 from ...modelkit.kernel import inlined
 
-ELASTIC_RESERVE = (
-    0.9  # of the energy by the law; what is stored swings about it by some per cent at h w of 0.8
-)
+# Of the energy by the law; what is stored swings about it by some per cent at h w of 0.8
+ELASTIC_RESERVE = 0.9
 MIN_KICK = 1e-300  # s, and s/kg; stands for no kick at all, over which nothing is given
 
 

@@ -15,9 +15,8 @@ from typing import NamedTuple
 from ...modelkit.kernel import kernel
 from ...modelkit.variables import group, integer, real
 
-MIN_STEP_RATIO = (
-    0.1  # of the step before; over less than that, as at the end of a macro step, no slope is taken
-)
+# Of the step before; over less than that, as at the end of a macro step, no slope is taken
+MIN_STEP_RATIO = 0.1
 
 
 @dataclass(frozen=True)

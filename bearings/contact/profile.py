@@ -137,9 +137,8 @@ def problem(profile, radius, ball_radius, dent, told):
 
 
 MAX_ITERATIONS = 20
-NEWTON_TOLERANCE = (
-    1e-10  # rad, last Newton step; what it leaves is of its square, and rounding stays well below
-)
+# Rad, last Newton step; what it leaves is of its square, and rounding stays well below
+NEWTON_TOLERANCE = 1e-10
 COLD_SEARCH_POINTS = 256  # points of the cold search, each time
 
 

@@ -16,9 +16,8 @@ from .ball_set import outer_share, start_angle
 
 MAX_STEPS = 100  # of Newton's method; ten are enough where balls hold the ring
 MAX_HALVINGS = 40
-SINGULAR_RATIO = (
-    1e-12  # determinant over squared trace below which the springs hold the ring along one line only
-)
+# Determinant over squared trace below which the springs hold the ring along one line only
+SINGULAR_RATIO = 1e-12
 ROUNDING = 2e-16  # of all lengths
 BOTTOM_ANGLE = 1e-9  # rad, how near to the bottom a ball is exactly below
 

@@ -59,9 +59,8 @@ from .copies import (
     take_modes,
 )
 
-MAX_HALF_PERIODS = (
-    3.0  # half a period of the housing per macro step; beyond, two numbers cannot stand for its load
-)
+# Half a period of the housing per macro step; beyond, two numbers cannot stand for its load
+MAX_HALF_PERIODS = 3.0
 BODY_LOAD_SIZE = 10  # numbers of the load on journal and housing; each mode has four more
 
 

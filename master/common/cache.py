@@ -28,10 +28,8 @@ DESCRIPTIONS = {  # of the kinds, for people
     "rotors": "rotor files of rotors made in Python",
     "peers": "environments of tests with other tools",
 }
-PERMANENT_KINDS = (
-    "rotors",
-    "peers",
-)  # scenes name the files of the first, the others are not of the command
+# Scenes name the files of the first, the others are not of the command
+PERMANENT_KINDS = "rotors", "peers"
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,7 @@ def _size(path: Path) -> int:
 
 
 def made_again(held: Iterable[Entry]) -> list[Entry]:
-    """Of `held`, all but STAYING."""
+    """Of `held`, all but PERMANENT_KINDS."""
     return [entry for entry in held if entry.kind not in PERMANENT_KINDS]
 
 
@@ -82,8 +80,8 @@ def outworn(
 ) -> list[Entry]:
     """Of `held`, what was not used for `age` (days), and the longest unused above `limit` (bytes) in all.
 
-    For the size nothing goes that was used within RECENT days: other processes may be at it. What a process
-    left unfinished goes after as long.
+    For the size nothing goes that was used within IN_USE_DAYS days: other processes may be at it. What a
+    process left unfinished goes after as long.
     """
     oldest_first = sorted(made_again(held), key=lambda entry: entry.used)
     total = sum(entry.size for entry in oldest_first)

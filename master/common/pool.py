@@ -272,7 +272,7 @@ def one_thread() -> Generator[None]:
 def _end(processes: Sequence[BaseProcess]) -> None:
     """End processes in order if they let: a Ctrl-C at a terminal has reached them too, others have not.
 
-    A run that got it twice would break off, so those still there after GRACE are sent theirs.
+    A run that got it twice would break off, so those still there after GRACE_S are sent theirs.
     """
     try:
         _join(processes)

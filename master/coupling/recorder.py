@@ -77,9 +77,8 @@ def _refuse_taken(components: Iterable[str]) -> None:
 
 MAX_HELD_NUMBERS = 2**20  # numbers held before they are written, at most: 8 MiB
 MAX_LOSS_S = 0.8  # s of wall time between writes: with the write itself, less than a second is lost
-MAX_WRITING_SHARE = (
-    0.05  # of the time that writing takes, at most: with very many columns more is lost instead
-)
+# Of the time that writing takes, at most: with very many columns more is lost instead
+MAX_WRITING_SHARE = 0.05
 
 
 class Recorder:

@@ -215,7 +215,7 @@ def macro_steps(duration: float, step: float) -> int:
 
 
 def refuse_endless(duration: float, step: float) -> None:
-    """Raise TouchdownError where `duration` (s) takes more than MOST_STEPS macro steps of `step` (s)."""
+    """Raise TouchdownError where `duration` takes more than MAX_MACRO_STEPS of `step` (both s)."""
     if duration > MAX_MACRO_STEPS * step:
         raise TouchdownError(
             f"{duration:g} s by macro steps of {step:g} s are more than {MAX_MACRO_STEPS:g} of them; ask "

@@ -26,10 +26,8 @@ FIRST_DISTANCE, MAX_DISTANCE, DISTANCE_RATIO = (
 SLOPE_DISTANCE = 5e-6  # m, between the two places that the stiffness is read from
 MIN_FORCE = 0.1  # N; less is no contact
 DIRECTIONS = (-90.0, 30.0, 150.0)  # degrees
-USUAL_STIFFNESS = (
-    1e5,
-    1e11,
-)  # N/m; magnetic bearings lie at the lower end, steel on steel a tenth of the upper
+# N/m; magnetic bearings lie at the lower end, steel on steel a tenth of the upper
+USUAL_STIFFNESS = 1e5, 1e11
 PORT = "journal"
 VELOCITY = ("vx", "vy")
 

@@ -224,10 +224,8 @@ def _forces(subject: Subject, a: Attachment, time: np.ndarray) -> np.ndarray:
 
 
 CORE, SLEEVE, EDGE, FORCE, BODY = "#c8d3dc", "#e6d9bd", "#6f7a84", "#a5260b", "#f5f6f8"
-PANEL_INCHES, DOTS_PER_INCH = (
-    4.8,
-    100,
-)  # of a bearing's panel, and per inch: an even number of points, as codecs want it
+# Of a bearing's panel, and per inch: an even number of points, as codecs want it
+PANEL_INCHES, DOTS_PER_INCH = 4.8, 100
 FILM_INCHES, CAPTION_INCHES = 5.8, 0.35  # inch, of a film, and of what is told below the panels
 SHOULDER_RATIO = 0.8  # of a ball's radius: where the rings' shoulders are
 SUFFIXES = (".mp4", ".gif")

@@ -34,7 +34,7 @@ class Presses:
     def largest(self) -> tuple[np.ndarray, np.ndarray, np.ma.MaskedArray]:
         """Edges of time (s) and of angle (deg, 0 at the bottom), and the largest force in each field.
 
-        The field is (SECTORS, MOMENTS), masked where nothing pressed.
+        The field is (SECTORS, TIME_BINS), masked where nothing pressed.
         """
         moments = np.linspace(beginning(self.time), float(self.time[-1]), TIME_BINS + 1)
         sectors = np.linspace(-180.0, 180.0, SECTORS + 1)

@@ -1,6 +1,6 @@
 """Curves over time for a chart that can be zoomed: few enough points, no peak lost.
 
-Where a recording has more rows than MOST_ROWS, those of the first impact are all kept, and of the others
+Where a recording has more rows than MAX_ROWS, those of the first impact are all kept, and of the others
 each stretch keeps the rows where one of the curves is largest or smallest.
 """
 

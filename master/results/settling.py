@@ -7,25 +7,25 @@ to the last of them, over their mean, and how surely: with the interval of Stude
 sizes are few or scatter.
 
 growing, decaying  the line rises, falls by more than TOLERANCE, and the interval leaves out zero
-steady             neither, and the interval stays within PLAIN of zero
-cannot tell        all else: fewer than LEAST sizes, or so scattered that it may be either
+steady             neither, and the interval stays within MAX_INTERVAL of zero
+cannot tell        all else: fewer than MIN_SIZES sizes, or so scattered that it may be either
 
 When a journal has settled: when its motion is what it remains to the end of the recording.
 
 The recording is cut, back from its end, into periods of a pendulum, 2 pi sqrt(clearance / g). In each the
 motion has a size, half of how far the journal moves to and fro over the clearance, and a mean contact
-force. Swings of two seats beat: so a swing is looked at over BEAT periods, by the largest size and the
-mean force. It has settled where one of these holds at the end:
+force. Swings of two seats beat: so a swing is looked at over BEAT_PERIODS periods, by the largest size and
+the mean force. It has settled where one of these holds at the end:
 
-at rest        for LEAST periods all sizes are below REST, and the journal does not whirl
+at rest        for MIN_SIZES periods all sizes are below REST_AMPLITUDE, and the journal does not whirl
 swings on      neither size nor force grows or decays (`trend`), told from the last half of the time in
-               contact, LEAST to MOST times BEAT periods
+               contact, MIN_SIZES to MAX_BEATS times BEAT_PERIODS periods
 whirls on      the whirl is steady turn by turn
 
 The last two are plateaus: it goes on like that until the rotor has slowed down, or for good. The settling
-time is the end of the last period whose size is not within BAND of the clearance, or whose force is not
-within FORCES, of their means over the periods that it was told from: known to a period, or to BEAT of them
-where it swings on. None where it has not settled.
+time is the end of the last period whose size is not within AMPLITUDE_BAND of the clearance, or whose force
+is not within FORCE_BAND, of their means over the periods that it was told from: known to a period, or to
+BEAT_PERIODS of them where it swings on. None where it has not settled.
 """
 
 from __future__ import annotations
@@ -104,8 +104,8 @@ def turn_by_turn(
     """Means over each of the last turns of a whirl from `start` to `end` (s): of its radius, of the force.
 
     The radius is about the orbit's own middle, over the clearance; force: size of the contact force (N,
-    rows,), None where unknown. Turns are whole ones, counted back from the end, at most MOST and PART of
-    all. Without a turn where the recording is too coarse to count them.
+    rows,), None where unknown. Turns are whole ones, counted back from the end, at most MAX_TURNS and
+    WHIRL_SHARE of all. Without a turn where the recording is too coarse to count them.
     """
     part = (orbit.time >= start) & (orbit.time <= end) & np.isfinite(orbit.radius)
     x, y = (
@@ -130,10 +130,9 @@ def _means(values: np.ndarray, turn: np.ndarray, count: int) -> np.ndarray:
 
 
 BEAT_PERIODS = 4  # periods; two modes of a pendulum on two seats are 20 to 40 % apart
-MAX_BEATS = 8  # times BEAT periods
-REST_AMPLITUDE = (
-    0.087  # of the clearance: a swing of 5 degrees to either side, half of what makes a pendulum
-)
+MAX_BEATS = 8  # times BEAT_PERIODS periods
+# Of the clearance: a swing of 5 degrees to either side, half of what makes a pendulum
+REST_AMPLITUDE = 0.087
 AMPLITUDE_BAND = 0.1  # of the clearance
 FORCE_BAND = 0.25  # of the mean force
 
@@ -214,7 +213,7 @@ def _periods(orbit: Orbit, force: np.ndarray | None, count: int) -> tuple[np.nda
 
 
 def _over_beats(values: np.ndarray, of: Callable[[np.ndarray], float]) -> np.ndarray:
-    """Of each period and those before it, BEAT in all."""
+    """Of each period and those before it, BEAT_PERIODS in all."""
     return np.array([of(values[max(0, k + 1 - BEAT_PERIODS) : k + 1]) for k in range(len(values))])
 
 
@@ -226,10 +225,8 @@ def _off(values: np.ndarray, recent: int, band: float) -> np.ndarray:
 TREND_NAMES = {one: one.value for one in Trend} | {
     Trend.UNTOLD: "whether it grows or decays cannot be told"
 }
-LONGER_FACTOR, MAX_LONGER = (
-    2.0,
-    4.0,
-)  # times the run, to be proposed where nothing says for how long; at most
+# Times the run, to be proposed where nothing says for how long; at most
+LONGER_FACTOR, MAX_LONGER = 2.0, 4.0
 TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to die out, too
 
 

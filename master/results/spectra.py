@@ -22,12 +22,12 @@ def interval(time: np.ndarray) -> float:
 
 
 def landed(time: np.ndarray) -> float:
-    """When the landing has died down (s): BEGIN from the shutdown, or from a start after that."""
+    """When the landing has died down (s): WINDOW_START_S from the shutdown, or from a start after that."""
     return WINDOW_START_S + max(0.0, float(time[0]))
 
 
 def windows(time: np.ndarray) -> list[float]:
-    """Starts (s) of the windows of LENGTH, one after the other from `landed`, that end within `time`."""
+    """Starts (s) of the windows of WINDOW_S, one after the other from `landed`, that end within `time`."""
     if len(time) < 2:
         return []
     begin = landed(time)
@@ -117,8 +117,8 @@ def lines(
     """The `count` tallest lines between `low` and `high` (Hz), the tallest first: (Hz, amplitude).
 
     Each is refined by a parabola through the logarithms of the three values at its top: under a Hann
-    window within 0.02 of their spacing, and 4 % in height. Of a line, and what stands less than APART
-    values beside it, only the tallest counts.
+    window within 0.02 of their spacing, and 4 % in height. Of a line, and what stands less than
+    SIDE_LOBE_LINES values beside it, only the tallest counts.
     """
     inner = np.arange(1, len(amplitude) - 1)
     top = (amplitude[inner] > amplitude[inner - 1]) & (amplitude[inner] >= amplitude[inner + 1])

@@ -61,7 +61,7 @@ def flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
 
 
 def refuse_unusable(table: Mapping[str, Any], where: str) -> None:
-    """Raise TouchdownError where values lie DEEPEST in each other, or a text holds a NUL.
+    """Raise TouchdownError where values lie MAX_DEPTH in each other, or a text holds a NUL.
 
     No scene needs either; files, folders and recordings cannot have a NUL in their names.
     """

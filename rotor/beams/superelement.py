@@ -19,13 +19,11 @@ from .body import Matrices, rigid_motion
 
 MAX_COORDINATES = 1000  # its matrices are full
 ROUNDING = 1e-6  # of others' matrices
-RIGID_FREQUENCY_RATIO = (
-    1e-2  # of the first bending frequency; a mode below is a rigid one that digits or soft ropes hold
-)
+# Of the first bending frequency; a mode below is a rigid one that digits or soft ropes hold
+RIGID_FREQUENCY_RATIO = 1e-2
 NOISE = 1e-13  # of the highest squared frequency, which the lowest are calculated beside
-RIGID_SHAPE_TOLERANCE = (
-    1e-3  # of the largest motion of a node: by which shapes may miss that of a rigid body
-)
+# Of the largest motion of a node: by which shapes may miss that of a rigid body
+RIGID_SHAPE_TOLERANCE = 1e-3
 LENGTH_RANGE = (1e-3, 1e2)  # m, of rotors; beyond, units are mistaken
 BENDING_RANGE_HZ = (0.1, 1e6)  # of their first bending mode
 MAX_BULK_DENSITY = 1e3  # kg/m3, mass over cubed length; slender rotors have 1 to 100, short flywheels more

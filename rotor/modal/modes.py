@@ -22,9 +22,8 @@ from ..beams.shaft import TOO_UNLIKE_MESSAGE, Shaft, assemble, solve, unit_force
 RIGID_MODES = 2  # rigid modes per plane
 MAX_SOLVED = 128  # modes per plane of a long list of nodes
 MIN_RESIDUAL = 1e-7  # a residual vector this small against its node's deflection is rounding error
-MIN_FREQUENCY_RATIO = (
-    1e-11  # squared frequency over the highest; below, rounding errors show in the third digit
-)
+# Squared frequency over the highest; below, rounding errors show in the third digit
+MIN_FREQUENCY_RATIO = 1e-11
 PARALLEL_TOLERANCE = 1e-10  # squared sine below which residual vectors count as one
 
 

@@ -25,9 +25,8 @@ from ..beams.shaft import Support
 from .modes import Basis
 
 MIN_DAMPING_RATIO = 1e-6  # damping ratio (either sign) below which rounding may be all there is
-MIN_ROOT_RATIO = (
-    1e-7  # of the largest root that swings: what swings less does not, and what is less is next to zero
-)
+# Of the largest root that swings: what swings less does not, and what is less is next to zero
+MIN_ROOT_RATIO = 1e-7
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,8 @@ from .modes import Basis
 from .supported import HeldRotor, LinearBearing, Whirl
 
 OVERDAMPED_RATIO = 0.95  # damping ratio from which a mode hardly swings: such as a controller's lag
-MAX_UNLIKENESS = (
-    1.0  # of a mode and the next speed's: 1 less their likeness, and how far apart their roots are
-)
+# Of a mode and the next speed's: 1 less their likeness, and how far apart their roots are
+MAX_UNLIKENESS = 1.0
 SENSE_PENALTY = 0.1  # of a root's size that another sense of whirl is worth
 SPEED_TOLERANCE = 1e-12  # of a critical speed
 
@@ -232,7 +231,7 @@ def critical_map(shaft: Shaft, basis: Basis, places: Sequence[Station]) -> Criti
 
 
 def _first(speeds: np.ndarray) -> np.ndarray:
-    """The lowest `MAP_LINES` of them (LINES,), nan where there are less."""
+    """The lowest `MAP_LINES` of them (MAP_LINES,), nan where there are less."""
     return np.pad(speeds[:MAP_LINES], (0, max(0, MAP_LINES - len(speeds))), constant_values=np.nan)
 
 

@@ -107,9 +107,8 @@ def _kick(q, m, j, k, load):
     return energy
 
 
-HERMITE_LIMIT = (
-    1e-4  # (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
-)
+# (omega h)^2 of a stride; below, Hermite's rule errs by 1e-11, and the exact form cancels
+HERMITE_LIMIT = 1e-4
 
 
 @dataclass(frozen=True)

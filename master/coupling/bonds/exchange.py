@@ -138,7 +138,8 @@ class Feedthrough:
         )
 
     def of(self, motion: Sequence[float]) -> float:
-        """The force that a change of motion makes at once; towards 0 where less than NEAR of it was seen.
+        """The force that a change of motion makes at once; towards 0 where less than MAX_REACH of it was
+        seen.
 
         Motions that are hardly apart show rounding, and what else moves the force.
         """

@@ -249,9 +249,8 @@ PARALLEL_SEQUENCES: Mapping[object, bool] = {GaussSeidel.step: False, Jacobi.ste
 CALLS = {SET: Call.SET, STEP: Call.STEP, GET: Call.GET, FETCH: Call.FETCH}
 NO_ROWS = np.zeros((0, 0))
 MAX_STRETCH_S = 0.1  # s of wall time that a stretch may take: so long Ctrl-C and the progress bar wait
-MAX_STRETCH_STEPS = (
-    LOOK_INTERVAL_STEPS  # macro steps of a stretch: a contact may make the next ones a hundred times slower
-)
+# Macro steps of a stretch: a contact may make the next ones a hundred times slower
+MAX_STRETCH_STEPS = LOOK_INTERVAL_STEPS
 
 
 class Stretches:

@@ -15,9 +15,8 @@ from ...common.pool import threads
 from .kernels.board import HELPED, LINE, OPEN, SIZE, YIELD, help_out
 
 MAX_IDLE_LOOKS = 20_000  # looks in vain, some ms, after which a helper leaves
-MIN_PROCESSOR_SHARE = (
-    0.9  # share of a stretch that a helper has its processor, where nobody else wants that
-)
+# Share of a stretch that a helper has its processor, where nobody else wants that
+MIN_PROCESSOR_SHARE = 0.9
 MIN_JUDGED_S = 5e-4  # s that a stretch takes, at least, to tell
 MAX_STRETCHES_ALONE = 64  # stretches without helpers before they are asked again
 

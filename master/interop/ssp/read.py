@@ -191,10 +191,21 @@ class _Ways:
 PACKAGE = Format("an SSP package", SSD_FILE, "`touchdown ssp` makes one of a scene")
 
 
+# Fmt: skip
 RUN_KEYS = (
-    "scheme", "bonds", "tolerance", "record_every", "record", "record_also", "record_arrays",
-    "warn_residual", "stop_residual", "whirl_halvings", "impact_step", "until",
-)  # fmt: skip
+    "scheme",
+    "bonds",
+    "tolerance",
+    "record_every",
+    "record",
+    "record_also",
+    "record_arrays",
+    "warn_residual",
+    "stop_residual",
+    "whirl_halvings",
+    "impact_step",
+    "until",
+)
 DIGITS = 12  # of a duration found as a difference
 
 

@@ -87,9 +87,8 @@ def _left_out(subject: Subject) -> Iterator[str]:
     yield from ALWAYS_LEFT_OUT
 
 
-NEGLIGIBLE_RESIDUAL = (
-    1e-3  # of the turnover: what the coupling makes or loses says nothing against the figures
-)
+# Of the turnover: what the coupling makes or loses says nothing against the figures
+NEGLIGIBLE_RESIDUAL = 1e-3
 MADE_INSIDE = 0.02  # of the turnover, inside a bearing; beyond it the run has warned
 NAMES = {
     "energy_turnover_J": ("Energy that crossed between the parts", "J"),

@@ -24,7 +24,7 @@ def energy(figure: FigureBase, run: Finished) -> list[Axes]:
     """Where the energy is: what fell, what went into rings and balls, what became heat; and the balance.
 
     Colour and mark tell components apart, also where their curves coincide; the style of the line, kinds of
-    energy. What changes by less than SMALL of the largest is named above the panel.
+    energy. What changes by less than MIN_DRAWN_CHANGE of the largest is named above the panel.
     """
     system, recording = run.system, run.recording
     flows, check = sized(figure, 15, 5.5).subplots(1, 2)

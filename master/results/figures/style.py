@@ -170,10 +170,8 @@ def within(time: np.ndarray, span: tuple[float, float]) -> np.ndarray:
 
 
 GREY_TOLERANCE = 0.02  # largest difference of a grey's red, green and blue
-GROUND_LIGHTNESS, DARK_GROUND_LIGHTNESS = (
-    0.7,
-    0.3,
-)  # lightness from which a colour is a ground, and what it becomes
+# Lightness from which a colour is a ground, and what it becomes
+GROUND_LIGHTNESS, DARK_GROUND_LIGHTNESS = 0.7, 0.3
 MIN_LIGHTNESS = 0.62  # lightness that other colours have at least
 
 Rgba = tuple[float, float, float, float]

@@ -14,7 +14,7 @@ orbits held by something else than the bore (a magnetic bearing, an unbalance).
 Swings to and fro along the bore, also those that pass a turn.
 
 A free pendulum turns back at its ends, where its speed goes through zero, and stays within a turn from side
-to side. A driven one may go over the top and come back: one way by up to FURTHEST is still a swing if it
+to side. A driven one may go over the top and come back: one way by up to MAX_SWING is still a swing if it
 turns back into a like one, and slows down before it does.
 """
 
@@ -45,9 +45,8 @@ MAX_SAMPLE_TURN = (
 CIRCLE_TOLERANCE = 0.05  # of the clearance: so closely an orbit follows the circle through it
 MIN_ORBIT_RADIUS = 0.5  # of the clearance, from the orbit's middle: what lies within is a fall or a bounce
 MAX_CIRCLE_RADIUS = 1.5  # of the clearance: the radius of a circle that a bore may give way to
-MAX_CHORD_DEPTH = (
-    0.5  # of a short chord's distance to the centre: a rebound that lands nearby may come so deep
-)
+# Of a short chord's distance to the centre: a rebound that lands nearby may come so deep
+MAX_CHORD_DEPTH = 0.5
 
 
 class Orbit(NamedTuple):
@@ -278,9 +277,8 @@ MAX_SWING = 2.0 * TURN  # of a swing from side to side: a turn to either side
 MIN_SWING_RATIO = 0.5  # of a swing's turn: least of the one it turns back into; swings decay
 MAX_SWING_RATIO = 1.25  # times the one before it: most of a swing that turns back into none such
 END_SHARE = 1.0 / 8.0  # of a swing's turn, at an end at which it turns back, takes of its time
-MIN_TIME_AT_ENDS = (
-    0.17  # at least: 0.23 in harmonic motion, 0.125 at constant speed, when something hit it back
-)
+# At least: 0.23 in harmonic motion, 0.125 at constant speed, when something hit it back
+MIN_TIME_AT_ENDS = 0.17
 MAX_TIME_AT_ENDS = 0.45  # at most; more where it came to rest in between
 
 
@@ -336,7 +334,7 @@ class Direction(StrEnum):
 
 @dataclass(frozen=True)
 class Turning:
-    """Contacts that march one way by NEARLY or more and are no swing; without rest, or they creep."""
+    """Contacts that march by MAX_FREE_SWING or more and are no swing; without rest, or they creep."""
 
     march: March
     stretch: Stretch  # indices into the march

@@ -14,25 +14,27 @@ against gravity, it must be faster than a pendulum: that has a frequency of sqrt
 turn or more, without a rest. How closely the orbit follows the bore meanwhile, and about which point, does
 not count: a whirl may hop along chords (`contacts`).
 
-whirl      contacts march one way by a turn or more. Turning back by less than BACK does not end it, a
-           rest does, and a flight that is no hop
+whirl      contacts march one way by a turn or more. Turning back by less than MAX_TURN_BACK does not end
+           it, a rest does, and a flight that is no hop
 forward    the whirl turns as the rotor spins; backward against it
-goes on    a whirl goes on at the end: the recording ends within WAIT of a period of it, which is more than
-           the flight to the next contact takes
-pendulum   no whirl, but the contacts swing to and fro by SWING or more, either way in contact (`swings`)
+goes on    a whirl goes on at the end: the recording ends within STILL_WHIRLING_PERIODS of a period of it,
+           which is more than the flight to the next contact takes
+pendulum   no whirl, but the contacts swing to and fro by MIN_SWING or more, either way in contact
+           (`swings`)
 none       it rests, bounces without swinging, rubs in passing, creeps, or never touches
 
 Of what is no whirl a remark may say more, the first of these that holds (`remarks`):
 
-creeps along the bore   contacts march by a turn or more, at less than CREEP of the pendulum's frequency
-near miss               contacts march one way by less than a turn, but NEARLY or more
-partial rub             an orbit circles one way, LOOPS or more, and contacts do not march: it touches in
-                        places, as an ellipse does, or a circle off the centre
+creeps along the bore   contacts march by a turn or more, at less than CREEP_SHARE of the pendulum's
+                        frequency
+near miss               contacts march one way by less than a turn, but MAX_FREE_SWING or more
+partial rub             an orbit circles one way, MIN_WHIRL_TURN or more, and contacts do not march: it
+                        touches in places, as an ellipse does, or a circle off the centre
 orbits without contact  the same, and never touches
 
 A whirl can be told up to a third of the recording's rate. Thresholds stand with their reasons where they
-are used: what joins contacts in `contacts`, what is a swing in `swings`, a rest in `stretches`, BACK,
-NEARLY and CREEP in `turning`, LOOPS in `remarks`.
+are used: what joins contacts in `contacts`, what is a swing in `swings`, a rest in `stretches`,
+MAX_TURN_BACK, MAX_FREE_SWING and CREEP_SHARE in `turning`, MIN_WHIRL_TURN in `remarks`.
 """
 
 from __future__ import annotations
@@ -224,9 +226,8 @@ def _goes_on(words: str) -> bool:
 
 
 MIN_WHIRL_TURN = 2.0 * TURN  # a bounce or two may chance to circle the centre once
-MIN_ORBIT_RADIUS = (
-    0.2  # of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
-)
+# Of the clearance, least radius of an orbit to remark on; on magnetic bearings it is smaller
+MIN_ORBIT_RADIUS = 0.2
 
 
 def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
@@ -258,7 +259,7 @@ def _about_its_mean(orbit: Orbit) -> Orbit:
 
 
 def _loops(orbit: Orbit) -> Iterator[tuple[int, int]]:
-    """First and last rows of circling one way by LOOPS or more about the origin, WIDE."""
+    """Rows, first and last, of circling one way by MIN_WHIRL_TURN or more outside MIN_ORBIT_RADIUS."""
     angle = orbit.angle
     wide = orbit.radius >= MIN_ORBIT_RADIUS
     joined = wide[:-1] & wide[1:] & (np.abs(wrapped(np.diff(angle))) < FOLLOWED)

@@ -258,7 +258,7 @@ class Comparison:
     rows: Sequence[Row]
 
     def dispensable(self) -> list[Row]:
-        """What makes the scene faster for a price below CLEAR, the fastest first."""
+        """What makes the scene faster for a price below MAX_COST_PERCENT, the fastest first."""
         good = [
             r
             for r in self.rows
@@ -275,7 +275,7 @@ def compare_models(
     in_process: bool = False,
     begin: Callable[[str], object] = lambda what: None,
 ) -> Comparison:
-    """Run `scene` and its variants `duration` (s) from the first contact, LONGEST without one.
+    """Run `scene` and its variants `duration` (s) from the first contact, MAX_SPAN without one.
 
     begin(what) is called before the scene and before each variant. Raises TouchdownError where the scene
     itself does not land or stops; a variant says so in its row.

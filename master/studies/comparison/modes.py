@@ -137,7 +137,7 @@ def compare_modes(
     """Run `scene` in process with each number of modes; done() after each of `runs(modes)` runs.
 
     Looks at `duration` (s) from the first contact of any seat; without one, until the first impact is
-    over at every seat, or LONGEST. Raises TouchdownError where the scene has no flexible rotor, a number
+    over at every seat, or MAX_SPAN. Raises TouchdownError where the scene has no flexible rotor, a number
     of modes cannot be, nothing touches, or a run stops.
     """
     rotor = _rotor(scene)

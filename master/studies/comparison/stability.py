@@ -3,9 +3,10 @@
 A case is a scene, figures read at the end of its run, and what is right: from theory, or from a run at
 REFERENCE_STEP with the default scheme. A run is
 
-- stable, if it reaches its end and no journal gets faster, or farther from the origin, than GROWTH times
+- stable, if it reaches its end and no journal gets faster, or farther from the origin, than GROWTH_LIMIT
+times
   what it does in the right run;
-- right, if it is stable and no figure is off by more than VISIBLE, which the eye sees in a plot.
+- right, if it is stable and no figure is off by more than VISIBLE_ERROR, which the eye sees in a plot.
 
 The macro steps tried are STEPS. From the case's first one the search goes down until a run is right, and
 up until one is not stable, so that every step between is tried. The ledger never stops a run here; what

@@ -2,9 +2,10 @@
 
 A light inner ring rattles between journal and balls: the momentary contact force swings about what the
 rotor is decelerated by, and parts from it for some ten microseconds at a time. So an impact is over once
-the journal has been free for PARTED, and its force is the resultant on the journal averaged over AVERAGE,
-about two periods of that rattle. The momentary peak stands beside it: it is what race and ring suffer.
-So do the peaks inside the bearing, as far as it reports them: on the worst ball, and at the side of one.
+the journal has been free for PARTED, and its force is the resultant on the journal averaged over
+AVERAGING_TIME, about two periods of that rattle. The momentary peak stands beside it: it is what race and
+ring suffer. So do the peaks inside the bearing, as far as it reports them: on the worst ball, and at the
+side of one.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ MIN_SPAN = 2e-3  # s
 
 
 def shortened(scene: Scene) -> Scene:
-    """A copy whose magnetic bearings shut down earlier, all by as much, the first SHORT after the start.
+    """A copy whose magnetic bearings shut down earlier, all by as much, the first MIN_SPAN after the start.
 
     One that shuts down as early already stays as it is. An unbalanced rotor then falls from another
     angle: it is another drop of the same machine.
@@ -47,7 +48,7 @@ def shortened(scene: Scene) -> Scene:
 AVERAGING_TIME = 50e-6  # s
 ROUNDING = 1e-12  # s
 PEAKS = ("contact.peak_force", "contact.peak_indentation")  # of a touchdown bearing, since the start
-CONTACT = "force"  # of journal and ring, beside the parts of INSIDE
+CONTACT = "force"  # of journal and ring, beside the parts of INNER_PEAKS
 INNER_PEAKS = {  # of those bearings that have them, N since the start
     "ball": ("balls.peak_force",),
     "side": ("neighbours.peak_force", "pockets.peak_force"),
@@ -100,13 +101,13 @@ class Trace:
 class Peaks:
     """What an impact did at a seat."""
 
-    force: float  # N, resultant on the journal averaged over AVERAGE
+    force: float  # N, resultant on the journal averaged over AVERAGING_TIME
     contact: float  # N, momentary normal force
     indentation: float  # m, momentary, rotor in ring
 
 
 def reported_inside(variables: Container[str]) -> Mapping[str, str]:
-    """By part of INSIDE: which of a bearing's variables tells its peak."""
+    """By part of INNER_PEAKS: which of a bearing's variables tells its peak."""
     return {part: name for part, names in INNER_PEAKS.items() for name in names if name in variables}
 
 
@@ -122,7 +123,7 @@ def _free(step: float) -> float:
 
 
 def _averaged(time: np.ndarray, impulse: np.ndarray) -> np.ndarray:
-    """Mean force over AVERAGE before each time, or over a macro step where that is longer."""
+    """Mean force over AVERAGING_TIME before each time, or over a macro step where that is longer."""
     span = max(AVERAGING_TIME, time[1] - time[0])
     return (impulse - np.interp(time - span, time, impulse, left=0.0)) / span
 

@@ -75,7 +75,7 @@ def finest_inside(system: System) -> dict[str, float]:
 def land(scene: Scene, duration: float | None) -> Landing:
     """Drop it with fine steps, `duration` (s) from the first contact.
 
-    Without one until the first impact is over at every seat, at most LONGEST. Raises TouchdownError where
+    Without one until the first impact is over at every seat, at most MAX_SPAN. Raises TouchdownError where
     there is no touchdown bearing, nothing touches, or the run stops.
     """
     scene = fine(scene, FINE_STEP)

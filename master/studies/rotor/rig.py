@@ -155,14 +155,11 @@ def _cleared(matrix: np.ndarray, measured: float) -> np.ndarray:
 
 FREQUENCIES = (10.0, 40.0, 160.0, 640.0)  # Hz, at which a bearing is shaken
 STEPS_PER_PERIOD = 256  # macro steps of a period, of what takes any
-MIN_STEPS_PER_PERIOD = (
-    8  # of what takes only its own; at frequencies for which there are less it is not shaken
-)
+# Of what takes only its own; at frequencies for which there are less it is not shaken
+MIN_STEPS_PER_PERIOD = 8
 MAX_PERIODS = 40  # at most, until one is as the last
-PERIOD_TOLERANCE, PERIOD_LIMIT = (
-    1e-8,
-    1e-3,
-)  # of a period's answer to the last one's: aimed at, and told all the same
+# Of a period's answer to the last one's: aimed at, and told all the same
+PERIOD_TOLERANCE, PERIOD_LIMIT = 1e-8, 1e-3
 NO_FORCE = 1e-9  # N
 AT_REST = np.zeros(2)
 SPIN = "omega"  # at a journal's port
@@ -170,10 +167,8 @@ SPIN = "omega"  # at a journal's port
 LOWERING_SPEED = 0.01  # m/s, of a journal that is lowered onto its bearing
 MAX_LOWERING = 0.002  # m that it is lowered at most
 LOWERING_STEP = 20e-6  # s, macro step of that
-SETTLING_TIME, MEASURING_TIME = (
-    4e-3,
-    2e-3,
-)  # s, until a bearing has come to rest, and over which its force is read
+# S, until a bearing has come to rest, and over which its force is read
+SETTLING_TIME, MEASURING_TIME = 4e-3, 2e-3
 MAX_PRESSES = 25  # at most, until the load is met
 LOAD_TOLERANCE = 1e-3  # of the load
 SLOPE_SHARE = 0.02  # of the load, by which a pressed journal is moved on for the slope

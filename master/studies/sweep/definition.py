@@ -154,7 +154,7 @@ def parse(text: str, option: str = "--vary") -> Variation:
         raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT")
     if not right:
         raise TouchdownError(f"{what}: the list of values is empty")
-    is_range = ":" in right and ".toml:" not in right  # a preset may be FILE.toml:NAME
+    is_range = ":" in right and ".toml:" not in right  # a preset may be DEFINITION_FILE.toml:NAME
     return Variation(name, _evenly(right, what) if is_range else listed(right, what))
 
 

@@ -360,7 +360,7 @@ def study_verdict(
 
 
 def answering(scene: Scene) -> Scene:
-    """`scene` until its drops settle, LONGER times its duration at most, where nobody has said how long."""
+    """`scene` until its drops settle, at most MAX_LONGER times its duration, where no one has set one."""
     if {"duration", "until"} & set(scene.own) or scene.run.until == SETTLED:
         return scene
     return scene.set({"run.duration": MAX_LONGER * scene.run.duration, "run.until": SETTLED})

@@ -9,9 +9,8 @@ from . import kernel
 # pyright: basic
 
 
-FALL_ENERGY_FLOOR = (
-    1e-4  # of the energy lost by falling; what turns over less is not judged by its own measure
-)
+# Of the energy lost by falling; what turns over less is not judged by its own measure
+FALL_ENERGY_FLOOR = 1e-4
 MIN_TURNOVER_SHARE = 0.1  # of what all connections turn over; likewise
 
 BOOK = np.dtype(

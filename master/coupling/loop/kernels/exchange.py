@@ -115,9 +115,8 @@ def answer(status):
 # pyright: basic
 
 
-IMPACT_S = (
-    2.5e-4  # s, from the touch; by then ring and journal have met hardest, and the ring's rattle fades
-)
+# S, from the touch; by then ring and journal have met hardest, and the ring's rattle fades
+IMPACT_S = 2.5e-4
 LOOK_AHEAD_STEPS = 2.0  # steps; within one, the other bearing may turn a journal to its ring
 
 SEAT = np.dtype(
