@@ -227,6 +227,8 @@ TREND_NAMES = {one: one.value for one in Trend} | {
 }
 # Times the run, to be proposed where nothing says for how long; at most
 LONGER_FACTOR, MAX_LONGER = 2.0, 4.0
+# Mean w^2 r over g of what just keeps to a circle against gravity: w^2 r = (3 + 2 cos) g along it
+LOOP = 2.42
 TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to die out, too
 
 
@@ -238,7 +240,9 @@ class Course:
     trend: Trend | None  # of the whirl that goes on at the end; None where none does
     settling: Settling | None  # None: it was not touched
     end: float  # s, of the recording
-    left: float | None = None  # s, until a whirl that decays has died out, if its force falls as it does
+    left: float | None = (
+        None  # s, until a whirl that decays has died out, if it goes on decaying as it does
+    )
 
     @property
     def words(self) -> str:
@@ -281,8 +285,25 @@ def _goes_on(orbit: Orbit, force: np.ndarray | None, episode: Episode) -> tuple[
     now = together([trend(sizes) for sizes in turns])
     if now is not Trend.DECAYING:
         return now, None
-    fallen = max(-change(sizes)[0] for sizes in turns)
-    return now, len(turns[0]) / episode.frequency * (1.0 / max(fallen, TOLERANCE) - 0.5)
+    return now, _left(orbit, turns, episode.frequency)
+
+
+def _left(orbit: Orbit, turns: Sequence[np.ndarray], frequency: float) -> float:
+    """How long (s) until a decaying whirl of `frequency` (Hz) is too slow to go round against gravity.
+
+    Radius and force decay exponentially, as what is damped does; the faster of them counts. turns: sizes in
+    successive turns, the radius over the clearance first.
+    """
+    rate = max(-_slope(np.log(sizes)) for sizes in turns if np.all(sizes > 0.0))  # 1 a turn
+    radius = float(turns[0][-1]) * orbit.clearance
+    excess = radius * (TURN * frequency) ** 2 / (LOOP * GRAVITY)
+    return max(math.log(max(excess, 1.0)) / rate, 1.0) / frequency
+
+
+def _slope(values: np.ndarray) -> float:
+    """Of a line through values (n,), from one to the next."""
+    place = np.arange(len(values)) - 0.5 * (len(values) - 1)
+    return float(place @ values / (place @ place))
 
 
 def proposed(courses: Sequence[Course]) -> float | None:
