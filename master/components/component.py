@@ -62,7 +62,8 @@ MOUNTED = "housing"  # a bearing's port on what it is mounted in
 REACH = "contact.reach"  # s, of a touchdown bearing: time until its journal touches, going straight on
 
 POSITION = ("x", "y")
-GAINS = ("inv_m", "inv_I", "k_over_m", "c_over_m")  # what a bearing carries a body by
+STIFFNESS = "k_over_m"  # 1/s2, of the springs that hold a body
+GAINS = ("inv_m", "inv_I", STIFFNESS, "c_over_m")  # what a bearing carries a body by
 FORCE = ("fx", "fy")
 NEEDED = POSITION + FORCE  # no port works without them
 

@@ -17,7 +17,7 @@ from ..components.loading import Stepping, load_component
 from ..scene.scene import Scene
 from .assembly import assemble
 from .bonds.description import exchange, uncoupled_warning
-from .ledger import Balance, Judge, Ledger, Shortening
+from .ledger import Balance, Judge, Ledger, MountSwing, Shortening
 from .ledger.auditor import heard
 from .loop.compiled import MacroSteps, Stretches
 from .loop.span import Retirement, Values, named_zero, span, swapped_away
@@ -53,6 +53,7 @@ class Outcome:
     warning: str = ""  # what it said there
     inside: float | None = None  # share of energy made inside the worst bearing; None: none is judged
     worst_inside: str = ""  # that bearing
+    in_system: float | None = None  # share of energy made in the system as a whole; None: it is not judged
     divided_in_impacts: int = 0  # macro steps, of rotors hit by two bearings at once
     shorter_steps: Mapping[float, float] = field(default_factory=dict[float, float])  # s each, for how long
     ended: Ended = Ended.COMPLETED
@@ -150,7 +151,8 @@ def simulate(
         ):
             judge, shortening = Judge(ledger, scene.run), Shortening(ledger, coupling)
             balance, penetration = Balance(ledger, scene.run, system), Penetration(system)
-            told = [penetration, LoopGain(system), judge, balance, shortening, *observers]
+            swing = MountSwing(system, scene.run)
+            told = [penetration, swing, LoopGain(system), judge, balance, shortening, *observers]
             if recorder is not None:
                 told.append(_Recording(recorder, scene.run.record_every))
             told.append(Retirement(coupling, [ledger, *told]))
@@ -163,7 +165,7 @@ def simulate(
         now.reason = f"{penetration.warning}; {now.reason}"
     return replace(
         _seen(now, ledger, judge, shortening),
-        **_said(judge, balance, penetration),
+        **_said(judge, balance, penetration, swing),
         origin=times.origin,
         wall_time=wall_time,
         start_up=start_up + compiling,
@@ -193,9 +195,9 @@ def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> 
     )
 
 
-def _said(judge: Judge, balance: Balance, penetration: Penetration) -> dict[str, Any]:
+def _said(judge: Judge, balance: Balance, *others: Penetration | MountSwing) -> dict[str, Any]:
     """What the alarms said, and of the bearing whose inside is off most."""
-    alarms = (penetration, judge, balance)
+    alarms = (*others, judge, balance)
     times = [alarm.warned_at for alarm in alarms if alarm.warned_at is not None]
     worst = balance.worst
     return {
@@ -203,6 +205,7 @@ def _said(judge: Judge, balance: Balance, penetration: Penetration) -> dict[str,
         "warning": "; ".join(alarm.warning for alarm in alarms if alarm.warning),
         "inside": worst.share if worst else None,
         "worst_inside": worst.bearing if worst else "",
+        "in_system": balance.whole.share if balance.whole else None,
     }
 
 

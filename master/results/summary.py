@@ -392,6 +392,7 @@ def _run_figures(
         "energy_turnover_J": outcome.turnover,
         "energy_made_inside_of_turnover": outcome.inside,
         "energy_made_inside_worst_bearing": outcome.worst_inside or None,
+        "energy_made_in_system_of_turnover": outcome.in_system,
         "not_audited": "; ".join(outcome.unaudited) or None,
         "not_recorded": _not_recorded(scene, system, recording),
         "energy_balance_relative": balance,

@@ -10,13 +10,13 @@ What the body got and the bearing did not give was made by the coupling: -sum r_
 nothing is listened to by a `witness`; where that cannot be, the connection is said not to be audited.
 
 Energy alone does not say whether an answer is in doubt: a whirl turns over a thousand times what a rotor
-loses by falling. So what counts is the residual over the turnover,
+loses by falling. So what counts is by how much a force would be off to make the residual,
 
-    sum |r_n| / (sum |F_n . dx_n| + largest kinetic energy along F_n + 0.0001 m g c)
+    0.5 sum |r_n| / max(2 K, 0.2 (sum |F_n . dx_n| + K))
 
-of the worst connection, with the mean load F_n, the body's displacement dx_n, and the contract's 1/`inv_m`
-as its mass: the share by which the load, along the motion, was wrong. A connection that turns over less
-than a tenth of what all do is judged by that tenth. docs/coupling.md argues it.
+of the worst connection, with the mean load F_n, the body's displacement dx_n, and the largest kinetic
+energy K along F_n at the bearing, the contract's 1/`inv_m` as its mass. Of a housing that a bearing carries
+by its own equations only what sets the bearing's copy back counts. docs/coupling.md argues it.
 
 `accounts` keeps the books, `witness` hears bearings that keep none, `judge` warns and stops, `balance` does
 so for what is made inside bearings, `shortening` divides macro steps in a whirl.
@@ -26,6 +26,6 @@ from __future__ import annotations
 
 from ..loop.division import Shortening
 from .accounts import Ledger
-from .alarms import Balance, Judge
+from .alarms import Balance, Judge, MountSwing
 
-__all__ = ["Balance", "Judge", "Ledger", "Shortening"]
+__all__ = ["Balance", "Judge", "Ledger", "MountSwing", "Shortening"]

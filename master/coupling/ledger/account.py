@@ -8,7 +8,7 @@ import numpy as np
 
 from ..bonds.exchange import Crossing
 from ..connections import Attachment
-from ..loop.kernels.accounts import BOOK
+from ..loop.kernels.accounts import BOOK, FORCE_PER_ENERGY, LASTING_CONTACT_SHARE
 
 MIN_WORKING_STEPS = 4  # steps in which a bond has done work, before it is judged
 
@@ -45,6 +45,7 @@ class Account:
     def book(self, residual: float) -> None:
         """Add a macro step's (J)."""
         self.record["total"] += abs(residual)
+        self.record["wrong"] += abs(residual)
         self.record["made"] -= residual
 
 
@@ -88,3 +89,6 @@ class BondAccount(Account):
         heard = self.crossing.past.audit
         if heard.loaded >= MIN_WORKING_STEPS:
             self.record["total"], self.record["turned"] = heard.share * heard.turned, heard.turned
+            self.record["wrong"] = (
+                heard.share * LASTING_CONTACT_SHARE / FORCE_PER_ENERGY * heard.turned
+            )  # to be that share again

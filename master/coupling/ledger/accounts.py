@@ -7,9 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ....modelkit.ports import MODEL
 from ...components.component import FORCE, JUMP, POSITION, WORK
+from ..assembly import ORDER
 from ..connections import Attachment
-from ..loop.kernels.accounts import BOOK, book, worst_of
+from ..loop.kernels.accounts import BOOK, book, shares, worst_of
 from ..steppers.stepper import Stepper
 from ..system import System
 from .account import Account, BondAccount, SeatAccount
@@ -36,7 +38,13 @@ class Ledger:
         self.accounts: list[Account] = [*self._seats, *self._bonds, *(Account(b, next(rows)) for b in held)]
         for account in self.accounts[len(self._seats) + len(self._bonds) :]:
             account.unaudited = f"scheme {stepper.run.scheme.name} holds its values"
-        self._flows = [_begun(system, account) for account in self._seats]
+        bearings = list(dict.fromkeys(a.bearing for a in system.attachments))
+        for number, account in enumerate(self.accounts):
+            account.record["group"] = -1 - number  # alone
+        for account in self._seats:
+            account.record["group"] = bearings.index(account.attachment.bearing)
+        in_turn = stepper.run.scheme.sequence == "gauss-seidel"
+        self._flows = [_begun(system, account, in_turn) for account in self._seats]
         self._find()
         silent = [account for account in self._seats if not account.record["stating"]]
         self._witnesses = witnesses(stepper, silent)
@@ -117,6 +125,12 @@ class Ledger:
         """The largest share of residual in turnover, of any connection."""
         return worst_of(self.books, self.fall)[1]
 
+    def share_at(self, bearing: str) -> float:
+        """The largest share at a bearing's connections; 0 where none is."""
+        found = shares(self.books, self.fall)
+        here = [a.attachment.bearing == bearing for a in self._seats]
+        return float(np.max(found[: len(here)][here], initial=0.0))
+
     @property
     def unaudited(self) -> tuple[str, ...]:
         """Connections that are not audited, each with why."""
@@ -128,8 +142,11 @@ def _statements(a: Attachment) -> list[str]:
     return [a.bearing_end.full(WORK), a.bearing_end.full(JUMP), a.body_end.full(WORK)]
 
 
-def _begun(system: System, account: SeatAccount) -> list[str]:
-    """Begin an account; returns the names of motion and load from which follows what it turns over."""
+def _begun(system: System, account: SeatAccount, in_turn: bool) -> list[str]:
+    """Begin an account; returns the names of motion and load from which follows what it turns over.
+
+    in_turn: whether bodies take each step after the bearings, under the load of that step.
+    """
     a, record = account.attachment, account.record
     inv_m = a.motion("inv_m")  # 1/kg; 0: unknown, or prescribed
     gain = system.value(inv_m) if inv_m in system else 0.0
@@ -137,4 +154,5 @@ def _begun(system: System, account: SeatAccount) -> list[str]:
     record["every"] = math.lcm(system.every[a.bearing], system.every[a.body])
     record["mass"] = 1.0 / gain if moves else 0.0
     record["x"] = math.nan
+    record["carried"] = in_turn and not a.on_journal and system.settings.get((a.bearing, ORDER)) == MODEL
     return [*map(a.motion, POSITION), *map(a.load, FORCE), *map(a.motion, VELOCITY if moves else POSITION)]

@@ -5,8 +5,12 @@ Warns, then ends the run, where a bearing's inside, or the system as a whole, ma
 What a bearing stores and what it turned into heat, and what its loads did on journal and housing, must stay
 what they were at the start together; so must all energies of the system, less what was supplied. What they
 gained or lost since is judged over what the connections turned over and m g c, or over the largest kinetic
-energy of the system and m g c where that is less. Bearings and systems that do not state all of it are not
-judged.
+energy of the system and m g c where that is less. Thresholds are those of a connection, where half of an
+energy's share counts, as a force goes with the root of the energy. Bearings and systems that do not state
+all of it are not judged.
+
+A bearing that is told coarsely where its journal is sees work that nobody did: where the coupling of that
+bearing is in doubt itself, the macro step is to blame, not the bearing.
 """
 
 from __future__ import annotations
@@ -16,13 +20,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from ....modelkit.ports import ACCELERATION, VELOCITY
 from ...common.errors import Ended
-from ...components.component import JUMP, WORK
+from ...components.component import JUMP, STIFFNESS, WORK
 from ...scene.run_spec import RunSpec, shorter_step, tidy
 from ..bonds.bond import way_of
+from ..loop.kernels.accounts import FORCE_PER_ENERGY
 from ..observer import Moment, Observer
 from ..system import RATE, System
-from .account import Account, SeatAccount
+from .account import Account, BondAccount, SeatAccount
 from .accounts import Ledger
 
 MICRO_STEP, TOLERANCE = "micro_step", "interface.tolerance"
@@ -41,26 +47,31 @@ class Judge(Observer):
     def stepped(self, now: Moment) -> None:
         share = self._ledger.worst_share
         if share <= self.limit:
+            if now.last and self.warned_at is not None:  # what it came to says what to do
+                self.warning = self._said(now, share, self.warned_at)
             return
         now.keep()  # what is not a number is over every limit
-        said = self._said(now, share)
         if share <= self._run.stop_residual:
-            self.warned_at, self.warning = now.since_zero, said
+            self.warned_at = now.since_zero
+            self.warning = self._said(now, share, self.warned_at)
             self.limit = self._run.stop_residual
         else:
-            now.stop(said, Ended.STOPPED)
+            now.stop(self._said(now, share, now.since_zero), Ended.STOPPED)
 
     def due(self, now: Moment) -> int:
         """Where the ledger passes the limit, which compiled code sees."""
         return now.steps
 
-    def _said(self, now: Moment, share: float) -> str:
+    def _said(self, now: Moment, share: float, since: float) -> str:
         worst = self._ledger.worst()
         if worst is None:
             return "the system has no connection that is audited"
+        bond = isinstance(worst, BondAccount)
+        percent = f"{100.0 * share:.2g} %"
+        off = f"{percent} of what crossed" if bond else f"what {percent} of its force would make"
         return (
-            f"the energy ledger of {worst.title} is off by {100.0 * share:.2g} % of what it "
-            f"turned over at t = {now.since_zero:.6g} s; {remedy(self._run, now.system, worst, share)}"
+            f"the energy ledger of {worst.title} is off by {off}, in doubt since t = {since:.6g} s; "
+            f"{remedy(self._run, now.system, worst, share)}"
         )
 
 
@@ -83,11 +94,22 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
             f"the macro step of {run.macro_step:g} s is short enough, the steps inside the bearing are "
             f"not, try {inside}"
         )
-    either = f"or the steps inside the bearing are, try {inside} or" if inside else "try"
+    return too_long(
+        run, share, f"or the steps inside the bearing are, try {inside} or" if inside else "try"
+    )
+
+
+def too_long(run: RunSpec, share: float, either: str = "try") -> str:
+    """That the macro step is to blame for a share of residual, and which one to try."""
     return (
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
-        f"{either} --macro-step {shorter_step(run, share, run.scheme.error_order):g}"
+        f"{either} --macro-step {shorter_step(run, share, max(run.scheme.error_order, 1)):g}"
     )
+
+
+def swings_too_far(run: RunSpec, system: System, bearing: str) -> bool:
+    """Whether the journal swings farther on its contact in a macro step than the scheme bears."""
+    return run.scheme.bears < _swing(run, system, bearing) < float("inf")
 
 
 def _shorter_for_bond(run: RunSpec, share: float) -> str:
@@ -116,6 +138,46 @@ def finer(system: System, bearing: str) -> str:
     return ""
 
 
+SWING_LIMITS = {
+    VELOCITY: 1.0,
+    ACCELERATION: 3.0,
+}  # rad; how far a body swings that goes straight, or in a parabola
+
+
+class MountSwing(Observer):
+    """Warns where a body on springs, a housing, swings farther in a macro step than the scheme carries it.
+
+    Its bearing then sees it where it never is, and may agree with it about the energy all the same.
+    Bearings that carry it by its own equations do not need to be told.
+    """
+
+    at_beats_only: ClassVar[bool] = True
+
+    def __init__(self, system: System, run: RunSpec) -> None:
+        self.warned_at: float | None = None  # s from zero
+        self.warning = ""  # which body, and what to do
+        self._run, self._limit = run, SWING_LIMITS.get(run.scheme.order, math.inf)
+        stiffness = ((a, a.bearing_end.full(STIFFNESS)) for a in system.attachments)
+        self._mounts = [(a, name) for a, name in stiffness if name in system]
+
+    def stepped(self, now: Moment) -> None:
+        if self.warned_at is not None:
+            return
+        for attachment, name in self._mounts:
+            step = now.system.every[attachment.bearing] * self._run.macro_step
+            frequency = math.sqrt(max(now.system.value(name), 0.0))
+            if frequency * step <= self._limit:
+                continue
+            shorter = tidy(self._run.macro_step * self._limit / (frequency * step))
+            self.warned_at = now.since_zero
+            self.warning = (
+                f"{attachment.body_end.title} swings {frequency * step:.2g} rad on its springs in a macro "
+                f"step of {step:g} s, which scheme {self._run.scheme.name} does not follow; take scheme "
+                f"interface, or try --macro-step {shorter:g}"
+            )
+            return
+
+
 KINETIC, SUPPLIED = "energy.kinetic", "supplied"
 STORED = (KINETIC, "energy.potential", "energy.dissipated")
 SAMPLING_NOISE = 1e-5  # of the energy that bodies and contacts hold; steps let the sum swing by as much
@@ -131,7 +193,8 @@ class Sum:
     names: Sequence[str]
     less: Sequence[str] = ()
     start: float = 0.0  # J
-    share: float = 0.0  # the largest so far
+    share: float = 0.0  # of what was turned over, the largest so far
+    made: float = 0.0  # J, there; below 0: lost
 
     def value(self, system: System) -> float:
         """The sum (J)."""
@@ -151,6 +214,7 @@ class Balance(Observer):
         self.warned_at: float | None = None  # s from zero, where a sum passed the warning threshold
         self.warning = ""  # which, by how much, and what to do
         self._ledger, self._run = ledger, run
+        self._warned: Sum | None = None
         self._limit = run.warn_residual
         self.sums = [*_insides(system), *_whole(system)]
         for one in self.sums:
@@ -167,24 +231,34 @@ class Balance(Observer):
             made = one.value(now.system) - one.start
             judged = max(abs(made) - SAMPLING_NOISE * one.held(now.system), 0.0)
             share = judged / over if over > 0.0 else 0.0
-            one.share = share if not share <= one.share else one.share  # no number is the largest
-            if not share <= self._limit:
-                self._speak(now, one, made, share)
+            if not share <= one.share:  # no number is the largest
+                one.share, one.made = share, made
+            if not share <= energy_share(self._limit):
+                self._speak(now, one)
+        if now.last and self._warned is not None:  # what it came to says what to do
+            self.warning = self._said(now, self._warned)
 
-    def _speak(self, now: Moment, one: Sum, made: float, share: float) -> None:
+    def _speak(self, now: Moment, one: Sum) -> None:
         now.keep()
-        verb = "lost" if made < 0.0 else "made"
-        said = (
-            f"{one.title} {verb} {abs(made):.3g} J by t = {now.since_zero:.6g} s, {100.0 * share:.2g} % of "
-            f"what was turned over; {self._remedy(now.system, one)}"
-        )
-        if share <= self._run.stop_residual:
-            self.warned_at, self.warning = now.since_zero, said
+        if one.share <= energy_share(self._run.stop_residual):
+            self.warned_at, self._warned = now.since_zero, one
+            self.warning = self._said(now, one)
             self._limit = self._run.stop_residual
         else:
-            now.stop(said, Ended.STOPPED)
+            now.stop(self._said(now, one), Ended.STOPPED)
 
-    def _remedy(self, system: System, one: Sum) -> str:
+    def _said(self, now: Moment, one: Sum) -> str:
+        return (
+            f"{one.title} {'lost' if one.made < 0.0 else 'made'} {abs(one.made):.3g} J by "
+            f"t = {now.since_zero:.6g} s, {100.0 * one.share:.2g} % of what was turned over; "
+            f"{self._remedy(now.system, one, FORCE_PER_ENERGY * one.share)}"
+        )
+
+    def _remedy(self, system: System, one: Sum, share: float) -> str:
+        coupling = self._ledger.share_at(one.bearing) if one.bearing else self._ledger.worst_share
+        doubted = not coupling <= self._run.warn_residual or swings_too_far(self._run, system, one.bearing)
+        if doubted and self._run.scheme.error_order > 0:
+            return too_long(self._run, max(share, coupling))
         if one.bearing:
             ratio = f"{one.bearing}.balls.damping_ratio"
             damping = [f"--set {ratio}=0.02"] if ratio in system and system.value(ratio) < 0.02 else []
@@ -198,6 +272,16 @@ class Balance(Observer):
         """The bearing whose inside is off most, over what was turned over; None where none is judged."""
         insides = [one for one in self.sums if one.bearing]
         return max(insides, key=lambda one: (math.isnan(one.share), one.share), default=None)
+
+    @property
+    def whole(self) -> Sum | None:
+        """The system's sum; None where it is not judged."""
+        return next((one for one in self.sums if not one.bearing), None)
+
+
+def energy_share(force_share: float) -> float:
+    """The share of energy made that is as grave as a force off by a share of `force_share`."""
+    return force_share / FORCE_PER_ENERGY
 
 
 def _insides(system: System) -> list[Sum]:

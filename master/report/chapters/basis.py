@@ -19,6 +19,7 @@ from ....modelkit.variables import Causality
 from ...common.errors import TouchdownError
 from ...common.units import spoken
 from ...components.component import Variable
+from ...coupling.ledger.alarms import energy_share
 from ...results.figures.energy import energy
 from ...results.summary import energy_total
 from ...scene.file import SCENE_FILE, shipped
@@ -89,17 +90,22 @@ def _left_out(subject: Subject) -> Iterator[str]:
 
 # Of the turnover: what the coupling makes or loses says nothing against the figures
 NEGLIGIBLE_RESIDUAL = 1e-3
-MADE_INSIDE = 0.02  # of the turnover, inside a bearing; beyond it the run has warned
 NAMES = {
     "energy_turnover_J": ("Energy that crossed between the parts", "J"),
     "energy_made_J": ("of it made by the coupling", "J"),
     "energy_residual_of_turnover": ("Ledger's residual, worst connection", "share"),
     "energy_made_of_turnover": ("Energy made, share of what crossed", "share"),
     "energy_made_inside_of_turnover": ("Energy made inside a bearing, worst", "share"),
+    "energy_made_in_system_of_turnover": ("Energy made in the system as a whole, at most", "share"),
     "energy_balance_relative": ("Sum of all energies, drift over m g c", "share"),
     "macro_step_s": ("Macro step", "s"),
     "macro_steps": ("Macro steps", "1"),
     "wall_time_s": ("Wall time", "s"),
+}
+
+BALANCES = {
+    "energy_made_inside_of_turnover": "inside the worst bearing",
+    "energy_made_in_system_of_turnover": "in the system as a whole",
 }
 
 
@@ -133,10 +139,13 @@ def _judged(subject: Subject) -> list[Block]:
     worst = number(subject.summary.get("energy_residual_of_turnover")) or 0.0  # made and lost may cancel
     if worst > abs(made):
         said += f", and at one connection {share(worst)} of what crossed there"
-    inside = number(subject.summary.get("energy_made_inside_of_turnover")) or 0.0
-    if inside > MADE_INSIDE:
-        said += f"; inside the worst bearing {share(inside)} of what was turned over was made or lost"
-    if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and inside <= MADE_INSIDE:
+    limit, sound = energy_share(subject.result.scene.run.warn_residual), True
+    for key, where in BALANCES.items():
+        found = number(subject.summary.get(key)) or 0.0
+        if found > limit:
+            sound = False
+            said += f"; {where} {share(found)} of what was turned over was made or lost"
+    if max(abs(made), worst) <= NEGLIGIBLE_RESIDUAL and sound:
         return [Text(f"{said}: as far as energy tells, the macro step is fine enough for these figures.")]
     return [
         Text(

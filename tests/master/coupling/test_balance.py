@@ -48,3 +48,5 @@ def test_a_shipped_scene_is_not_in_doubt() -> None:
     assert outcome.warned_at is None
     assert outcome.inside is not None
     assert outcome.inside < 2e-3
+    assert outcome.in_system is not None
+    assert outcome.in_system < 2e-3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -159,7 +160,57 @@ def test_a_scene_without_a_scale_is_judged_all_the_same() -> None:
         assert fall_energy(system) == pytest.approx(DISK * GRAVITY * 0.3e-3)
     outcome = simulated(bare)
     assert outcome.warned_at is not None
-    assert "% of what it turned over" in outcome.warning
+    assert "% of its force would make" in outcome.warning
+
+
+LANDED = {"amb.shutdown_time": 1e-3, "run.duration": 9.3e-3, "run.stop_residual": 1e9}
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("disk-caged-simplified", {"run.scheme": "hold", "run.macro_step": 1e-4}),
+        ("disk-cageless-detailed", {"run.scheme": "hold", "run.macro_step": 5e-5}),
+        ("disk-cageless-simplified", {"run.scheme": "velocity", "run.macro_step": 1e-4}),
+    ],
+)
+def test_the_coupling_is_blamed_and_its_remedy_removes_the_alarm(
+    name: str, settings: dict[str, object]
+) -> None:
+    """Also where it is the balance inside the bearing that speaks, alone or beside the connection."""
+    scene = load_scene(name).set(LANDED | settings)
+    said = simulated(scene).warning
+    steps = [float(step) for step in re.findall(r"--macro-step ([^ ;]+)", said)]
+    assert len(steps) == said.count("; the macro step of")
+    assert "--set" not in said
+    for step in steps:
+        assert simulated(scene.set({"run.macro_step": step})).warning == ""
+
+
+@pytest.mark.parametrize("name", [f"disk-{model}" for model in ("caged-simplified", "cageless-simplified")])
+@pytest.mark.parametrize("settings", [{"housing.mass": 0.01}, {"run.macro_step": 1e-3}])
+def test_what_leaves_the_peak_right_gives_no_alarm(name: str, settings: dict[str, object]) -> None:
+    """A light housing, and a macro step of the length of the impact: the bearing carries both inside."""
+    peaks: list[float] = []
+    for changes in (settings, settings | {"run.macro_step": 2e-6}):
+        scene = load_scene(name).set(LANDED | changes)
+        with opened(scene, in_process=True) as system:
+            assert simulate(scene, system).warning == ""
+            peaks.append(system.value("bearing.contact.peak_force"))
+    assert peaks[0] == pytest.approx(peaks[1], rel=0.02)
+
+
+@pytest.mark.parametrize(("scheme", "warns"), [("velocity", True), ("interface", False)])
+def test_a_housing_that_swings_far_in_a_macro_step(scheme: str, warns: bool) -> None:
+    """By 1.1 rad, the outer ring with it: said where its bearing carries it along a straight line."""
+    scene = load_scene("disk-caged-simplified").set({"housing.mass": 0.3, "run.duration": "1 ms"})
+    with opened(scene, in_process=True) as system:
+        mass = 0.3 + system.value("housing.outer_ring")
+        frequency = (system.value("housing.stiffness") / mass) ** 0.5
+    warning = simulated(scene.set({"run.macro_step": 1.1 / frequency, "run.scheme": scheme})).warning
+    assert ("housing.seat swings 1.1 rad on its springs" in warning) is warns
+    below = simulated(scene.set({"run.macro_step": 0.9 / frequency, "run.scheme": scheme})).warning
+    assert "swings" not in below
 
 
 def test_the_remedy_names_what_is_to_blame() -> None:

@@ -205,7 +205,7 @@ def test_a_step_in_which_it_bounces_too_high_stops_the_run(folder: Path) -> None
     with opened(scene.set({"run.macro_step": 1e-3})) as system:
         stopped = simulate(scene.set({"run.macro_step": 1e-3}), system)
     assert "bearing.journal on rotor.A" in stopped.reason
-    assert stopped.made > 0.2 * lost_by_falling
+    assert stopped.share > scene.run.stop_residual
 
 
 def variant(folder: Path, name: str, *changes: tuple[str, str]) -> str:

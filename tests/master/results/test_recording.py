@@ -79,7 +79,7 @@ def test_elements_of_arrays_are_kept_of_the_end(path: Path) -> None:
 
 def test_a_run_that_stops_can_be_read(tmp_path: Path) -> None:
     scene = load_scene("disk-caged-simplified").set({"run.duration": 0.02, "run.macro_step": 2e-5})
-    scene = scene.set({"run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
+    scene = scene.set({"run.scheme": "hold", "run.stop_residual": 0.021})
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, tmp_path / "result.h5")
     assert outcome.reason

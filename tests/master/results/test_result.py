@@ -203,7 +203,7 @@ def test_a_bearing_that_is_touched_before_the_shutdown_is_said() -> None:
 
 def test_a_stopped_run_says_why() -> None:
     scene = load_scene("disk-caged-simplified")
-    scene = scene.set({"run.duration": 0.01, "run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
+    scene = scene.set({"run.duration": 0.01, "run.scheme": "hold", "run.stop_residual": 0.021})
     result = run_scene(scene, None, in_process=True, pictures=False)
     assert result.ended is Ended.STOPPED
     assert result.stopped_because in repr(result)

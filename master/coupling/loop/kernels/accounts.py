@@ -9,15 +9,20 @@ from . import kernel
 # pyright: basic
 
 
-# Of the energy lost by falling; what turns over less is not judged by its own measure
-FALL_ENERGY_FLOOR = 1e-4
-MIN_TURNOVER_SHARE = 0.1  # of what all connections turn over; likewise
+FALL_ENERGY_FLOOR = 0.03  # of the energy lost by falling; what brings less is not judged by its own measure
+MIN_MEASURE_SHARE = 0.1  # of the largest measure of all connections; likewise
+# Of what was turned over; where contact lasts, that is the measure and not a single impact
+LASTING_CONTACT_SHARE = 0.2
+FORCE_PER_ENERGY = 0.5  # a force goes with the root of the energy
 
 BOOK = np.dtype(
     [
         ("every", "i8"),  # macro steps after which both sides have taken the same time
         ("total", "f8"),  # sum of |r_n|, J
         ("made", "f8"),  # minus the sum of r_n, J
+        ("wrong", "f8"),  # the part of `total` that moves the figures, J
+        ("carried", "i8"),  # whether the bearing carries the body by the body's own equations
+        ("group", "i8"),  # connections of one bearing have the same
         ("turned", "f8"),  # sum of |mean force times displacement|, J
         ("kinetic", "f8"),  # largest along the force, J; 0 where the body states no velocity
         ("stating", "i8"),  # whether both sides state their work
@@ -50,12 +55,18 @@ def book(books: np.ndarray, signals: np.ndarray, done: int) -> None:
 
 @kernel
 def _compare(b, signals):
-    """Compare what both sides of a connection have stated (J) up to the end of a step."""
+    """Compare what both sides of a connection have stated (J) up to the end of a step.
+
+    Where a bearing carries the body by its equations, its own figures are wrong only as far as the body
+    came to another place: what both sides make of the way between the same ends does not count as wrong.
+    """
     at = b.statements
     by_bearing, jumps, by_body = signals[at[0]], signals[at[1]], signals[at[2]]
-    residual = b.pending + (jumps - b.jumps)
+    jump = jumps - b.jumps
+    residual = b.pending + jump
     b.total += abs(residual)
     b.made -= residual
+    b.wrong += abs(jump) if b.carried and abs(jump) < abs(residual) else abs(residual)
     b.pending = (by_bearing - b.by_bearing) - (by_body - b.by_body)
     b.by_bearing, b.jumps, b.by_body = by_bearing, jumps, by_body
 
@@ -82,13 +93,35 @@ def _flow(b, signals):
 
 
 @kernel
-def share_of(books, i, fall):
-    """The residual of connection i over what it turned over; 0 where nothing was. fall: J, or 0."""
-    turnover = 0.0
+def measure_of(books, i):
+    """What the residual of connection i is related to (J): twice the impact's kinetic energy, or more.
+
+    An impact takes its kinetic energy and gives it back. That of the whole bearing counts: a housing is
+    moved by what the journal brings.
+    """
+    kinetic, turnover = 0.0, 0.0
     for k in range(len(books)):
-        turnover += books[k].turned + books[k].kinetic
-    over = max(books[i].turned + books[i].kinetic, MIN_TURNOVER_SHARE * turnover) + FALL_ENERGY_FLOOR * fall
-    return books[i].total / over if over != 0.0 else 0.0
+        if books[k].group == books[i].group:
+            kinetic = max(kinetic, books[k].kinetic)
+            turnover = max(turnover, books[k].turned + books[k].kinetic)
+    return max(2.0 * kinetic, LASTING_CONTACT_SHARE * turnover)
+
+
+@kernel
+def shares(books: np.ndarray, fall: float) -> np.ndarray:
+    """By how much the residual of each connection puts forces out, as a share; 0 where nothing moved.
+
+    fall: energy lost by falling, J, or 0.
+    """
+    measures = np.zeros(len(books))
+    for i in range(len(books)):
+        measures[i] = measure_of(books, i)
+    found = np.zeros(len(books))
+    for i in range(len(books)):
+        over = max(measures[i], MIN_MEASURE_SHARE * measures.max()) + FALL_ENERGY_FLOOR * fall
+        if over != 0.0:
+            found[i] = FORCE_PER_ENERGY * books[i].wrong / over
+    return found
 
 
 @kernel
@@ -98,8 +131,9 @@ def worst_of(books: np.ndarray, fall: float) -> tuple[int, float]:
     A share that is no number is the worst.
     """
     worst, largest = -1, 0.0
+    found = shares(books, fall)
     for i in range(len(books)):
-        share = share_of(books, i, fall)
+        share = found[i]
         if worst < 0 or share > largest or (share != share and largest == largest):
             worst, largest = i, share
     return worst, largest

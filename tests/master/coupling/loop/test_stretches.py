@@ -147,7 +147,8 @@ def test_macro_steps_that_are_divided_in_impacts(both: Both) -> None:
 
 
 def test_a_ledger_that_warns_then_stops(both: Both) -> None:
-    outcome = both.compared(disk(run__scheme="hold", run__macro_step=1e-4, run__warn_residual=1e-3))
+    limits = {"run__warn_residual": 1e-3, "run__stop_residual": 0.05}
+    outcome = both.compared(disk(run__scheme="hold", run__macro_step=1e-4, **limits))
     assert outcome.warned_at is not None
     assert outcome.ended is Ended.STOPPED
     assert "energy ledger" in outcome.reason
