@@ -50,8 +50,11 @@ class BallSet:
     damping_ratio: float = real(
         0.0, "1", "damping ratio (2.47) of a ball on a race, added to `damping`", minimum=0.0
     )
+    dissipation: float = real(
+        0.0, "s/m", "dissipation parameter (2.12) of a ball on a race, added to `damping`", minimum=0.0
+    )
     expected_indentation: float = real(
-        3e-6, "m", "peak indentation for which the damping ratio holds", above=0.0
+        3e-6, "m", "peak indentation for which damping ratio and dissipation hold", above=0.0
     )
 
 
@@ -198,14 +201,21 @@ def outer_share(stiffness):
     return outer / (inner + outer)
 
 
+# Hits on a Hertz contact to one depth lose as much by c d as by eps k d^1.5 where c is this times
+# eps k times the root of the depth: the integrals of x^1.5 and of x, times sqrt(1 - x^2.5), from 0 to 1
+EQUAL_LOSS = 2.0 / 3.0 * math.gamma(2.3) / (math.gamma(0.8) * math.gamma(1.5))
+
+
 @kernel
 def set_race_law(law, b, stiffness, mass):
     """Set `law`, a record, to that of the balls side by side on races, each of `stiffness` (N/m^1.5).
 
-    mass: of the balls side by side (kg).
+    mass: of the balls side by side (kg). Hits are damped in proportion to indentation (2.38); one to the
+    expected indentation loses what the dissipation parameter of (2.12) asks for, to first order.
     """
     law.stiffness, law.exponent = stiffness, 1.5
     law.damping, law.dissipation, law.viscous, law.mass = b.damping, 0.0, 0.0, 0.0
+    law.damping += EQUAL_LOSS * b.dissipation * stiffness * math.sqrt(b.expected_indentation)
     law.damping_ratio, law.expected_indentation = b.damping_ratio, b.expected_indentation
     broadcast_law(law, b.rows)
     damp(law, mass)

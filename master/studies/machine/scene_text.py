@@ -125,6 +125,7 @@ def _touchdown(d: Design) -> Iterator[str]:
         "contact.exponent = 1.1111111111111112  # 10/9: a line contact",
         "contact.damping = 0",
         "contact.dissipation = 0.12  # s/m, what a hit loses: steel on steel",
+        "balls.dissipation = 0.12  # s/m, balls on races: steel (Hunt and Crossley 1975)",
         "friction = { kind = 0, dynamic = 0.15 }  # journal on ring: dry steel",
     )
 

@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
 from touchdown.bearings.contact.laws import ContactLaw, elastic_energy, elastic_force, normal_force
+from touchdown.bearings.rolling.ball_set import BallSet, set_race_law
 from touchdown.modelkit.variables import as_record
 
 MASS = 1.65
@@ -120,6 +121,17 @@ def test_small_dissipation_takes_two_thirds_of_epsilon_v(exponent):
     small = 1e-3
     found = impact(ContactLaw(exponent=exponent, dissipation=small / LANDING_SPEED))
     assert 1.0 - found.restitution == pytest.approx(2.0 / 3.0 * small, rel=3e-3)
+
+
+def test_a_ball_loses_what_its_dissipation_parameter_asks_for():
+    """By a law that is proportional to indentation, in a hit to the expected depth."""
+    speed, stiffness, dissipation = 0.05, 1e10, 0.12
+    deepest = impact(ContactLaw(stiffness=stiffness), speed=speed).indentation
+    balls = as_record(BallSet(dissipation=dissipation, expected_indentation=deepest))
+    law = as_record(ContactLaw())
+    set_race_law(law, balls, stiffness, MASS)
+    found = impact(ContactLaw(stiffness=stiffness, damping=float(law["damping"])), speed=speed)
+    assert 1.0 - found.restitution == pytest.approx(2.0 / 3.0 * dissipation * speed, rel=1e-2)
 
 
 @every_law
