@@ -27,7 +27,8 @@ from .contact.journal import (
     touch,
     watch_contact,
 )
-from .contact.laws import ContactLaw, elastic_energy
+from .contact.laws import elastic_energy
+from .contact.line import BoreContact
 
 LOSS = seat.INSIDE
 
@@ -39,7 +40,7 @@ class Parameters:
     clearance: float = real(0.3e-3, "m", "radial clearance of the journal in the bore", above=0.0)
     journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
     interface: Interface = group(Interface)
-    contact: ContactLaw = group(ContactLaw, damping=1e7)
+    contact: BoreContact = group(BoreContact, damping=1e7)
     friction: FrictionLaw = group(FrictionLaw, static=0.27, dynamic=0.18)
 
 
@@ -57,7 +58,7 @@ class Outputs:
 class Derived:
     """What parameters fix."""
 
-    contact: ContactLaw = group(ContactLaw)
+    contact: BoreContact = group(BoreContact)
     friction: FrictionLaw = group(FrictionLaw)
 
 
@@ -113,7 +114,7 @@ def report(q, m):
     c.force, c.indentation = s.normal, s.indentation
     c.sliding = q[seat.JW] * m.p.journal_radius
     c.reach = time_to_touch(seat.journal_motion(q), seat.housing_motion(q), m.p.clearance)
-    m.o.energy.potential = elastic_energy(s.indentation, m.p.contact)
+    m.o.energy.potential = elastic_energy(s.indentation, m.d.contact)
     m.o.energy.dissipated = q[LOSS]
 
 

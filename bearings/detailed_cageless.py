@@ -23,6 +23,7 @@ from . import seat
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
+from .contact.line import BoreContact
 from .contact.pair import OUTSIDE, Place
 from .rolling import bodies, ring
 from .rolling.ball_bodies import (
@@ -51,6 +52,7 @@ from .rolling.sides import Chain, after, heat_of, link, part_ways, press_of, rub
 class Parameters(BallBodiesParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, pitch diameter corrected to 28.5 mm."""
 
+    contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)

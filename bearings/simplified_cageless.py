@@ -45,6 +45,7 @@ from . import seat
 from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
+from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
 from .rolling import declarations, ring
 from .rolling.ball_set import (
@@ -121,6 +122,7 @@ class Parameters(RollingParameters):
         minimum=0.0,
         maximum=1e-4,
     )
+    contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeBallSet = group(FreeBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = choice(

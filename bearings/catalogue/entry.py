@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ..rating import Capacity, RatedBearing, capacity
 from ..rolling.ball_set import BallSet
 from ..rolling.ring import Ring
+from .section import centroid_depth
 
 NUMBERS = {  # name: unit and meaning
     "bore": ("m", "bore diameter"),
@@ -67,7 +68,16 @@ class Bearing:
             "cage.mass": self.cage,
             "rolling.static_rating": self.static_rating,
             "damping": self.damping,
+            "contact.length": self.width,
+            "contact.depth": self.depth,
         }
+
+    @property
+    def depth(self) -> float:
+        """From the bore to the centroid of the inner ring's section (m)."""
+        b = self.balls
+        groove = 0.5 * b.conformity
+        return centroid_depth(self.bore, self.width, b.rows, b.diameter, b.pitch_diameter, groove)
 
     def numbers(self) -> dict[str, float]:
         """All its numbers by the names of `NUMBERS`, SI."""

@@ -24,13 +24,13 @@ from ..rating import RatedBearing, dynamic_rating, static_rating
 from ..rolling.ball_set import MAX_BALLS, BallSet, ball_mass
 from ..rolling.ring import Ring
 from .entry import Bearing
+from .section import SHOULDER_HEIGHT, segment
 
 DEEP_GROOVE, ANGULAR = "deep groove", "angular contact"
 BALL_TO_SECTION = 0.30  # of the difference of outside diameter and bore
 FILL_ANGLE = math.radians(186.0)  # by the balls of a deep groove bearing
 BALL_SPACING = 1.15  # ball diameters from ball to ball, angular contact
 CONTACT_ANGLE = math.radians(15.0)  # of contact
-SHOULDER_HEIGHT = 0.2  # height over ball diameter
 GROOVES = (0.52, 0.53)
 CAGE_MASS_IN_BALLS = 2.0  # balls
 STEEL_DENSITY = 7830.0  # kg/m3
@@ -132,19 +132,13 @@ def _rings(n: Mapping[str, float]) -> Rings:
     height = SHOULDER_HEIGHT * ball
     inner, outer = pitch - ball, pitch + ball  # bottoms of the grooves
     shoulders = inner + 2.0 * height, outer - 2.0 * height
-    cut_inner = _segment(n["inner_groove"] * ball, height) * math.pi * (inner + height)
-    cut_outer = _segment(n["outer_groove"] * ball, height) * math.pi * (outer - height)
+    cut_inner = segment(n["inner_groove"] * ball, height) * math.pi * (inner + height)
+    cut_outer = segment(n["outer_groove"] * ball, height) * math.pi * (outer - height)
     rows, disc = n["rows"], 0.25 * math.pi * width  # rows stand side by side in the width
     mass_inner = STEEL_DENSITY * (disc * (shoulders[0] ** 2 - n["bore"] ** 2) - rows * cut_inner)
     mass_outer = STEEL_DENSITY * (disc * (n["outside"] ** 2 - shoulders[1] ** 2) - rows * cut_outer)
     inertia = 0.125 * mass_inner * (n["bore"] ** 2 + shoulders[0] ** 2)
     return Rings(mass_inner, inertia, mass_outer)
-
-
-def _segment(radius: float, height: float) -> float:
-    """Area (m2) of a circle's segment of this height."""
-    rest = radius - height
-    return radius**2 * math.acos(rest / radius) - rest * math.sqrt(radius**2 - rest**2)
 
 
 def _bearing(designation: str, n: Mapping[str, float], origins: Mapping[str, str]) -> Bearing:

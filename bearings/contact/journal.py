@@ -24,6 +24,7 @@ from ...modelkit.ports import PARTING_TOLERANCE
 from ...modelkit.variables import group, real
 from . import friction
 from .laws import damp
+from .line import FROM_GEOMETRY, is_line, set_line
 from .pair import INSIDE, NO_KICK, Place, heat, press, slip
 from .peaks import Largest, PeakMemory, watch_peaks
 
@@ -51,7 +52,11 @@ _LENGTHS = (
     length_problem("clearance", "journal_radius"),
     length_problem("contact.expected_indentation", "journal_radius"),
 )
-PROBLEMS = (*_LENGTHS, *friction.problems("friction"))
+_LINE = (
+    "contact.load = {0:g} N makes no line contact of a journal of {1:g} m with a clearance of {2:g} m: "
+    "they touch over more than 40 degrees; take a smaller load, or a greater contact.length"
+)
+PROBLEMS = (*_LENGTHS, _LINE, *friction.problems("friction"))
 
 
 @kernel
@@ -65,9 +70,12 @@ def bore_problem(p, usual, told):
         found = 1
     elif out_of_proportion(p.contact.expected_indentation, p.journal_radius, told):
         found = 2
+    elif p.contact.law == FROM_GEOMETRY and not is_line(p.contact, p.journal_radius, p.clearance):
+        told[0], told[1], told[2] = p.contact.load, p.journal_radius, p.clearance
+        found = 3
     else:
         found = friction.problem(p.friction, usual, told)
-        found = found + 2 if found != 0 else 0
+        found = found + 3 if found != 0 else 0
     return found
 
 
@@ -75,6 +83,8 @@ def bore_problem(p, usual, told):
 def settle(d, p, lighter):
     """Set the laws d.contact and d.friction by those in p; lighter: mass of the lighter body (kg)."""
     d.contact = p.contact
+    if p.contact.law == FROM_GEOMETRY:
+        set_line(d.contact, p.journal_radius, p.clearance)
     damp(d.contact, lighter)
     d.friction = p.friction
     friction.settle(d.friction)
@@ -218,7 +228,11 @@ class ContactMemory:
     peaks: PeakMemory = group(PeakMemory)
 
 
-RATE_FROM = ("contact.stiffness", "contact.exponent", "contact.expected_indentation", "journal.inv_m")
+_LINE_FROM = ("length", "depth", "load", "modulus", "poisson", "journal_modulus", "journal_poisson")
+RATE_FROM = (
+    *(f"contact.{name}" for name in ("stiffness", "exponent", "expected_indentation", "law", *_LINE_FROM)),
+    *("journal_radius", "clearance", "journal.inv_m"),
+)
 
 
 @kernel

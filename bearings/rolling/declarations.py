@@ -12,7 +12,7 @@ from ..contact import friction
 from ..contact import journal as bore
 from ..contact.friction import FrictionLaw
 from ..contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
-from ..contact.laws import ContactLaw
+from ..contact.line import BoreContact
 from ..contact.peaks import PeakMemory
 from . import ball_set, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
@@ -27,7 +27,7 @@ class RollingParameters:
     journal_radius: float = real(9.7e-3, "m", "radius of the journal", above=0.0)
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     interface: Interface = group(Interface)
-    contact: ContactLaw = group(ContactLaw, damping=1e7)
+    contact: BoreContact = group(BoreContact, damping=1e7, length=12e-3, depth=1.635e-3)
     friction: FrictionLaw = group(FrictionLaw)
     balls: BallSet = group(BallSet)
     ring: ring.Ring = group(ring.Ring)
@@ -84,7 +84,7 @@ class RollingOutputs:
 class RollingDerived:
     """What parameters fix."""
 
-    contact: ContactLaw = group(ContactLaw)
+    contact: BoreContact = group(BoreContact)
     friction: FrictionLaw = group(FrictionLaw)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)

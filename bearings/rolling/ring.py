@@ -224,7 +224,7 @@ def report_energy(q, m, kinetic, potential, inertia):
     p, o = m.p, m.o.energy
     speed2 = q[RVX] ** 2 + q[RVY] ** 2
     o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * q[RW] ** 2
-    o.potential = potential + elastic_energy(m.s.ring.indentation, p.contact)
+    o.potential = potential + elastic_energy(m.s.ring.indentation, m.d.contact)
     o.potential += p.ring.mass * p.gravity * q[RY]
     o.dissipated = q[LOSS]
 

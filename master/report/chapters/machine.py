@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 
+from ....bearings.contact.line import FROM_GEOMETRY, BoreContact, indentations
 from ....rotor.beams.element import Element
 from ....rotor.beams.shaft import Shaft
 from ...common.errors import TouchdownError
 from ...coupling.connections import Attachment
 from ...results.stresses import stressed
 from ...studies.rotor.supports import scene_shaft
-from ..blocks import Block, Lacking, Picture, Table
+from ..blocks import Block, Lacking, Picture, Table, Text
 from ..charts import inline
 from ..drawings import Section, SideView, Support, draw_side, sections
 from ..numbers import listed, quantity
@@ -29,8 +30,7 @@ MAGNETIC, TOUCHDOWN, SENSOR = "magnetic", "touchdown", "sensor"
 def machine(subject: Subject) -> list[Block]:
     """Side view, bearings along their axes, parts."""
     blocks = [*_side_view(subject), *_sections(subject)]
-    blocks.append(_parts(subject))
-    return blocks
+    return [*blocks, *_bores(subject), _parts(subject)]
 
 
 # -- from the side -----------------------------------------------------------------------------------
@@ -167,6 +167,41 @@ def _section(subject: Subject, a: Attachment) -> Section | None:
         return Section(a.bearing, journal, clearance)
     first = subject.setting(a, "balls.first_angle") or 0.0
     return Section(a.bearing, journal, clearance, 0.5 * pitch, 0.5 * ball, int(count), first)
+
+
+# -- journals in their bores -------------------------------------------------------------------------
+
+
+def _bores(subject: Subject) -> Iterator[Block]:
+    """By which law each journal is pressed into its bore, and what the other one would make of it."""
+    rows = [row for a in subject.seats if (row := _bore(subject, a)) is not None]
+    if not rows:
+        return
+    yield Table(
+        "Journal and bore", ["Seat", "Law of the contact", "Force", "presses in by", "other law"], rows
+    )
+    yield Text(
+        "A line contact follows from length, radii and moduli, for a journal that lies straight in its bore; the "
+        "source's power law is many times softer. A stiffer bore makes impacts shorter, and forces on journal "
+        "and balls larger."
+    )
+
+
+def _bore(subject: Subject, a: Attachment) -> list[str] | None:
+    names = [field.name for field in fields(BoreContact)]
+    found = {name: subject.setting(a, f"contact.{name}") for name in names}
+    radius, clearance = (subject.setting(a, name) for name in SECTION)
+    force = subject.figure("peak_contact_force_N", a)
+    stated = {name: value for name, value in found.items() if value is not None}
+    if len(stated) < len(names) or radius is None or clearance is None or not force:
+        return None
+    by_power, by_line = indentations(BoreContact(**stated), radius, clearance, force)  # type: ignore[arg-type]
+    power, line = (quantity(depth, "m", 3) for depth in (by_power, by_line))
+    if stated["law"] == FROM_GEOMETRY:
+        law, here, other = "line contact, from geometry", line, power
+    else:
+        law, here, other = f"power law as set, exponent {stated['exponent']:.4g}", power, line
+    return [subject.name(a), law, quantity(force, "N", 3), here, other]
 
 
 # -- as a list ---------------------------------------------------------------------------------------

@@ -24,7 +24,6 @@ LEVITATION_FREQUENCY = 2.0 * math.pi * 60.0  # rad/s, of the rotor's half on its
 LEVITATION_DAMPING = 0.3  # ratio
 FORCE_LIMIT_RATIO = 6.0  # limit of a magnetic bearing's force over the static load
 MAX_SPEED_RATIO = 0.7  # speed over the first bending frequency
-CONTACT_STIFFNESS_PER_M = 6e10  # N/m^(10/9) per m of width, journal in ring
 HOUSING_SHARE = 0.15  # housing over what it carries
 MIN_HOUSING_MASS = 2.0  # kg
 HOUSING_FREQUENCY = 2.0 * math.pi * 500.0  # rad/s

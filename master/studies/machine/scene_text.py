@@ -7,9 +7,9 @@ import math
 from collections.abc import Iterator
 
 from ....bearings.catalogue import Bearing
+from ....bearings.catalogue.landing import landing_load
 from ...scene.plausible import MAX_BORE_SPEED, RPM
 from .design import (
-    CONTACT_STIFFNESS_PER_M,
     FORCE_LIMIT_RATIO,
     GRAVITY,
     HOUSING_DAMPING,
@@ -88,7 +88,7 @@ def _bearings(d: Design) -> Iterator[str]:
         )
         if not _alike(d):
             yield f"preset = {_quoted(preset)}"
-            yield from (f"[components.{s.component}.set]", *_fitted(bearing, d.clearance))
+            yield from (f"[components.{s.component}.set]", *_fitted(bearing, d.clearance, abs(s.load)))
     for s, bearing in zip(d.touchdown, d.bearings, strict=True):
         yield from ("", f"[components.{_housing(s.component)}]", 'fmu = "housing"')
         if not _alike(d):
@@ -120,9 +120,9 @@ def _touchdown(d: Design) -> Iterator[str]:
         yield f"preset = {_quoted(d.presets[0])}  # `touchdown catalogue` tells its numbers, and of others"
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
-        yield from _fitted(d.bearings[0], d.clearance)
+        yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
     yield from (
-        "contact.exponent = 1.1111111111111112  # 10/9: a line contact",
+        'contact.law = "line"  # steel journal in steel bore, from geometry; or "power"',
         "contact.damping = 0",
         "contact.dissipation = 0.12  # s/m, what a hit loses: steel on steel",
         "balls.dissipation = 0.12  # s/m, balls on races: steel (Hunt and Crossley 1975)",
@@ -147,12 +147,11 @@ def _housings(d: Design) -> Iterator[str]:
         yield _outer_ring(d.bearings[0])
 
 
-def _fitted(bearing: Bearing, clearance: float) -> Iterator[str]:
-    """What hangs on the bearing's size."""
-    radius, contact = 0.5 * bearing.bore - clearance, CONTACT_STIFFNESS_PER_M * bearing.width
+def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
+    """What hangs on the bearing's size, and on the weight (N) that falls on it."""
+    radius, load = 0.5 * bearing.bore - clearance, landing_load(bearing, clearance, weight * clearance)
     yield f'journal_radius = "{radius * MM:g} mm"  # half the bore less the clearance'
-    per_mm = CONTACT_STIFFNESS_PER_M / MM
-    yield f"contact.stiffness = {contact:g}  # N/m^(10/9), {per_mm:g} per mm of the width"
+    yield f'contact.load = "{rounded(load):g} N"  # at which that holds: what the fall presses it with'
     if bearing.damping == 0.0:
         yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not tell'
 

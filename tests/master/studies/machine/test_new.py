@@ -10,6 +10,7 @@ import pytest
 
 import touchdown
 from touchdown.bearings.catalogue import as_file, bearing
+from touchdown.bearings.contact.line import FROM_GEOMETRY
 from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.common.units import to_si
@@ -93,7 +94,8 @@ def test_the_rules_that_are_said_are_kept(here: Path) -> None:
         assert value("amb_B.force_limit") == pytest.approx(6.0 * 9.81 * held, rel=0.05)
         assert value("bearing_B.journal_radius") == pytest.approx(35e-3 - 0.3e-3)
         assert value("bearing_A.balls.count") == 20
-        assert value("bearing_A.contact.stiffness") == pytest.approx(6e10 * 20e-3)
+        assert value("bearing_A.contact.law") == FROM_GEOMETRY
+        assert value("bearing_A.contact.length") == pytest.approx(20e-3)
         assert value("rotor.speed") == pytest.approx(300.0 * math.pi)
         assert value("housing_A.outer_ring") == pytest.approx(bearing("7014").outer_ring, rel=2e-3)
         housing = value("housing_A.stiffness") / value("housing_A.mass")
