@@ -75,6 +75,13 @@ def per_display(unit: str, written: str) -> float:
     return 1.0 if written == unit else 1.0 / UNIT_SCALES[written][0]
 
 
+def is_bare(value: object) -> bool:
+    """Whether `value` is a number, or text of one, that says no unit."""
+    return value is not None and not re.search(
+        r"[^\W\d_]", re.sub(r"(?i)(?<=[\d.])e(?=[-+\d])", "", str(value))
+    )
+
+
 def to_si(value: object, unit: str | None, name: str) -> float:
     """`value` (a number, or text "number" or "number unit") in the SI unit `unit` of variable `name`."""
     if isinstance(value, bool) or not isinstance(value, (Real, str)):

@@ -7,6 +7,7 @@ from contextlib import suppress
 
 from ...fmus.recipes import bore_of, preset
 from ...modelkit.model import ModelError
+from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError
 from ..components.component import SETTABLE, Component, check_value, value_of
@@ -123,6 +124,7 @@ def _seat(
         bore=bore_of(chosen) if chosen else None,
         body=a.body,
         speed=values(a.body).get("speed"),
+        bare_speed=is_bare(scene.components[a.body].set.get("speed")),
     )
 
 

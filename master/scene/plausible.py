@@ -33,6 +33,7 @@ class Seat:
     bore: float | None  # of that bearing
     body: str  # component that the journal is of
     speed: float | None  # rad/s, at the start
+    bare_speed: bool = False  # whether it was given as a number without a unit
 
     @property
     def width(self) -> float | None:
@@ -105,8 +106,8 @@ def _speed(seat: Seat) -> Iterator[str]:
     if abs(seat.speed) > SPEED_RATIO_LIMIT * usual:
         yield (
             f"{seat.body}.speed = {seat.speed / RPM:.0f} rpm is more than a bearing of {_mm(seat.width)} "
-            f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MAX_BORE_SPEED:,.0f} mm rpm); "
-            "a number without a unit is in rad/s"
+            f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MAX_BORE_SPEED:,.0f} mm rpm)"
+            f"{'; a number without a unit is in rad/s' if seat.bare_speed else ''}"
         )
 
 

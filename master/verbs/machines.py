@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...modelkit.units import display_unit, per_display
+from ...modelkit.units import display_unit, is_bare, per_display
 from ..common.errors import TouchdownError, one_of
 from ..common.units import spoken
 from . import completion
@@ -212,7 +212,8 @@ def _execute_new(options: argparse.Namespace) -> int:
         inertia=above_zero(options.inertia, "kg.m2", "--inertia"),
     )
     made = machine(wanted, options.folder.resolve().name)
-    notes = "".join(f"note: {note}\n" for note in made.notes)
+    bare = [f"--speed {options.speed} has no unit: it is taken for rad/s"] if is_bare(options.speed) else []
+    notes = "".join(f"note: {note}\n" for note in [*bare, *made.notes])
     if options.dry_run:
         print(f"{made.files[SCENE_FILE]}{notes}", end="")
     else:

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from touchdown.modelkit.units import UnitError, to_si
+from touchdown.modelkit.units import UnitError, is_bare, to_si
 
 
 @pytest.mark.parametrize(
@@ -48,3 +48,19 @@ def test_numbers_with_units(written: object, unit: str, value: float) -> None:
 def test_what_is_none_is_refused_by_name(written: object, says: str) -> None:
     with pytest.raises(UnitError, match=r"^x = .*" + says):
         to_si(written, "m", "x")
+
+
+@pytest.mark.parametrize(
+    ("value", "bare"),
+    [
+        (9000, True),
+        ("9000", True),
+        ("9e3", True),
+        ("1.5E-3", True),
+        (None, False),
+        ("9000 rpm", False),
+        ("9e3rad/s", False),
+    ],
+)
+def test_a_number_without_a_unit_is_known(value: object, bare: bool):
+    assert is_bare(value) is bare

@@ -181,9 +181,9 @@ def _bores(subject: Subject) -> Iterator[Block]:
         "Journal and bore", ["Seat", "Law of the contact", "Force", "presses in by", "other law"], rows
     )
     yield Text(
-        "A line contact follows from length, radii and moduli, for a journal that lies straight in its bore; the "
-        "source's power law is many times softer. A stiffer bore makes impacts shorter, and forces on journal "
-        "and balls larger."
+        "A line contact follows from length, radii and moduli, for a journal that lies straight in its "
+        "bore; the source's power law is many times softer. A stiffer bore makes impacts shorter, and "
+        "forces on journal and balls larger."
     )
 
 

@@ -80,7 +80,7 @@ class Design:
         if self.speed > SPEED_RATIO_LIMIT * usual:
             told.append(
                 f"speed = {self.speed / RPM:.0f} rpm is more than such a machine runs "
-                f"({usual / RPM:.0f} rpm by the rule); a number without a unit is in rad/s"
+                f"({usual / RPM:.0f} rpm by the rule)"
             )
         return told
 

@@ -274,3 +274,18 @@ def test_a_taken_name_is_refused(here: Path) -> None:
     (here / "rotor.toml").write_text(text, encoding="utf-8")
     with pytest.raises(TouchdownError, match="has a station amb_A elsewhere"):
         machine(Wanted(["7014"], "rotor.toml", ["A", "B"], ["A", "B"]), "mine")
+
+
+def test_a_speed_without_a_unit_is_said(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """With one, nothing is said of units, however fast that is."""
+    assert (
+        main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "45000"]) == 0
+    )
+    said = capsys.readouterr().out
+    assert "note: --speed 45000 has no unit: it is taken for rad/s" in said
+    assert "speed = 429718 rpm is more than such a machine runs" in said
+    assert (
+        main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "4.5e4 rpm"])
+        == 0
+    )
+    assert "rad/s:" not in capsys.readouterr().out
