@@ -86,9 +86,12 @@ class SeatMotion(BodyMotion):
     )
 
 
+NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states nothing
+
+
 @dataclass(frozen=True)
 class StaticLoad:
-    """What a body takes to be held at rest, stated beside its motion."""
+    """What a body takes to be held at rest, stated beside its motion; both 0: it states nothing."""
 
     static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
     static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)

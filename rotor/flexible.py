@@ -19,6 +19,7 @@ from ..modelkit.model import Model, constants, memory_layout
 from ..modelkit.numerics import missing
 from ..modelkit.ports import (
     MODES,
+    NO_LOAD,
     Energy,
     FlexibleSeatLoad,
     FlexibleSeatState,
@@ -155,7 +156,7 @@ def settle(words):
         return problem
     d.damping_ratio = p.damping_ratio if p.damping_ratio >= 0.0 else d.own_damping_ratio
     for j in range(d.stations):
-        d.static_fy[j] = d.held[j] * p.gravity
+        d.static_fy[j] = d.held[j] * p.gravity if p.gravity != 0.0 else NO_LOAD
     for k in range(d.modes):
         d.damping[k], d.sag[k] = 2.0 * d.damping_ratio * math.sqrt(d.stiffness[k]), 0.0
         for j in range(d.stations if k >= RIGID_MODES else 0):

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from ..modelkit import body
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, memory_layout
-from ..modelkit.ports import Energy, SeatLoad, SeatState, StaticLoad
+from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
 from ..modelkit.variables import group, real
 from .motion.equations import drag
 
@@ -167,7 +167,8 @@ def start(words):
     q[SPIN] = p.speed
     m.half = 0.0
     publish(q, m)
-    m.o.held.static_fy = p.gravity / m.o.amb.inv_m  # unbalance turns, and is no static load
+    weight = p.gravity / m.o.amb.inv_m  # unbalance turns, and is no static load
+    m.o.held.static_fy = weight if weight != 0.0 else NO_LOAD
 
 
 @kernel

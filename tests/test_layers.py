@@ -68,6 +68,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     },
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
+    "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},
 }
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}

@@ -45,8 +45,8 @@ class Ended(Enum):
     """How it ended; the values are for people.
 
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "10 ms"})
-    >>> strict = scene.set({"run.warn_residual": 1e-9, "run.stop_residual": 1e-9})
-    >>> touchdown.run(strict, in_process=True).ended
+    >>> coarse = scene.set({"run.scheme": "hold", "run.macro_step": "0.5 ms"})
+    >>> touchdown.run(coarse, in_process=True).ended
     <Ended.STOPPED: 'stopped'>
     """
 

@@ -218,7 +218,7 @@ def test_it_ends_where_the_host_said(bushing: Any):
         fmu.doStep(k * STEP, STEP)
     with pytest.raises(Exception, match="status 3"):
         fmu.doStep(3.0 * STEP, STEP)
-    assert "the end was said to be t = 6e-05 s" in said[-1]
+    assert "the stop time is 6e-05 s" in said[-1]
 
 
 @pytest.mark.parametrize(

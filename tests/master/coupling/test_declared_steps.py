@@ -29,7 +29,7 @@ def said(inner: float | None, proposed: float | None, step: float = 2e-5) -> lis
 
 @pytest.mark.parametrize("inner", [None, 4e-5, 2e-5, 1e-6, 4e-5 / 3.0])
 def test_steps_that_go_into_the_macro_step_are_not_remarked_on(inner: float | None) -> None:
-    assert said(inner, 4e-5) == []
+    assert said(inner, 5e-6) == []
 
 
 @pytest.mark.parametrize("inner", [3e-5, 8e-5, 4e-4])
@@ -55,6 +55,6 @@ def test_a_macro_step_that_an_fmu_was_not_made_for(tmp_path: Path) -> None:
     assert line.startswith(
         "housing was made for steps of 1e-06 s (stepSize of its FMU's DefaultExperiment)"
     )
-    assert line.endswith("its macro step of 0.0001 s is longer")
+    assert line.endswith("its macro step of 0.0001 s is far longer")
     with opened(SCENE.set({"run.macro_step": 1e-4}), in_process=True) as system:
         assert list(system.remarks) == []

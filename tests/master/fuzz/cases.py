@@ -72,6 +72,7 @@ def setting(rng: Rng) -> list[str]:
     bearing = pick(rng, BEARINGS)
     models = {"rotor": "rigid_rotor", "amb": "amb", "housing": "housing", "bearing": bearing}
     names = [f"{name}.{variable}" for name, fmu in models.items() for variable in _parameters(fmu)]
+    names.remove("amb.shutdown_time")  # hours until it are hours of work
     given: list[str] = []
     for _ in range(int(rng.integers(1, 3))):
         name = pick(rng, names if rng.random() < 0.7 else RUN)
