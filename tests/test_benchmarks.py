@@ -13,6 +13,8 @@ from places import ROOT
 
 from touchdown.master.scene.file import load_scene
 
+pytestmark = pytest.mark.slow
+
 if TYPE_CHECKING:
     from cosimulated import comparison
 

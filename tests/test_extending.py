@@ -19,6 +19,8 @@ import numpy as np
 import pytest
 from places import ROOT
 
+pytestmark = pytest.mark.slow
+
 PARTS = ("src/touchdown", "modelkit", "rotor", "bearings", "fmus", "master")
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)

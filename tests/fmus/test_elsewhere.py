@@ -35,6 +35,7 @@ from touchdown.master.interop import doctor
 from touchdown.modelkit.kernel.cache_folder import user_cache
 from touchdown.modelkit.model import slots
 
+pytestmark = pytest.mark.slow
 every_fmu = pytest.mark.parametrize("fmu", names())
 
 # -- hosts without Python ----------------------------------------------------------------------------

@@ -25,6 +25,8 @@ from places import COMMAND, ROOT
 
 from touchdown.fmus.recipes import names
 
+pytestmark = pytest.mark.slow
+
 Alone = Callable[..., subprocess.CompletedProcess[str]]
 Answers = Callable[[str], dict[str, Any]]
 

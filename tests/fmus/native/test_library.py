@@ -25,6 +25,8 @@ from touchdown.master.common.errors import FAILED
 from touchdown.master.interop.check import check_fmu
 from touchdown.modelkit.model import slots
 
+pytestmark = pytest.mark.slow
+
 Native = Callable[[str], Path]
 CHEAP = ("housing", "rigid_rotor", "rotor_I")
 every_model = pytest.mark.parametrize(

@@ -8,12 +8,15 @@ import sys
 from pathlib import Path
 
 import bases
+import pytest
 from cases import FMU, KINDS, play, wrong
 from commands import Command
 from mutators import archive
 from pool import run_cases
 
 from touchdown.master.interop.ssp.xml import SSD_FILE
+
+pytestmark = pytest.mark.slow
 
 CASES = 420
 PACKAGE = {
