@@ -16,9 +16,9 @@ the centroids of its sections, `depth` away, in plane stress; what bends beyond 
 Kernels take the power law k d^n that has this force and this slope at a design load. It errs by 1 % from
 half to twice that load, by 6 % at an eighth of it, and takes no logarithm at every step.
 
-Where the strip is so wide beside the section that the last bracket is below zero, it counts as zero:
-nothing of the ring is left to be compressed. The journal is taken to lie in the bore along its whole
-length; tilted, it touches on a part of that.
+The last term has a maximum, where its bracket is 1; beyond, where the formula does not hold, the ring's
+approach stays at that. The journal is taken to lie in the bore along its whole length; tilted, it touches
+on a part of that.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ LAWS = Choices(
 )
 
 
+STEEPEST = 3.0  # exponent of the power law, at most
 WIDEST = 0.35  # half the strip over the journal's radius, 20 degrees: wider, bodies are no half-planes
 
 
@@ -91,11 +92,13 @@ def approach(load, law, journal_radius, clearance):
     journal = of_journal / math.pi * (2.0 * math.log(4.0 * journal_radius / width) - 1.0)
     # b grows with the root of the load: both logarithms fall by one half of its relative change
     falls, ring = of_journal / math.pi, 2.0 * math.log(2.0 * law.depth / width) - law.poisson
-    if ring > 0.0:
+    if ring > 1.0:
         ring /= math.pi * law.modulus
         falls += 1.0 / (math.pi * law.modulus)
-    else:
-        ring = 0.0
+    else:  # its approach stays at its maximum; ring counts per load, and falls with it
+        widest = 2.0 * law.depth * math.exp(-0.5 * (1.0 + law.poisson))
+        ring = (widest / width) ** 2.0 / (math.pi * law.modulus)
+        falls += ring
     return Approach(press * (journal + ring), (journal + ring - falls) / law.length, width)
 
 
@@ -103,7 +106,9 @@ def approach(load, law, journal_radius, clearance):
 def is_line(law, journal_radius, clearance):
     """Whether a `BoreContact` makes a line contact at its load, and no bearing of half a bore."""
     found = approach(law.load, law, journal_radius, clearance)
-    return found.half_width < WIDEST * journal_radius and found.slope > 0.0
+    return (
+        found.half_width < WIDEST * journal_radius and found.indentation < STEEPEST * law.load * found.slope
+    )
 
 
 @kernel

@@ -74,8 +74,8 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         _require_lead(attachments, components)
     every = {name: spec.every for name, spec in scene.components.items()}
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
-    components = hear(components, attachments)
     told = [*left_out, *declared_steps(scene, components), *plausibility_warnings(seats)]
+    components = hear(components, attachments)
     start = scene.run.start_time
     return System(components, attachments, connections, settings, every, told, bonds, start)
 

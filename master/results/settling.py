@@ -227,7 +227,7 @@ TREND_NAMES = {one: one.value for one in Trend} | {
 }
 # Times the run, to be proposed where nothing says for how long; at most
 LONGER_FACTOR, MAX_LONGER = 2.0, 4.0
-# Mean w^2 r over g of what just keeps to a circle against gravity: w^2 r = (3 + 2 cos) g along it
+# w^2 r over g of what just keeps to a circle against gravity, w by the time of a turn
 LOOP = 2.42
 TIME_MARGIN = 1.2  # times the run, at least; of the time that a whirl takes to die out, too
 
@@ -288,13 +288,15 @@ def _goes_on(orbit: Orbit, force: np.ndarray | None, episode: Episode) -> tuple[
     return now, _left(orbit, turns, episode.frequency)
 
 
-def _left(orbit: Orbit, turns: Sequence[np.ndarray], frequency: float) -> float:
+def _left(orbit: Orbit, turns: Sequence[np.ndarray], frequency: float) -> float | None:
     """How long (s) until a decaying whirl of `frequency` (Hz) is too slow to go round against gravity.
 
     Radius and force decay exponentially, as what is damped does; the faster of them counts. turns: sizes in
     successive turns, the radius over the clearance first.
     """
     rate = max(-_slope(np.log(sizes)) for sizes in turns if np.all(sizes > 0.0))  # 1 a turn
+    if rate <= 0.0:  # the sizes fall, but not as what is damped does
+        return None
     radius = float(turns[0][-1]) * orbit.clearance
     excess = radius * (TURN * frequency) ** 2 / (LOOP * GRAVITY)
     return max(math.log(max(excess, 1.0)) / rate, 1.0) / frequency

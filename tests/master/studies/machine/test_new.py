@@ -288,4 +288,4 @@ def test_a_speed_without_a_unit_is_said(here: Path, capsys: pytest.CaptureFixtur
         main(["new", "disk", "--mass", "9 kg", "--bearings", "6204", "--dry-run", "--speed", "4.5e4 rpm"])
         == 0
     )
-    assert "rad/s:" not in capsys.readouterr().out
+    assert "has no unit" not in capsys.readouterr().out
