@@ -179,6 +179,7 @@ def settle(words):
     size.ball_cage, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
     cage.set_weights(m)
+    ring.append_bending(m)
     return missing(words, CONSTANTS)
 
 

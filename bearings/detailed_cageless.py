@@ -54,7 +54,7 @@ class Parameters(BallBodiesParameters):
 
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeBallSet = group(FreeBallSet)
-    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
+    ring: ring.FlexibleRing = group(ring.FlexibleRing, mass=0.0095, inertia=1.08e-6)
     ball_contact: ContactLaw = group(ContactLaw, stiffness=1e8)
     ball_friction: FrictionLaw = group(FrictionLaw, static=0.03, dynamic=0.02)
 
@@ -198,6 +198,7 @@ def settle(words):
     size.coordinates, size.constraints = 6 + 3 * count, 1
     size.ball_ball, size.ball_outer, size.ball_inner = count, count, count
     set_weights(m)
+    ring.append_bending(m)
     return missing(words, CONSTANTS)
 
 

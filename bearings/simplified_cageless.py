@@ -47,7 +47,7 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
-from .rolling import declarations, ring
+from .rolling import bending, declarations, ring
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -61,6 +61,7 @@ from .rolling.ball_set import (
     touch_angle,
 )
 from .rolling.balls import largest, watch_balls
+from .rolling.bending import Bending
 from .rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -124,7 +125,7 @@ class Parameters(RollingParameters):
     )
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeBallSet = group(FreeBallSet)
-    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
+    ring: ring.FlexibleRing = group(ring.FlexibleRing, mass=0.0095, inertia=1.08e-6)
     as_printed: int = choice(
         0, SWITCH, "(2.10) with its last friction term as printed, which breaks momentum"
     )
@@ -147,6 +148,7 @@ class Speeds(ring.RaceSpeeds):
 class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
+    ring: ring.FlexibleRingReport = group(ring.FlexibleRingReport)
     neighbours: BallContacts = group(BallContacts)
     speed: Speeds = group(Speeds)
 
@@ -155,6 +157,7 @@ class Outputs(RollingOutputs):
 class Derived(RollingDerived):
     """What parameters fix."""
 
+    bending: Bending = group(Bending)
     race: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw)
@@ -188,7 +191,9 @@ class Hidden(RollingMemory, KickMemory):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
-CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
+_SHARED = declarations.problems("race_friction", "ball_friction")
+SHARED = len(_SHARED)
+CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *bending.PROBLEMS))
 
 
 @kernel
@@ -231,7 +236,9 @@ def report(q, m):
     o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
     moving = d.mass * d.pitch_radius**2
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
-    kinetic, height, pressed, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    kinetic, pressed = bending.energy(q, d.bending)
+    o.ring.ovality = bending.ovality(q, d.bending)
+    height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
         kinetic += 0.5 * moving * angular[b] ** 2 + 0.5 * d.inertia * turning[b] ** 2
         height += d.pitch_radius * s.sine[b]
@@ -252,7 +259,11 @@ def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
     found = declarations.problem(p, p.balls.crowded, told)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
+    found = declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
+    if found == 0:
+        found = bending.problem(p, told)
+        found = SHARED + found if found != 0 else 0
+    return found
 
 
 @kernel
@@ -318,6 +329,7 @@ def settle(words):
     _settle_laws(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
+    ring.append_bending(m)
     return missing(words, CONSTANTS)
 
 

@@ -18,7 +18,7 @@ from ..contact.friction import FrictionLaw
 from ..contact.laws import ContactLaw
 from ..contact.peaks import Largest, PeakMemory, watch_peaks
 from ..contact.profile import RaceProfile, SearchReport
-from . import declarations
+from . import bending, declarations
 from .ball_bodies import Contacts, ball_motion
 from .ball_set import (
     MAX_BALLS,
@@ -30,9 +30,11 @@ from .ball_set import (
     set_race_law,
 )
 from .balls import largest, place_balls, watch_balls
+from .bending import Bending
 from .declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from .friction import FrictionLines
 from .micro_step import MICRO_STEP, RESOLUTION, KickMemory, refined, step_in_hit
+from .ring import FlexibleRing, FlexibleRingReport
 from .sides import SideContacts, highest, stored
 
 
@@ -40,6 +42,7 @@ from .sides import SideContacts, highest, stored
 class BallBodiesParameters(RollingParameters):
     """What both detailed models share."""
 
+    ring: FlexibleRing = group(FlexibleRing)
     micro_step: float = real(
         MICRO_STEP,
         "s",
@@ -84,6 +87,7 @@ class Ball:
 class BallBodiesOutputs(RollingOutputs):
     """What both detailed models report."""
 
+    ring: FlexibleRingReport = group(FlexibleRingReport)
     inner: BallContacts = group(BallContacts)
     outer: BallContacts = group(BallContacts)
     hardest: HardestHit = group(HardestHit)
@@ -94,6 +98,7 @@ class BallBodiesOutputs(RollingOutputs):
 class BallBodiesDerived(RollingDerived):
     """What parameters fix."""
 
+    bending: Bending = group(Bending)
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
@@ -140,12 +145,13 @@ class BallBodiesMemory(RollingMemory, KickMemory):
 
 STATIC = BallBodiesParameters().race_friction.static
 RACES = declarations.OWN + 4  # problems ahead of those of the races' profiles
+RING = RACES + 6  # and of those of a ring that bends
 
 
 def problems(side: str) -> tuple[str, ...]:
     """What is found wrong by `problem`; side: name of the friction law at the balls' sides."""
     profiles = (*profile.problems("inner_profile"), *profile.problems("outer_profile"))
-    return (*declarations.problems("race_friction", side), *profiles)
+    return (*declarations.problems("race_friction", side), *profiles, *bending.PROBLEMS)
 
 
 @kernel
@@ -167,6 +173,9 @@ def problem(p, crowded, side, usual, told):
         outer = outer_radius(b) + 0.5 * b.play
         found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, told)
         found = RACES + 3 + found if found != 0 else 0
+    if found == 0:
+        found = bending.problem(p, told)
+        found = RING + found if found != 0 else 0
     return found
 
 
@@ -243,7 +252,7 @@ def report(q, m, neighbours):
     """Outputs of the balls at the end of the macro step, from the state q.
 
     `neighbours`: side contacts lie between a ball and the next one, not between a ball and the cage.
-    Returns (kinetic energy, energy of the race contacts and of the balls' weight) in J.
+    Returns (kinetic energy, energy of the race contacts, of the balls' weight and of bending) in J.
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
@@ -251,7 +260,9 @@ def report(q, m, neighbours):
     state_contacts(o.outer, s.outer, m)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation, _ = approach(m)
-    kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
+    kinetic, elastic = bending.energy(q, d.bending)
+    o.ring.ovality = bending.ovality(q, d.bending)
+    height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
         now = ball_motion(q, b, m)
         dx, dy = now.x - q[seat.HX], now.y - q[seat.HY]
@@ -274,7 +285,7 @@ def report(q, m, neighbours):
     potential = (
         p.gravity * d.mass * height + stored(s.inner, d.inner, count) + stored(s.outer, d.outer, count)
     )
-    return kinetic, potential
+    return kinetic, potential + elastic
 
 
 @kernel

@@ -110,15 +110,22 @@ class Meeting(NamedTuple):
     outer: float  # of the outer race over the ball, m/s
 
 
+ROUND = (0.0, 0.0)  # m, m/s; of a race that does not bend
+
+
 @inlined
-def meet(gap, c, s, orbit, spin, way):
-    """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
-    indentation = gap.ex * c + gap.ey * s - way.play
+def meet(gap, c, s, orbit, spin, way, bulge):
+    """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s).
+
+    bulge: how far the inner race bends outwards there (m), and its rate (m/s).
+    """
+    indentation = gap.ex * c + gap.ey * s - way.play + bulge[0]
     radius = way.radius + way.share * max(indentation, 0.0)
     lever = way.inner_radius - gap.ex * c - gap.ey * s  # the ring's centre stands off by e
     v, around = radius * orbit, way.ball_radius * spin
     inner = gap.spin * lever + gap.uy * c - gap.ux * s - v + around
-    return Meeting(indentation, gap.ux * c + gap.uy * s, radius, lever, inner, -(v + around))
+    rate = gap.ux * c + gap.uy * s + bulge[1]
+    return Meeting(indentation, rate, radius, lever, inner, -(v + around))
 
 
 @inlined
@@ -162,7 +169,7 @@ def between_races(gap, c, s, orbit, spin, rm, m):
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
-    at = meet(gap, c, s, orbit, spin, way)
+    at = meet(gap, c, s, orbit, spin, way, ROUND)
     ball = squeeze_ball(at, elastic_at(at, way), across_of(gap, c, s), orbit, way, 0.0, 0.0)
     inner = coefficient(at.inner, d.race_friction) * ball.force
     outer = coefficient(at.outer, d.race_friction) * ball.outer

@@ -16,14 +16,16 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import Motion
-from ...modelkit.variables import real
+from ...modelkit.variables import integer, real
 from .. import seat
 from ..contact.friction import curve
 from ..contact.journal import note, place_in_bore, time_to_touch, touch, touch_of, watch_contact
 from ..contact.laws import elastic_energy, elastic_force
-from ..contact.pair import INSIDE, friction_line, heat, kick_of, rubbed, squeeze
+from ..contact.pair import INSIDE, Place, friction_line, heat, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled
+from . import bending
 from .ball_set import MAX_BALLS
+from .bending import AUTOMATIC, MAX_HARMONICS
 from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from .pitch_circle import Gap
 
@@ -42,6 +44,23 @@ class Ring:
 
 
 @dataclass(frozen=True)
+class FlexibleRing(Ring):
+    """Inner ring that may bend (`bending`)."""
+
+    harmonics: int = integer(
+        0,
+        "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: as many as 0.4 times "
+        "the balls in a row",
+        minimum=AUTOMATIC,
+        maximum=MAX_HARMONICS,
+    )
+    width: float = real(0.0, "m", "width, of a ring that bends; 0: contact.length", minimum=0.0)
+    modulus: float = real(207e9, "Pa", "modulus of elasticity, of a ring that bends", above=0.0)
+    poisson: float = real(0.3, "1", "Poisson's ratio, of a ring that bends", minimum=0.0, maximum=0.5)
+    damping_ratio: float = real(0.0, "1", "damping ratio of each of its modes", minimum=0.0, maximum=1.0)
+
+
+@dataclass(frozen=True)
 class RingReport:
     """Motion of the inner ring, and how fast its bore and the journal's surface move."""
 
@@ -54,6 +73,18 @@ class RingReport:
     journal_speed: float = real(0.0, "m/s", "circumferential speed of the journal", local=True)
     sync_time: float = real(
         -1.0, "s", "time when the bore first reached 99 % of the journal's speed; -1: not yet", local=True
+    )
+
+
+@dataclass(frozen=True)
+class FlexibleRingReport(RingReport):
+    """Motion of an inner ring that may bend."""
+
+    ovality: float = real(
+        0.0,
+        "m",
+        "amplitude of the second harmonic: half of what the ring's diameters differ by",
+        local=True,
     )
 
 
@@ -88,18 +119,51 @@ def moved_before(m):
 
 
 @inlined
+def _bent_bore(q, at, body, before, m):
+    """A `Place` of the journal in a bore that bends, and the bore's `Motion` and acceleration there.
+
+    at: in the rigid bore; body, before: motion of the ring, and its acceleration in the kick before.
+    """
+    bent = bending.shape_at(q, m.s.before, 1.0, at.nx, at.ny, m.d.bending)
+    distance = at.second - at.first
+    turned = bent.slope / distance if distance > 0.0 else 0.0
+    nx, ny = at.nx + turned * at.ny, at.ny - turned * at.nx
+    by = 1.0 / (1.0 + turned * turned)
+    vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, bent.ahead * by * nx, bent.ahead * by * ny
+    moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
+    faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
+    return Place(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
+
+
+@inlined
 def meet_journal(q, m):
     """(`Place` of the journal in the bore (m), its `Kick`, the ring answering alone, its `Squeeze`).
 
     The journal keeps its velocity, that of the middle of the kick.
     """
     p, s, journal, body = m.p, m.s, seat.journal_motion(q), ring_motion(q)
-    at = place_in_bore(journal, body, p.journal_radius, p.clearance)
+    at, before = place_in_bore(journal, body, p.journal_radius, p.clearance), ring_motion(s.before)
     along = 1.0 / p.ring.mass
-    answers = along + at.second * at.second / p.ring.inertia, along
+    across = along + at.second * at.second / p.ring.inertia
+    if m.d.bending.waves > 0:
+        at, body, before = _bent_bore(q, at, body, before, m)
+        along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
-    kick = kick_of(Beat(s.kick, s.drift), answers, kept, ring_motion(s.before), at, INSIDE, last)
+    kick = kick_of(Beat(s.kick, s.drift), (across, along), kept, before, at, INSIDE, last)
     return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick, s.ring.stored)
+
+
+@inlined
+def _bend(q, squeezed, n, m):
+    """(Change of the bore's rate at the journal (m/s), heat (W)) as the ring bends over the kick.
+
+    The journal is `squeezed`, and `n` balls press the race with m.s.inner.normal.
+    """
+    shape = m.s.inner.shape
+    at = place_in_bore(seat.journal_motion(q), ring_motion(q), m.p.journal_radius, m.p.clearance)
+    bore = squeezed.normal, at.nx, at.ny
+    loss = bending.accelerate(q, m.s.kick, m.s.inner.normal, n, bore, m.d.bending, shape)
+    return bending.gained_at(m.s.kick, at.nx, at.ny, m.d.bending, shape), loss
 
 
 @inlined
@@ -121,15 +185,16 @@ def push_on(at, squeezed, balls, m):
 
 
 @inlined
-def rub_journal(at, squeezed, friction, moved, m):
+def rub_journal(at, squeezed, friction, moved, bent, m):
     """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
 
-    friction: N, along t; moved: what the kick does to the ring (`Moved`).
+    friction: N, along t; moved: what the kick does to the ring (`Moved`); bent: by how much it has the bore
+    bend away faster (m/s), and the heat of bending (W).
     """
     s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
     ahead = over_ring(at.nx, at.ny, at.second, moved)
-    opening = moved.x * at.nx + moved.y * at.ny
-    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -opening))
+    opening = moved.x * at.nx + moved.y * at.ny + bent[0]
+    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -opening) + bent[1])
     note(s.ring, t)
     s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, at.nx, at.ny
     s.rubbed = friction
@@ -151,11 +216,14 @@ def rub_races(q, pressed, answers, inner, m):
     """
     s, n = m.s, len(inner.nx)
     at, kick, squeezed = meet_journal(q, m)
+    bent = 0.0, 0.0
+    if m.d.bending.waves > 0:
+        bent = _bend(q, squeezed, m.p.balls.count, m)
     around = Around(moved_before(m), push_on(at, squeezed, pressed, m), bore_line(at, kick, squeezed, m))
     races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
     law = curve(m.d.race_friction)
     friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1], s.lines)
-    return rub_journal(at, squeezed, friction, moved, m), moved
+    return rub_journal(at, squeezed, friction, moved, bent, m), moved
 
 
 @kernel
@@ -163,6 +231,18 @@ def bore_stiffness(m):
     """Stiffness (N/m) of the journal's contact at its indentation of the last evaluation."""
     depth = m.s.ring.indentation
     return m.d.contact.exponent * elastic_force(depth, m.d.contact) / depth if depth > 0.0 else 0.0
+
+
+@kernel
+def square_of(below, m):
+    """Largest squared frequency (rad2/s2) of the ring and its modes on contacts of `below` (N/m) together.
+
+    Of one that bends: an upper bound, some per cent above. Its modes alone are no faster than micro-steps
+    resolve.
+    """
+    b = m.d.bending
+    rigid = below / m.p.ring.mass
+    return rigid + (below * b.answer + b.fastest * b.fastest) if below > 0.0 else rigid
 
 
 @kernel
@@ -265,6 +345,14 @@ def report(q, m, race_radius):
 
 
 @kernel
+def append_bending(m):
+    """Put the modes of the ring behind the m.n components in use, with their error weights."""
+    bending.settle(m.d.bending, m.p, m.n, m.p.micro_step)
+    length, speed = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
+    m.n = bending.set_weights(m.d.bending, m.weight, length, speed)
+
+
+@kernel
 def set_weights(weight):
     """Set the error weights of the ring's components in `weight` (n,); the heat lost is a quadrature."""
     weight[RX] = weight[RY] = 1.0 / seat.POSITION_SCALE
@@ -275,7 +363,8 @@ def set_weights(weight):
 BALLS = NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
 MAX_LEFTOVER_BALLS = 2  # balls left over that are quicker alone than with company
-MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
+# with a cage, a ring that bends, and room to run past the last ball
+MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + bending.MAX_STATES + LANES
 
 
 @kernel
