@@ -61,7 +61,6 @@ from .rolling.ball_set import (
     touch_angle,
 )
 from .rolling.balls import largest, watch_balls
-from .rolling.bending import Bending
 from .rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -71,7 +70,16 @@ from .rolling.declarations import (
     state_constants,
 )
 from .rolling.friction import FrictionLines, RubbedRace
-from .rolling.micro_step import MICRO_STEP, RESOLUTION, KickMemory, book, leapfrog, refined, step_in_hit
+from .rolling.micro_step import (
+    MICRO_STEP,
+    RESOLUTION,
+    KickMemory,
+    book,
+    fastest_bending,
+    leapfrog,
+    refined,
+    step_in_hit,
+)
 from .rolling.pitch_circle import RollingResistance
 from .rolling.ring import BALLS, part
 from .rolling.row import (
@@ -125,7 +133,7 @@ class Parameters(RollingParameters):
     )
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeBallSet = group(FreeBallSet)
-    ring: ring.FlexibleRing = group(ring.FlexibleRing, mass=0.0095, inertia=1.08e-6)
+    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     as_printed: int = choice(
         0, SWITCH, "(2.10) with its last friction term as printed, which breaks momentum"
     )
@@ -148,7 +156,6 @@ class Speeds(ring.RaceSpeeds):
 class Outputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
-    ring: ring.FlexibleRingReport = group(ring.FlexibleRingReport)
     neighbours: BallContacts = group(BallContacts)
     speed: Speeds = group(Speeds)
 
@@ -157,7 +164,6 @@ class Outputs(RollingOutputs):
 class Derived(RollingDerived):
     """What parameters fix."""
 
-    bending: Bending = group(Bending)
     race: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
     ball_contact: ContactLaw = group(ContactLaw)
@@ -191,9 +197,7 @@ class Hidden(RollingMemory, KickMemory):
 MEMORY = seat.bearing_memory(Parameters, Outputs, MAX_STATES, derived=Derived, hidden=Hidden)
 SCRATCH = dopri.scratch_layout(MAX_STATES + seat.MODES_SIZE)
 STATIC, STATIC_OF_BALLS = Parameters().race_friction.static, Parameters().ball_friction.static
-_SHARED = declarations.problems("race_friction", "ball_friction")
-SHARED = len(_SHARED)
-CONSTANTS, PROBLEMS = constants(MEMORY, (*_SHARED, *bending.PROBLEMS))
+CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction", "ball_friction"))
 
 
 @kernel
@@ -259,11 +263,7 @@ def _problem(p, told):
     """Number of what is wrong between the parameters p, or 0."""
     found = declarations.problem(p, p.balls.crowded, told)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
-    found = declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
-    if found == 0:
-        found = bending.problem(p, told)
-        found = SHARED + found if found != 0 else 0
-    return found
+    return declarations.law_problem(found, p.ball_friction, STATIC_OF_BALLS, declarations.OWN + 2, told)
 
 
 @kernel
@@ -329,7 +329,7 @@ def settle(words):
     _settle_laws(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
-    ring.append_bending(m)
+    ring.append_bending(fastest_bending(m.p.micro_step), m)
     return missing(words, CONSTANTS)
 
 

@@ -42,7 +42,6 @@ SHOULDER_HEIGHT = 0.2  # above the groove's bottom, over ball diameter
 SHEAR_FACTOR = 5.0 / 6.0
 INTERVALS = 64  # of Simpson's rule, in each part of the section
 ITERATIONS = 100  # of the inverse iteration for a frequency
-RESOLVED = 0.8  # rad in a micro-step, of the fastest mode
 
 
 class Section(NamedTuple):
@@ -253,10 +252,10 @@ def problem(p, told):
 
 
 @kernel
-def settle(bending, p, at, micro_step):
+def settle(bending, p, at, limit):
     """Set the modes in `bending` (Bending) by the parameters p; `at`: their first place in the state.
 
-    micro_step: longest step (s), whose frequencies are the highest; 0: no limit.
+    limit: the highest frequency (rad/s), to which those above are lowered.
     """
     top = harmonics_of(p)
     bending.at, bending.waves, bending.answer, bending.fastest = at, 2 * max(top - 1, 0), 0.0, 0.0
@@ -265,7 +264,6 @@ def settle(bending, p, at, micro_step):
         return
     section = section_of(groove_of(p))
     density = p.ring.mass / (2.0 * math.pi * section.m0)
-    limit = RESOLVED / micro_step if micro_step > 0.0 else math.inf
     for n in range(2, top + 1):
         w = min(frequency(section, n, p.ring.modulus, p.ring.poisson, density), limit)
         bending.frequency[n - 2] = w
@@ -339,37 +337,30 @@ def bend(q, before, kick, n, bending, memory):
             s.ahead[b] += ax * c + ay * d
 
 
-@inlined
-def accelerate(q, h, loads, n, bore, bending, memory):
-    """Set in `memory` (BendingMemory) what `n` balls and the journal do to the modes over a kick of h (s).
-
-    loads: (n,) N of balls on the race, outwards to inwards; bore: (N, nx, ny) of the journal, outwards.
-    Returns the heat of the modes' own damping (W).
-    """
-    s, loss = memory, 0.0
-    c, d = bore[1], bore[2]
-    for b in range(n):
-        s.cosine[b], s.sine[b], s.gained[b] = s.nx[b], s.ny[b], 0.0
+@kernel
+def press(force, nx, ny, bending, memory):
+    """Add a `force` (N) on the ring, outwards at a direction (nx, ny), to what accelerates its modes."""
+    c, s = nx, ny
     for k in range(bending.waves // 2):
-        c, d = c * bore[1] - d * bore[2], d * bore[1] + c * bore[2]
-        fx, fy = bore[0] * c, bore[0] * d
-        for b in range(n):
-            x = s.cosine[b] * s.nx[b] - s.sine[b] * s.ny[b]
-            y = s.sine[b] * s.nx[b] + s.cosine[b] * s.ny[b]
-            s.cosine[b], s.sine[b] = x, y
-            fx -= loads[b] * x
-            fy -= loads[b] * y
-        i, j, w, rate = 2 * k, bending.at + 2 * k, bending.weight[k], bending.frequency[k]
-        held = bending.damping_ratio * rate
-        scale = 1.0 / (1.0 + held * h)
-        for half in range(2):
-            force = w * (fx if half == 0 else fy) - rate * rate * q[j + half]
-            speed = q[j + half + bending.waves]
-            s.acceleration[i + half] = (force - 2.0 * held * speed) * scale
-            loss += 2.0 * held * (speed + 0.5 * h * s.acceleration[i + half]) ** 2.0
-        ax, ay = w * h * s.acceleration[i], w * h * s.acceleration[i + 1]
-        for b in range(n):
-            s.gained[b] += ax * s.cosine[b] + ay * s.sine[b]
+        c, s = c * nx - s * ny, s * nx + c * ny
+        memory.acceleration[2 * k] += force * c
+        memory.acceleration[2 * k + 1] += force * s
+
+
+@kernel
+def accelerate(q, h, bending, memory):
+    """Turn what presses the modes in `memory` (BendingMemory) to their accelerations over a kick of h (s).
+
+    Returns the heat of their own damping (W).
+    """
+    loss, waves = 0.0, bending.waves
+    for i in range(waves):
+        rate, at = bending.frequency[i // 2], bending.at + i
+        held, speed = bending.damping_ratio * rate, q[at + waves]
+        force = bending.weight[i // 2] * memory.acceleration[i] - rate * rate * q[at]
+        gained = (force - 2.0 * held * speed) / (1.0 + held * h)
+        memory.acceleration[i] = gained
+        loss += 2.0 * held * (speed + 0.5 * h * gained) ** 2.0
     return loss
 
 

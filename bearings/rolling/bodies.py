@@ -30,11 +30,9 @@ from .ball_set import (
     set_race_law,
 )
 from .balls import largest, place_balls, watch_balls
-from .bending import Bending
 from .declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from .friction import FrictionLines
 from .micro_step import MICRO_STEP, RESOLUTION, KickMemory, refined, step_in_hit
-from .ring import FlexibleRing, FlexibleRingReport
 from .sides import SideContacts, highest, stored
 
 
@@ -42,7 +40,6 @@ from .sides import SideContacts, highest, stored
 class BallBodiesParameters(RollingParameters):
     """What both detailed models share."""
 
-    ring: FlexibleRing = group(FlexibleRing)
     micro_step: float = real(
         MICRO_STEP,
         "s",
@@ -87,7 +84,6 @@ class Ball:
 class BallBodiesOutputs(RollingOutputs):
     """What both detailed models report."""
 
-    ring: FlexibleRingReport = group(FlexibleRingReport)
     inner: BallContacts = group(BallContacts)
     outer: BallContacts = group(BallContacts)
     hardest: HardestHit = group(HardestHit)
@@ -98,7 +94,6 @@ class BallBodiesOutputs(RollingOutputs):
 class BallBodiesDerived(RollingDerived):
     """What parameters fix."""
 
-    bending: Bending = group(Bending)
     inner: ContactLaw = group(ContactLaw)
     outer: ContactLaw = group(ContactLaw)
     race_friction: FrictionLaw = group(FrictionLaw)
@@ -145,13 +140,12 @@ class BallBodiesMemory(RollingMemory, KickMemory):
 
 STATIC = BallBodiesParameters().race_friction.static
 RACES = declarations.OWN + 4  # problems ahead of those of the races' profiles
-RING = RACES + 6  # and of those of a ring that bends
 
 
 def problems(side: str) -> tuple[str, ...]:
     """What is found wrong by `problem`; side: name of the friction law at the balls' sides."""
     profiles = (*profile.problems("inner_profile"), *profile.problems("outer_profile"))
-    return (*declarations.problems("race_friction", side), *profiles, *bending.PROBLEMS)
+    return (*declarations.problems("race_friction", side), *profiles)
 
 
 @kernel
@@ -173,9 +167,6 @@ def problem(p, crowded, side, usual, told):
         outer = outer_radius(b) + 0.5 * b.play
         found = profile.problem(p.outer_profile, outer, 0.5 * b.diameter, 1.0, told)
         found = RACES + 3 + found if found != 0 else 0
-    if found == 0:
-        found = bending.problem(p, told)
-        found = RING + found if found != 0 else 0
     return found
 
 

@@ -110,9 +110,6 @@ class Meeting(NamedTuple):
     outer: float  # of the outer race over the ball, m/s
 
 
-ROUND = (0.0, 0.0)  # m, m/s; of a race that does not bend
-
-
 @inlined
 def meet(gap, c, s, orbit, spin, way, bulge):
     """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s).
@@ -164,13 +161,17 @@ def squeeze_ball(at, elastic, across, orbit, way, along, others):
 
 
 @kernel
-def between_races(gap, c, s, orbit, spin, rm, m):
-    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
+def between_races(gap, c, s, orbit, spin, rm, bent, m):
+    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m).
+
+    bent: `Shape` of the inner race there.
+    """
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
-    at = meet(gap, c, s, orbit, spin, way, ROUND)
-    ball = squeeze_ball(at, elastic_at(at, way), across_of(gap, c, s), orbit, way, 0.0, 0.0)
+    at = meet(gap, c, s, orbit, spin, way, (bent.opening, bent.rate))
+    across = across_of(gap, c, s) + bent.slope
+    ball = squeeze_ball(at, elastic_at(at, way), across, orbit, way, 0.0, 0.0)
     inner = coefficient(at.inner, d.race_friction) * ball.force
     outer = coefficient(at.outer, d.race_friction) * ball.outer
     heat = (

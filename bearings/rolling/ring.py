@@ -19,7 +19,7 @@ from ...modelkit.ports import Motion
 from ...modelkit.variables import integer, real
 from .. import seat
 from ..contact.friction import curve
-from ..contact.journal import note, place_in_bore, time_to_touch, touch, touch_of, watch_contact
+from ..contact.journal import note, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
 from ..contact.laws import elastic_energy, elastic_force
 from ..contact.pair import INSIDE, Place, friction_line, heat, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled
@@ -37,16 +37,10 @@ SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
 @dataclass(frozen=True)
 class Ring:
-    """Inner ring. Defaults: 6004 (filled in; the source does not give them)."""
+    """Inner ring, which may bend (`bending`). Defaults: 6004 (filled in; the source does not give them)."""
 
     mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
     inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
-
-
-@dataclass(frozen=True)
-class FlexibleRing(Ring):
-    """Inner ring that may bend (`bending`)."""
-
     harmonics: int = integer(
         0,
         "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: as many as 0.4 times "
@@ -74,12 +68,6 @@ class RingReport:
     sync_time: float = real(
         -1.0, "s", "time when the bore first reached 99 % of the journal's speed; -1: not yet", local=True
     )
-
-
-@dataclass(frozen=True)
-class FlexibleRingReport(RingReport):
-    """Motion of an inner ring that may bend."""
-
     ovality: float = real(
         0.0,
         "m",
@@ -102,11 +90,36 @@ def ring_motion(q):
     return Motion(q[RX], q[RY], q[RVX], q[RVY], q[RW])
 
 
+@inlined
+def _bent_bore(at, body, before, bent):
+    """A `Place` of the journal in a bore that is `bent` (Shape), and the bore's `Motion` and acceleration.
+
+    at: in the round bore; body, before: motion of the ring, and its acceleration in the kick before, whose
+    length is taken as 1 s in `bent`.
+    """
+    distance = at.second - at.first
+    turned = bent.slope / distance if distance > 0.0 else 0.0
+    nx, ny = at.nx + turned * at.ny, at.ny - turned * at.nx
+    by = 1.0 / (1.0 + turned * turned)
+    vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, bent.ahead * by * nx, bent.ahead * by * ny
+    moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
+    faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
+    return Place(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
+
+
 @kernel
 def journal_on_ring(q, m):
-    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`."""
-    p, journal = m.p, seat.journal_motion(q)
-    t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction)
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`.
+
+    It presses the modes of a ring that bends, in m.s.shape.
+    """
+    journal, body = seat.journal_motion(q), ring_motion(q)
+    round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.p.clearance)
+    if m.d.bending.waves > 0:
+        bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
+        at, body, _ = _bent_bore(at, body, body, bent)
+    t = touch_at(at, journal, body, m.d.contact, m.d.friction)
+    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, m.s.shape)
     note(m.s.ring, t)
     return t
 
@@ -116,23 +129,6 @@ def moved_before(m):
     """`Moved` (m/s, rad/s): what a kick as long as this one does to the ring at its last acceleration."""
     h, a = m.s.kick, m.s.before
     return Moved(h * a[RVX], h * a[RVY], h * a[RW])
-
-
-@inlined
-def _bent_bore(q, at, body, before, m):
-    """A `Place` of the journal in a bore that bends, and the bore's `Motion` and acceleration there.
-
-    at: in the rigid bore; body, before: motion of the ring, and its acceleration in the kick before.
-    """
-    bent = bending.shape_at(q, m.s.before, 1.0, at.nx, at.ny, m.d.bending)
-    distance = at.second - at.first
-    turned = bent.slope / distance if distance > 0.0 else 0.0
-    nx, ny = at.nx + turned * at.ny, at.ny - turned * at.nx
-    by = 1.0 / (1.0 + turned * turned)
-    vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, bent.ahead * by * nx, bent.ahead * by * ny
-    moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
-    faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
-    return Place(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
 
 
 @inlined
@@ -146,7 +142,8 @@ def meet_journal(q, m):
     along = 1.0 / p.ring.mass
     across = along + at.second * at.second / p.ring.inertia
     if m.d.bending.waves > 0:
-        at, body, before = _bent_bore(q, at, body, before, m)
+        bent = bending.shape_at(q, s.before, 1.0, at.nx, at.ny, m.d.bending)
+        at, body, before = _bent_bore(at, body, before, bent)
         along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
     kick = kick_of(Beat(s.kick, s.drift), (across, along), kept, before, at, INSIDE, last)
@@ -159,11 +156,18 @@ def _bend(q, squeezed, n, m):
 
     The journal is `squeezed`, and `n` balls press the race with m.s.inner.normal.
     """
-    shape = m.s.inner.shape
+    h, d, shape, normal = m.s.kick, m.d.bending, m.s.inner.shape, m.s.inner.normal
     at = place_in_bore(seat.journal_motion(q), ring_motion(q), m.p.journal_radius, m.p.clearance)
-    bore = squeezed.normal, at.nx, at.ny
-    loss = bending.accelerate(q, m.s.kick, m.s.inner.normal, n, bore, m.d.bending, shape)
-    return bending.gained_at(m.s.kick, at.nx, at.ny, m.d.bending, shape), loss
+    shape.acceleration[:] = 0.0
+    bending.press(squeezed.normal, at.nx, at.ny, d, shape)
+    for b in range(n):
+        if normal[b] > 0.0:
+            bending.press(-normal[b], shape.nx[b], shape.ny[b], d, shape)
+    loss = bending.accelerate(q, h, d, shape)
+    for b in range(n):
+        pressed = normal[b] > 0.0
+        shape.gained[b] = bending.gained_at(h, shape.nx[b], shape.ny[b], d, shape) if pressed else 0.0
+    return bending.gained_at(h, at.nx, at.ny, d, shape), loss
 
 
 @inlined
@@ -345,9 +349,12 @@ def report(q, m, race_radius):
 
 
 @kernel
-def append_bending(m):
-    """Put the modes of the ring behind the m.n components in use, with their error weights."""
-    bending.settle(m.d.bending, m.p, m.n, m.p.micro_step)
+def append_bending(limit, m):
+    """Put the modes of the ring behind the m.n components in use, with their error weights.
+
+    limit: as for `bending.settle` (rad/s).
+    """
+    bending.settle(m.d.bending, m.p, m.n, limit)
     length, speed = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
     m.n = bending.set_weights(m.d.bending, m.weight, length, speed)
 
