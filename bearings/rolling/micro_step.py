@@ -22,7 +22,7 @@ from .ring import MAX_STATES
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
 MICRO_STEP = 2.5e-6  # s, the default
 RESOLUTION = 0.8  # rad of the fastest contact, at most a step, at the default
-BENDING_RESOLUTION = 0.4  # of the fastest mode of a ring: contacts on it are faster, and bound the step
+BENDING_RESOLUTION = 0.5  # of the fastest mode of a ring: contacts on it are faster, and bound the step
 HIT_RESOLUTION = 0.2  # of the duration of a hit, at most a step, at the default
 
 
