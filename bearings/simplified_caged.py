@@ -30,9 +30,10 @@ from .contact import friction
 from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, elastic_force
 from .contact.peaks import Largest
-from .rolling import declarations, ring
+from .rolling import bending, declarations, ring
 from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, ball_inertia, ball_mass, set_race_law, start_angle
 from .rolling.balls import Total, watch_balls
+from .rolling.bending import BendingMemory
 from .rolling.declarations import (
     RollingDerived,
     RollingMemory,
@@ -125,38 +126,46 @@ class Hidden(RollingMemory):
     """Memory between evaluations and steps."""
 
     balls: LoadedBalls = group(LoadedBalls)
+    shape: BendingMemory = group(BendingMemory)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, ring.NEXT + 3, derived=Derived, hidden=Hidden)
+# rad/s, to which frequencies of the ring's modes are lowered, with the compliance kept: the load of balls
+# is nearly a static matter, and the fastest of them would bound the adaptive steps
+FASTEST_BENDING = 1.2e5
+STATES = ring.NEXT + 3 + bending.MAX_STATES
+MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
 STATIC = Parameters().race_friction.static
 CONSTANTS, PROBLEMS = constants(MEMORY, declarations.problems("race_friction"))
 
 
 @kernel
-def _springs(gap, cage_angle, m):
+def _springs(q, gap, cage_angle, m):
     """Balls that follow the ring without slip: `Total` on it (N, W), its moment (N m) that on the cage.
 
-    cage_angle: rad.
+    q: the state; cage_angle: rad.
     """
     law, play, count = m.d.race, m.p.balls.play, m.p.balls.count
     fx, fy, moment, heat = 0.0, 0.0, 0.0, 0.0
-    if play >= 0.0 and gap.ex * gap.ex + gap.ey * gap.ey <= play * play:
+    flexible = m.d.bending.waves > 0
+    if not flexible and play >= 0.0 and gap.ex * gap.ex + gap.ey * gap.ey <= play * play:
         return Total(fx, fy, moment, heat)
     ca, sa = math.cos(cage_angle), math.sin(cage_angle)
     for b in range(count):
         c0, s0 = m.d.cosine[b], m.d.sine[b]
         nx, ny = ca * c0 - sa * s0, sa * c0 + ca * s0
-        indentation = gap.ex * nx + gap.ey * ny - play
+        bent = bending.shape_at(q, q, 0.0, nx, ny, m.d.bending)
+        indentation = gap.ex * nx + gap.ey * ny - play + bent.opening
         if indentation <= 0.0:
             continue
-        rate = gap.ux * nx + gap.uy * ny
+        rate = gap.ux * nx + gap.uy * ny + bent.rate
         elastic = elastic_force(indentation, law)
         force = max(elastic + law.damping * indentation * rate, 0.0)
         fx -= force * nx
         fy -= force * ny
         # the ball moves along t = (-ny, nx) into the narrowing gap, which the source leaves out
-        moment -= elastic * (gap.ey * nx - gap.ex * ny)
+        moment -= elastic * (gap.ey * nx - gap.ex * ny + bent.slope)
         heat += (force - elastic) * rate
+        bending.press(-force, nx, ny, m.d.bending, m.s.shape)
         note(m.s.balls, b, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
     return Total(fx, fy, moment, heat)
 
@@ -165,7 +174,7 @@ def _springs(gap, cage_angle, m):
 def _rolling(q, gap, m):
     """Ring, cage and balls turn as one (4.2): `Total` (N, N m, W) on the ring in the state q."""
     p, d = m.p, m.d
-    springs = _springs(gap, d.cage_ratio * q[ring.RANGLE], m)
+    springs = _springs(q, gap, d.cage_ratio * q[ring.RANGLE], m)
     load = math.sqrt(springs.fx * springs.fx + springs.fy * springs.fy)
     moment = p.rolling.f1 * (load / (p.balls.rows * p.rolling.static_rating)) ** ROLLING_EXPONENT * load
     moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
@@ -197,8 +206,10 @@ def _slipping(q, dq, gap, m):
     for b in range(count):
         c0, s0 = d.cosine[b], d.sine[b]
         c, s = ca * c0 - sa * s0, sa * c0 + ca * s0
-        ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, m)
+        bent = bending.shape_at(q, q, 0.0, c, s, d.bending)
+        ball = between_races(gap, c, s, orbit, spin, d.pitch_radius, bent, m)
         if ball.indentation > 0.0:
+            bending.press(-ball.force, c, s, d.bending, m.s.shape)
             note(m.s.balls, b, ball)
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
@@ -217,13 +228,16 @@ def react(t, q, dq, m):
     """Derivative dq of what is inside, in q, and the `Load` (N, N m) on journal and housing."""
     p, inertia = m.p, m.d.ring_inertia
     clear(m.s.balls)
+    m.s.shape.acceleration[:] = 0.0
     j = ring.journal_on_ring(q, m)
     gap = ring.gap(q)
     balls = _slipping(q, dq, gap, m) if p.slip == 1 else _rolling(q, gap, m)
     fx, fy = balls.fx - p.damping * gap.ux, balls.fy - p.damping * gap.uy
     ring.translate(q, dq, m, j, fx, fy)
+    bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
+    bending.hand_over(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
-    dq[ring.LOSS] = j.loss + balls.loss + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
+    dq[ring.LOSS] = j.loss + balls.loss + bent + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
     return Load(j.fx, j.fy, j.journal_moment, -fx, -fy)
 
 
@@ -250,13 +264,14 @@ def report(q, m):
     o.balls.loaded = int(s.loaded)
     o.balls.force, o.balls.indentation = s.force / p.balls.rows, s.indentation
     cage, spin = d.cage_ratio * q[ring.RW], d.ball_ratio * q[ring.RW]
-    inside = 0.0
+    inside, elastic = bending.energy(q, d.bending)
+    o.ring.ovality = bending.ovality(q, d.bending)
     if p.slip == 1:
         cage, spin = q[CAGE_SPEED], q[BALL_SPIN]
-        inside = 0.5 * d.orbiting * cage**2 + 0.5 * d.spinning * spin**2
+        inside += 0.5 * d.orbiting * cage**2 + 0.5 * d.spinning * spin**2
     o.speed.cage = cage * d.pitch_radius
     o.speed.ball = abs(spin) * d.ball_radius
-    ring.report_energy(q, m, inside, s.energy, d.ring_inertia)
+    ring.report_energy(q, m, inside, s.energy + elastic, d.ring_inertia)
 
 
 @kernel
@@ -308,6 +323,7 @@ def settle(words):
     d.size.coordinates, d.size.rings = 5 + 2 * p.slip, p.balls.count
     _settle_turning(m)
     _set_weights(m)
+    ring.append_bending(FASTEST_BENDING, m)
     return missing(words, CONSTANTS)
 
 

@@ -47,7 +47,7 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, broadcast_law, damp
 from .contact.line import BoreContact
 from .contact.peaks import PeakMemory, watch_peaks
-from .rolling import declarations, ring
+from .rolling import bending, declarations, ring
 from .rolling.ball_set import (
     MAX_BALLS,
     BallContacts,
@@ -70,7 +70,16 @@ from .rolling.declarations import (
     state_constants,
 )
 from .rolling.friction import FrictionLines, RubbedRace
-from .rolling.micro_step import MICRO_STEP, RESOLUTION, KickMemory, book, leapfrog, refined, step_in_hit
+from .rolling.micro_step import (
+    MICRO_STEP,
+    RESOLUTION,
+    KickMemory,
+    book,
+    fastest_bending,
+    leapfrog,
+    refined,
+    step_in_hit,
+)
 from .rolling.pitch_circle import RollingResistance
 from .rolling.ring import BALLS, part
 from .rolling.row import (
@@ -231,7 +240,9 @@ def report(q, m):
     o.neighbours.force, o.neighbours.indentation = now.force, now.indentation
     moving = d.mass * d.pitch_radius**2
     angular, turning = part(q, ORBIT, m), part(q, SPIN, m)
-    kinetic, height, pressed, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0.0, 0
+    kinetic, pressed = bending.energy(q, d.bending)
+    o.ring.ovality = bending.ovality(q, d.bending)
+    height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
         kinetic += 0.5 * moving * angular[b] ** 2 + 0.5 * d.inertia * turning[b] ** 2
         height += d.pitch_radius * s.sine[b]
@@ -318,6 +329,7 @@ def settle(words):
     _settle_laws(m)
     d.size.coordinates, d.size.ball_ball, d.size.rings = 5 + 2 * count, count, count
     _set_weights(m)
+    ring.append_bending(fastest_bending(m.p.micro_step), m)
     return missing(words, CONSTANTS)
 
 

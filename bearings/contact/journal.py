@@ -156,7 +156,12 @@ def touch(journal, ring, journal_radius, clearance, law, friction):
     journal, ring: Motion (m, m/s, rad/s); law, friction: records. Returns a `Touch` (N, N m, m, W); the
     force on the ring is the opposite one.
     """
-    place = place_in_bore(journal, ring, journal_radius, clearance)
+    return touch_at(place_in_bore(journal, ring, journal_radius, clearance), journal, ring, law, friction)
+
+
+@kernel
+def touch_at(place, journal, ring, law, friction):
+    """`touch` at a `Place` in the bore, which moves there as `ring` (Motion) does."""
     if place.indentation <= 0.0:
         _, rate = slip(journal, ring, place, INSIDE)
         return Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)

@@ -33,7 +33,7 @@ from ..contact.laws import elastic_energy, hertz
 from ..contact.pair import INSIDE, OUTSIDE, Place, damped_normal, slip
 from ..contact.passivity import Beat, middle_of, passive, settled
 from ..contact.profile import Disc, Outline, active, race_place
-from . import ring
+from . import bending, ring
 from .ball_set import MAX_BALLS, inner_radius
 from .balls import Total
 from .friction import Answers, Inner, RubbedRace
@@ -88,10 +88,11 @@ def drift(trial, q, mid, h, m):
     n = m.p.balls.count
     ring.drift_balls(trial, q, mid, h, BALLS + X * n, BALLS + VX * n, 2 * n)  # and y, which follows
     ring.drift_balls(trial, q, mid, h, BALLS + ANGLE * n, BALLS + SPIN * n, n)
-    for i in range(BALLS + SIZE * n, m.s.seat.inside, SIZE):  # the cage
+    for i in range(BALLS + SIZE * n, m.d.bending.at, SIZE):  # the cage
         trial[i + X] = q[i + X] + h * mid[i + VX]
         trial[i + Y] = q[i + Y] + h * mid[i + VY]
         trial[i + ANGLE] = q[i + ANGLE] + h * mid[i + SPIN]
+    bending.drift(trial, q, mid, h, m.d.bending)
 
 
 @inlined
@@ -105,7 +106,7 @@ def fastest(m):
         side = max(side, s.side.stiffness[b])
         sides += s.side.stiffness[b]
     below += ring.bore_stiffness(m)
-    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, below / m.p.ring.mass
+    of_ball, of_ring = (stiffest + 2.0 * side) / d.mass, ring.square_of(below, m)
     return max(math.sqrt(max(of_ball, of_ring, sides * d.cage_answer)), m.s.seat.fastest)
 
 
@@ -210,7 +211,10 @@ class Before(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before."""
+    """What presses a race and all balls, an array each; on entry, `normal` is that of the kick before.
+
+    The race's own rate, outwards, and its change in the kick before are zero where it is rigid.
+    """
 
     normal: object  # N
     stiffness: object  # N/m, at this load
@@ -218,6 +222,8 @@ class Forces(NamedTuple):
     sliding: object  # m/s, before the kick
     rate: object  # m/s, of the indentation, before the kick
     stored: object  # J, in their accounts
+    race_rate: object  # m/s
+    race_ahead: object  # m/s
 
 
 @kernel
@@ -231,7 +237,9 @@ def places_of(contacts, n):
 def forces_of(contacts, n):
     """`Forces` (n,) as views of `contacts` (Contacts)."""
     c = contacts
-    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], c.sliding[:n], c.rate[:n], c.stored[:n])
+    moving = c.shape.rate[:n], c.shape.ahead[:n]
+    speeds = c.sliding[:n], c.rate[:n], c.stored[:n]
+    return Forces(c.normal[:n], c.stiffness[:n], c.damped[:n], *speeds, *moving)
 
 
 @kernel
@@ -248,6 +256,9 @@ def find_on_curve(balls, ring, angle, race, profile, starts, search, contacts):
         c.second[b], c.across[b] = at.second, at.across
 
 
+RIGID = (0.0, 0.0)  # m/s, a race's own rate, and its change in the kick before
+
+
 class Squeezed(NamedTuple):
     """A ball pressed against a race, before friction."""
 
@@ -259,17 +270,19 @@ class Squeezed(NamedTuple):
 
 
 @inlined
-def _squeeze(b, balls, ring, place, race, before, last, stored):
+def _squeeze(b, balls, ring, place, race, before, last, stored, moving):
     """Ball `b` at its `Place` on a race, `Squeezed`.
 
-    last: its normal force (N) in the kick before; stored: energy in its account (J).
+    last: its normal force (N) in the kick before; stored: energy in its account (J); moving: the race's own
+    rate outwards, and its change in the kick before (m/s).
     """
     ball = Motion(balls.x[b], balls.y[b], balls.vx[b], balls.vy[b], balls.spin[b])
     sliding, rate = slip(ball, ring, place, race.side)
+    rate -= race.side * moving[0]
     elastic, damping, stiffness = hertz(place.indentation, race.stiffness, race.damping)
     faster_x = before.beat.kick * before.ax[b] - before.race_x
     faster_y = before.beat.kick * before.ay[b] - before.race_y
-    others = race.side * (faster_x * place.nx + faster_y * place.ny) + before.answer * last
+    others = race.side * (faster_x * place.nx + faster_y * place.ny - moving[1]) + before.answer * last
     elastic = passive(elastic, 0.4 * place.indentation, stored, rate, others, before.answer, before.beat)
     normal = damped_normal(elastic, damping, rate, before.answer, others)
     return Squeezed(normal, stiffness, normal - elastic, sliding, rate)
@@ -288,11 +301,42 @@ def press_circle(balls, ring, race, before, places, forces):
         inverse = 1.0 / distance
         second = distance + reach
         place = Place(dx * inverse, dy * inverse, race.side * (second - race.radius), reach, second, 0.0)
-        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b], forces.stored[b])
+        last = forces.normal[b], forces.stored[b]
+        pressed = _squeeze(b, balls, ring, place, race, before, last[0], last[1], RIGID)
         places.nx[b], places.ny[b] = place.nx, place.ny
         places.indentation[b], places.second[b], places.across[b] = place.indentation, second, 0.0
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
+
+
+@inlined
+def find_on_circle(balls, ring, race, places):
+    """Set `places` (n,) (m) of all `balls` on a circular race around `ring` (Motion)."""
+    reach = race.side * balls.radius
+    for b in range(len(places.nx)):
+        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
+        distance = math.sqrt(dx * dx + dy * dy)
+        inverse, second = 1.0 / distance, distance + reach
+        places.nx[b], places.ny[b] = dx * inverse, dy * inverse
+        places.indentation[b] = race.side * (second - race.radius)
+        places.second[b], places.across[b] = second, 0.0
+
+
+@inlined
+def bend_race(q, balls, ring, race, places, shape, m):
+    """Have the `places` (n,) (m) of all `balls` be those on a race that bends; shape: `BendingMemory`."""
+    n, s = len(places.nx), shape
+    for b in range(n):
+        dx, dy = balls.x[b] - ring.x, balls.y[b] - ring.y
+        inverse = 1.0 / math.sqrt(dx * dx + dy * dy)
+        s.nx[b], s.ny[b] = dx * inverse, dy * inverse
+    bending.bend(q, m.s.before, m.s.kick, n, m.d.bending, s)
+    reach = race.side * balls.radius
+    for b in range(n):
+        turned = s.slope[b] / (places.second[b] - reach)
+        nx, ny = places.nx[b], places.ny[b]
+        places.nx[b], places.ny[b] = nx + turned * ny, ny - turned * nx
+        places.indentation[b] -= race.side * s.opening[b]
 
 
 @inlined
@@ -304,7 +348,8 @@ def press_curve(balls, ring, race, before, places, forces):
     reach, p = race.side * balls.radius, places
     for b in range(len(p.nx)):
         place = Place(p.nx[b], p.ny[b], p.indentation[b], reach, p.second[b], p.across[b])
-        pressed = _squeeze(b, balls, ring, place, race, before, forces.normal[b], forces.stored[b])
+        last, moving = (forces.normal[b], forces.stored[b]), (forces.race_rate[b], forces.race_ahead[b])
+        pressed = _squeeze(b, balls, ring, place, race, before, last[0], last[1], moving)
         forces.normal[b], forces.stiffness[b] = pressed.normal, pressed.stiffness
         forces.damped[b], forces.sliding[b], forces.rate[b] = pressed.damped, pressed.sliding, pressed.rate
 
@@ -365,18 +410,25 @@ def press_races(q, m):
     at_outer = Race(INSIDE, d.outer_radius, d.outer.stiffness, d.outer.damping)
     at_inner = Race(OUTSIDE, d.inner_radius, d.inner.stiffness, d.inner.damping)
     angle = q[ring.RANGLE]
-    _one_race(balls, housing, 0.0, at_outer, over_outer, p.outer_profile, s.outer_starts, s.outer, m)
-    _one_race(balls, inner_ring, angle, at_inner, over_inner, p.inner_profile, s.inner_starts, s.inner, m)
+    outer, inner = (housing, 0.0, over_outer), (inner_ring, angle, over_inner)
+    _one_race(q, balls, outer, at_outer, p.outer_profile, s.outer_starts, s.outer, m)
+    _one_race(q, balls, inner, at_inner, p.inner_profile, s.inner_starts, s.inner, m)
     _accelerate(m)
 
 
 @inlined
-def _one_race(balls, body, angle, race, before, profile, starts, contacts, m):
-    """All balls press the race of `body` (Motion), turned by `angle` (rad)."""
-    n = rounded(m.p.balls.count)
+def _one_race(q, balls, moving, race, profile, starts, contacts, m):
+    """All balls press a race; moving: `Motion` and angle (rad) of its body, and what was `Before`."""
+    n, (body, angle, before) = rounded(m.p.balls.count), moving
     places, forces = places_of(contacts, n), forces_of(contacts, n)
+    bends = m.d.bending.waves > 0 and race.side == OUTSIDE
     if m.d.searched == 1:
         find_on_curve(balls, body, angle, race, profile, starts, m.s.search, contacts)
+    elif bends:
+        find_on_circle(balls, body, race, places)
+    if bends:
+        bend_race(q, balls, body, race, places, contacts.shape, m)
+    if bends or m.d.searched == 1:
         press_curve(balls, body, race, before, places, forces)
     else:
         press_circle(balls, body, race, before, places, forces)
@@ -444,7 +496,7 @@ def _rub(moved, m):
         dx, dy = h * ax, h * ay
         into_outer = dx * outer.nx[b] + dy * outer.ny[b]
         into_inner = (moved.x - dx) * inner.nx[b] + (moved.y - dy) * inner.ny[b]
-        into_inner -= moved.spin * inner.across[b]
+        into_inner += inner.shape.gained[b] - moved.spin * inner.across[b]
         outer.middle[b] = outer.rate[b] + 0.5 * into_outer
         inner.middle[b] = inner.rate[b] + 0.5 * into_inner
         outer.loss[b] += outer.damped[b] * outer.middle[b]
@@ -461,3 +513,4 @@ def _hand_over(q, dq, m):
     ring.copy(faster.x[:n], part(dq, VX, m))
     ring.copy(faster.y[:n], part(dq, VY, m))
     ring.copy(faster.spin[:n], part(dq, SPIN, m))
+    bending.hand_over(q, dq, m.d.bending, m.s.inner.shape)

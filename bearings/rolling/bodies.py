@@ -18,7 +18,7 @@ from ..contact.friction import FrictionLaw
 from ..contact.laws import ContactLaw
 from ..contact.peaks import Largest, PeakMemory, watch_peaks
 from ..contact.profile import RaceProfile, SearchReport
-from . import declarations
+from . import bending, declarations
 from .ball_bodies import Contacts, ball_motion
 from .ball_set import (
     MAX_BALLS,
@@ -243,7 +243,7 @@ def report(q, m, neighbours):
     """Outputs of the balls at the end of the macro step, from the state q.
 
     `neighbours`: side contacts lie between a ball and the next one, not between a ball and the cage.
-    Returns (kinetic energy, energy of the race contacts and of the balls' weight) in J.
+    Returns (kinetic energy, energy of the race contacts, of the balls' weight and of bending) in J.
     """
     p, d, o, s = m.p, m.d, m.o, m.s
     count = p.balls.count
@@ -251,7 +251,9 @@ def report(q, m, neighbours):
     state_contacts(o.outer, s.outer, m)
     o.balls.force = max(o.inner.force, o.outer.force)
     o.balls.indentation, _ = approach(m)
-    kinetic, height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0.0, 0
+    kinetic, elastic = bending.energy(q, d.bending)
+    o.ring.ovality = bending.ovality(q, d.bending)
+    height, orbit, spin, loaded = 0.0, 0.0, 0.0, 0
     for b in range(count):
         now = ball_motion(q, b, m)
         dx, dy = now.x - q[seat.HX], now.y - q[seat.HY]
@@ -274,7 +276,7 @@ def report(q, m, neighbours):
     potential = (
         p.gravity * d.mass * height + stored(s.inner, d.inner, count) + stored(s.outer, d.outer, count)
     )
-    return kinetic, potential
+    return kinetic, potential + elastic
 
 
 @kernel

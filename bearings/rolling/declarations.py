@@ -14,9 +14,10 @@ from ..contact.friction import FrictionLaw
 from ..contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from ..contact.line import BoreContact
 from ..contact.peaks import PeakMemory
-from . import ball_set, ring
+from . import ball_set, bending, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
 from .balls import Springs, resting_place
+from .bending import Bending
 
 
 @dataclass(frozen=True)
@@ -35,13 +36,14 @@ class RollingParameters:
 
 STATIC = RollingParameters().friction.static
 BALLS = len(ball_set.PROBLEMS)
-OWN = BALLS + len(bore.PROBLEMS)  # problems of balls and journal; those of a model's other laws follow
+RING = BALLS + len(bore.PROBLEMS)
+OWN = RING + len(bending.PROBLEMS)  # problems of balls and journal; those of a model's other laws follow
 
 
 def problems(*frictions: str) -> tuple[str, ...]:
     """What is found wrong by `problem`, and in the friction laws in these groups of the parameters."""
     others = (text for name in frictions for text in friction.problems(name))
-    return (*ball_set.PROBLEMS, *bore.PROBLEMS, *others)
+    return (*ball_set.PROBLEMS, *bore.PROBLEMS, *bending.PROBLEMS, *others)
 
 
 @kernel
@@ -54,6 +56,9 @@ def problem(p, crowded, told):
     if found == 0:
         found = bore.bore_problem(p, STATIC, told)
         found = BALLS + found if found != 0 else 0
+    if found == 0:
+        found = bending.problem(p, told)
+        found = RING + found if found != 0 else 0
     return found
 
 
@@ -86,6 +91,7 @@ class RollingDerived:
 
     contact: BoreContact = group(BoreContact)
     friction: FrictionLaw = group(FrictionLaw)
+    bending: Bending = group(Bending)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
     inner_radius: float = real(0.0, "m", "inner race")

@@ -28,10 +28,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import array
+from ...modelkit.variables import array, group
 from ..contact.friction import Rises, rises
 from ..contact.pair import NO_LINE, line_at, spot
 from .ball_set import MAX_BALLS
+from .bending import BendingMemory
 
 LANES = 8  # contacts that are computed at once, as vectors of 8 or two of 4
 ROOM = 2 * MAX_BALLS  # a multiple of it
@@ -119,6 +120,7 @@ class RubbedRace:
     base: tuple = array(MAX_BALLS)
     held: tuple = array(MAX_BALLS)  # N, friction as the ring keeps its velocity
     gain: tuple = array(MAX_BALLS)  # N s/m, and for each m/s by which its race runs ahead
+    shape: BendingMemory = group(BendingMemory)  # of the race; zero where it is rigid
 
 
 class Rubbed(NamedTuple):

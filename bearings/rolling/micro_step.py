@@ -7,6 +7,7 @@ m.s.before the accelerations of the kick before.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -21,6 +22,7 @@ from .ring import MAX_STATES
 COPIES = (seat.JVX, seat.JVY, seat.JW, seat.HVX, seat.HVY)  # their velocities
 MICRO_STEP = 2.5e-6  # s, the default
 RESOLUTION = 0.8  # rad of the fastest contact, at most a step, at the default
+BENDING_RESOLUTION = 0.5  # of the fastest mode of a ring: contacts on it are faster, and bound the step
 HIT_RESOLUTION = 0.2  # of the duration of a hit, at most a step, at the default
 
 
@@ -134,6 +136,12 @@ def refined(longest):
     So all error falls with the step that is asked for.
     """
     return min(longest / MICRO_STEP, 1.0)
+
+
+@kernel
+def fastest_bending(longest):
+    """The highest frequency (rad/s) of a ring's modes in steps of `longest` (s); 0: adaptive, no limit."""
+    return BENDING_RESOLUTION / longest if longest > 0.0 else math.inf
 
 
 @kernel

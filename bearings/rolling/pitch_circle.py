@@ -111,14 +111,18 @@ class Meeting(NamedTuple):
 
 
 @inlined
-def meet(gap, c, s, orbit, spin, way):
-    """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s)."""
-    indentation = gap.ex * c + gap.ey * s - way.play
+def meet(gap, c, s, orbit, spin, way, bulge):
+    """`Meeting` (m, m/s) of a ball at the angle of cosine c and sine s that orbits and spins (rad/s).
+
+    bulge: how far the inner race bends outwards there (m), and its rate (m/s).
+    """
+    indentation = gap.ex * c + gap.ey * s - way.play + bulge[0]
     radius = way.radius + way.share * max(indentation, 0.0)
     lever = way.inner_radius - gap.ex * c - gap.ey * s  # the ring's centre stands off by e
     v, around = radius * orbit, way.ball_radius * spin
     inner = gap.spin * lever + gap.uy * c - gap.ux * s - v + around
-    return Meeting(indentation, gap.ux * c + gap.uy * s, radius, lever, inner, -(v + around))
+    rate = gap.ux * c + gap.uy * s + bulge[1]
+    return Meeting(indentation, rate, radius, lever, inner, -(v + around))
 
 
 @inlined
@@ -157,13 +161,17 @@ def squeeze_ball(at, elastic, across, orbit, way, along, others):
 
 
 @kernel
-def between_races(gap, c, s, orbit, spin, rm, m):
-    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m)."""
+def between_races(gap, c, s, orbit, spin, rm, bent, m):
+    """`Pressed` of a ball at cosine c and sine s, that orbits and spins (rad/s) on the radius rm (m).
+
+    bent: `Shape` of the inner race there.
+    """
     d, law = m.d, m.d.race
     size = d.inner_radius, d.ball_radius, d.mass
     way = Raceway(m.p.balls.play, rm, 0.0, law.stiffness, law.damping, *size, m.p.rolling.resistance)
-    at = meet(gap, c, s, orbit, spin, way)
-    ball = squeeze_ball(at, elastic_at(at, way), across_of(gap, c, s), orbit, way, 0.0, 0.0)
+    at = meet(gap, c, s, orbit, spin, way, (bent.opening, bent.rate))
+    across = across_of(gap, c, s) + bent.slope
+    ball = squeeze_ball(at, elastic_at(at, way), across, orbit, way, 0.0, 0.0)
     inner = coefficient(at.inner, d.race_friction) * ball.force
     outer = coefficient(at.outer, d.race_friction) * ball.outer
     heat = (

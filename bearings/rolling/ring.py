@@ -16,14 +16,16 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import Motion
-from ...modelkit.variables import real
+from ...modelkit.variables import integer, real
 from .. import seat
 from ..contact.friction import curve
-from ..contact.journal import note, place_in_bore, time_to_touch, touch, touch_of, watch_contact
+from ..contact.journal import note, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
 from ..contact.laws import elastic_energy, elastic_force
-from ..contact.pair import INSIDE, friction_line, heat, kick_of, rubbed, squeeze
+from ..contact.pair import INSIDE, Place, friction_line, heat, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled
+from . import bending
 from .ball_set import MAX_BALLS
+from .bending import AUTOMATIC, MAX_HARMONICS
 from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from .pitch_circle import Gap
 
@@ -35,10 +37,21 @@ SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
 @dataclass(frozen=True)
 class Ring:
-    """Inner ring. Defaults: 6004 (filled in; the source does not give them)."""
+    """Inner ring, which may bend (`bending`). Defaults: 6004 (filled in; the source does not give them)."""
 
     mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
     inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
+    harmonics: int = integer(
+        0,
+        "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: as many as 0.4 times "
+        "the balls in a row",
+        minimum=AUTOMATIC,
+        maximum=MAX_HARMONICS,
+    )
+    width: float = real(0.0, "m", "width, of a ring that bends; 0: contact.length", minimum=0.0)
+    modulus: float = real(207e9, "Pa", "modulus of elasticity, of a ring that bends", above=0.0)
+    poisson: float = real(0.3, "1", "Poisson's ratio, of a ring that bends", minimum=0.0, maximum=0.5)
+    damping_ratio: float = real(0.0, "1", "damping ratio of each of its modes", minimum=0.0, maximum=1.0)
 
 
 @dataclass(frozen=True)
@@ -54,6 +67,12 @@ class RingReport:
     journal_speed: float = real(0.0, "m/s", "circumferential speed of the journal", local=True)
     sync_time: float = real(
         -1.0, "s", "time when the bore first reached 99 % of the journal's speed; -1: not yet", local=True
+    )
+    ovality: float = real(
+        0.0,
+        "m",
+        "amplitude of the second harmonic: half of what the ring's diameters differ by",
+        local=True,
     )
 
 
@@ -71,11 +90,36 @@ def ring_motion(q):
     return Motion(q[RX], q[RY], q[RVX], q[RVY], q[RW])
 
 
+@inlined
+def _bent_bore(at, body, before, bent):
+    """A `Place` of the journal in a bore that is `bent` (Shape), and the bore's `Motion` and acceleration.
+
+    at: in the round bore; body, before: motion of the ring, and its acceleration in the kick before, whose
+    length is taken as 1 s in `bent`.
+    """
+    distance = at.second - at.first
+    turned = bent.slope / distance if distance > 0.0 else 0.0
+    nx, ny = at.nx + turned * at.ny, at.ny - turned * at.nx
+    by = 1.0 / (1.0 + turned * turned)
+    vx, vy, ax, ay = bent.rate * by * nx, bent.rate * by * ny, bent.ahead * by * nx, bent.ahead * by * ny
+    moving = Motion(body.x, body.y, body.vx + vx, body.vy + vy, body.spin)
+    faster = Motion(before.x, before.y, before.vx + ax, before.vy + ay, before.spin)
+    return Place(nx, ny, at.indentation - bent.opening, at.first, at.second, 0.0), moving, faster
+
+
 @kernel
 def journal_on_ring(q, m):
-    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`."""
-    p, journal = m.p, seat.journal_motion(q)
-    t = touch(journal, ring_motion(q), p.journal_radius, p.clearance, m.d.contact, m.d.friction)
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`.
+
+    It presses the modes of a ring that bends, in m.s.shape.
+    """
+    journal, body = seat.journal_motion(q), ring_motion(q)
+    round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.p.clearance)
+    if m.d.bending.waves > 0:
+        bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
+        at, body, _ = _bent_bore(at, body, body, bent)
+    t = touch_at(at, journal, body, m.d.contact, m.d.friction)
+    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, m.s.shape)
     note(m.s.ring, t)
     return t
 
@@ -94,12 +138,36 @@ def meet_journal(q, m):
     The journal keeps its velocity, that of the middle of the kick.
     """
     p, s, journal, body = m.p, m.s, seat.journal_motion(q), ring_motion(q)
-    at = place_in_bore(journal, body, p.journal_radius, p.clearance)
+    at, before = place_in_bore(journal, body, p.journal_radius, p.clearance), ring_motion(s.before)
     along = 1.0 / p.ring.mass
-    answers = along + at.second * at.second / p.ring.inertia, along
+    across = along + at.second * at.second / p.ring.inertia
+    if m.d.bending.waves > 0:
+        bent = bending.shape_at(q, s.before, 1.0, at.nx, at.ny, m.d.bending)
+        at, body, before = _bent_bore(at, body, before, bent)
+        along += m.d.bending.answer
     kept, last = Motion(0.0, 0.0, 0.0, 0.0, 0.0), (s.rubbed, s.ring.normal)
-    kick = kick_of(Beat(s.kick, s.drift), answers, kept, ring_motion(s.before), at, INSIDE, last)
+    kick = kick_of(Beat(s.kick, s.drift), (across, along), kept, before, at, INSIDE, last)
     return at, kick, squeeze(journal, body, at, INSIDE, m.d.contact, kick, s.ring.stored)
+
+
+@inlined
+def _bend(q, squeezed, n, m):
+    """(Change of the bore's rate at the journal (m/s), heat (W)) as the ring bends over the kick.
+
+    The journal is `squeezed`, and `n` balls press the race with m.s.inner.normal.
+    """
+    h, d, shape, normal = m.s.kick, m.d.bending, m.s.inner.shape, m.s.inner.normal
+    at = place_in_bore(seat.journal_motion(q), ring_motion(q), m.p.journal_radius, m.p.clearance)
+    shape.acceleration[:] = 0.0
+    bending.press(squeezed.normal, at.nx, at.ny, d, shape)
+    for b in range(n):
+        if normal[b] > 0.0:
+            bending.press(-normal[b], shape.nx[b], shape.ny[b], d, shape)
+    loss = bending.accelerate(q, h, d, shape)
+    for b in range(n):
+        pressed = normal[b] > 0.0
+        shape.gained[b] = bending.gained_at(h, shape.nx[b], shape.ny[b], d, shape) if pressed else 0.0
+    return bending.gained_at(h, at.nx, at.ny, d, shape), loss
 
 
 @inlined
@@ -121,15 +189,16 @@ def push_on(at, squeezed, balls, m):
 
 
 @inlined
-def rub_journal(at, squeezed, friction, moved, m):
+def rub_journal(at, squeezed, friction, moved, bent, m):
     """The journal's `Touch` (N, N m, m, W) that is `squeezed` and rubs, remembered for `watch`.
 
-    friction: N, along t; moved: what the kick does to the ring (`Moved`).
+    friction: N, along t; moved: what the kick does to the ring (`Moved`); bent: by how much it has the bore
+    bend away faster (m/s), and the heat of bending (W).
     """
     s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
     ahead = over_ring(at.nx, at.ny, at.second, moved)
-    opening = moved.x * at.nx + moved.y * at.ny
-    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -opening))
+    opening = moved.x * at.nx + moved.y * at.ny + bent[0]
+    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -opening) + bent[1])
     note(s.ring, t)
     s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, at.nx, at.ny
     s.rubbed = friction
@@ -151,11 +220,14 @@ def rub_races(q, pressed, answers, inner, m):
     """
     s, n = m.s, len(inner.nx)
     at, kick, squeezed = meet_journal(q, m)
+    bent = 0.0, 0.0
+    if m.d.bending.waves > 0:
+        bent = _bend(q, squeezed, m.p.balls.count, m)
     around = Around(moved_before(m), push_on(at, squeezed, pressed, m), bore_line(at, kick, squeezed, m))
     races = rubbed_of(s.outer, n), rubbed_of(s.inner, n)
     law = curve(m.d.race_friction)
     friction, moved = rub(s.kick, m.p.balls.count, law, answers, around, inner, races[0], races[1], s.lines)
-    return rub_journal(at, squeezed, friction, moved, m), moved
+    return rub_journal(at, squeezed, friction, moved, bent, m), moved
 
 
 @kernel
@@ -163,6 +235,18 @@ def bore_stiffness(m):
     """Stiffness (N/m) of the journal's contact at its indentation of the last evaluation."""
     depth = m.s.ring.indentation
     return m.d.contact.exponent * elastic_force(depth, m.d.contact) / depth if depth > 0.0 else 0.0
+
+
+@kernel
+def square_of(below, m):
+    """Largest squared frequency (rad2/s2) of the ring and its modes on contacts of `below` (N/m) together.
+
+    Of one that bends: an upper bound, some per cent above. Its modes alone are no faster than micro-steps
+    resolve.
+    """
+    b = m.d.bending
+    rigid = below / m.p.ring.mass
+    return rigid + (below * b.answer + b.fastest * b.fastest) if below > 0.0 else rigid
 
 
 @kernel
@@ -265,6 +349,17 @@ def report(q, m, race_radius):
 
 
 @kernel
+def append_bending(limit, m):
+    """Put the modes of the ring behind the m.n components in use, with their error weights.
+
+    limit: as for `bending.settle` (rad/s).
+    """
+    bending.settle(m.d.bending, m.p, m.n, limit)
+    length, speed = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
+    m.n = bending.set_weights(m.d.bending, m.weight, length, speed)
+
+
+@kernel
 def set_weights(weight):
     """Set the error weights of the ring's components in `weight` (n,); the heat lost is a quadrature."""
     weight[RX] = weight[RY] = 1.0 / seat.POSITION_SCALE
@@ -275,7 +370,8 @@ def set_weights(weight):
 BALLS = NEXT  # from here each component of all balls in turn
 LANES = 16  # as compiled for 512 bit; half of it is in use at 256
 MAX_LEFTOVER_BALLS = 2  # balls left over that are quicker alone than with company
-MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + LANES  # with a cage, and room to run past the last ball
+# with a cage, a ring that bends, and room to run past the last ball
+MAX_STATES = BALLS + 6 * (MAX_BALLS + 1) + bending.MAX_STATES + LANES
 
 
 @kernel

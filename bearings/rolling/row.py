@@ -32,7 +32,7 @@ from ..contact.friction import slope
 from ..contact.laws import elastic_energy
 from ..contact.pair import OUTSIDE, Place
 from ..contact.passivity import Beat, middle_of, passive, settled
-from . import ring
+from . import bending, ring
 from .ball_set import MAX_BALLS
 from .balls import Total
 from .friction import Answers, Inner, rubbed_of
@@ -42,7 +42,8 @@ from .ring import BALLS, LANES, part, rounded
 from .sides import after, fill_sides, heat_of, link, part_ways, press_of, rub_sides, settle_sides, share
 
 ANGLE, ORBIT, SPIN = range(3)  # components of a ball, in this order: attitude angle, its rate, spin
-MAX_STATES = BALLS + 3 * MAX_BALLS + LANES  # and room to run past the last ball
+# with a ring that bends, and room to run past the last ball
+MAX_STATES = BALLS + 3 * MAX_BALLS + bending.MAX_STATES + LANES
 
 
 @dataclass(frozen=True)
@@ -118,6 +119,7 @@ def drift(trial, q, mid, h, m):
     ring.drift(trial, q, mid, h)
     n = m.p.balls.count
     ring.drift_balls(trial, q, mid, h, BALLS + ANGLE * n, BALLS + ORBIT * n, n)
+    bending.drift(trial, q, mid, h, m.d.bending)
 
 
 @kernel
@@ -146,16 +148,18 @@ def _directions(angle, cosine, sine):
 
 
 @inlined
-def _press_all(gap, way, before, gravity, course, loads, inner, outer):
+def _press_all(gap, way, before, gravity, course, loads, inner, outer, shape):
     """Set the `loads` (n,) of all balls on their `course` (n,), but for friction, at both races (Rubbed).
 
-    gap: `Gap`; way: `Raceway`; before: `Before`; gravity: m/s2.
+    gap: `Gap`; way: `Raceway`; before: `Before`; gravity: m/s2; shape: of the inner race (BendingMemory).
     """
     by_mass = 1.0 / way.mass
     for b in range(len(course.cosine)):
         c, s = course.cosine[b], course.sine[b]
-        at = meet(gap, c, s, course.orbit[b], course.spin[b], way)
-        moved, across = before.x * c + before.y * s, across_of(gap, c, s)
+        bulge = shape.opening[b], shape.rate[b]
+        at = meet(gap, c, s, course.orbit[b], course.spin[b], way, bulge)
+        moved = before.x * c + before.y * s + shape.ahead[b]
+        across = across_of(gap, c, s) + shape.slope[b]
         closing = at.rate + across * course.orbit[b]
         by_mates = moved + before.alone * inner.normal[b]
         elastic, scale = elastic_at(at, way), 0.4 * at.indentation
@@ -193,11 +197,16 @@ def press_balls(q, m):
     angle, orbit, spin = part(q, ANGLE, m), part(q, ORBIT, m), part(q, SPIN, m)
     _directions(angle, at.cosine[:n], at.sine[:n])
     moved = ring.moved_before(m)
-    alone = s.kick / m.p.ring.mass
+    alone = s.kick / m.p.ring.mass + s.kick * m.d.bending.answer
+    if m.d.bending.waves > 0:
+        ring.copy(at.cosine[:n], s.inner.shape.nx[:n])
+        ring.copy(at.sine[:n], s.inner.shape.ny[:n])
+        bending.bend(q, s.before, s.kick, n, m.d.bending, s.inner.shape)
     before = Before(moved.x, moved.y, _crowd(m) * alone, alone, beat_of(m))
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
-    _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, _loads_of(at, n), inner, outer)
+    loads, shape = _loads_of(at, n), s.inner.shape
+    _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, loads, inner, outer, shape)
     for b in range(n):
         at.faster[b] = at.along[b] / at.radius[b]
         at.turning[b] = 0.0
@@ -311,7 +320,8 @@ def _rub(q, share, moved, m):
         f_o, f_i = s.outer.tangential[b], s.inner.tangential[b]
         at.faster[b] += ((1.0 + share) * f_o + (1.0 - share) * f_i) / (at.radius[b] * m.d.mass)
         at.turning[b] += spun * (f_o - f_i)
-        middle = at.rate[b] + 0.5 * (moved.x * at.cosine[b] + moved.y * at.sine[b])
+        closing = moved.x * at.cosine[b] + moved.y * at.sine[b] + s.inner.shape.gained[b]
+        middle = at.rate[b] + 0.5 * closing
         along = at.radius[b] * (orbit[b] + half * at.faster[b])
         at.middle[b] = middle + at.across[b] * (orbit[b] + half * at.faster[b])
         s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
@@ -324,6 +334,7 @@ def _hand_over(q, dq, m):
     ring.copy(part(q, ORBIT, m), part(dq, ANGLE, m))
     ring.copy(at.faster[:n], part(dq, ORBIT, m))
     ring.copy(at.turning[:n], part(dq, SPIN, m))
+    bending.hand_over(q, dq, m.d.bending, m.s.inner.shape)
 
 
 @inlined
@@ -382,7 +393,7 @@ def fastest(m):
         below += math.sqrt(max(s.balls.indentation[b], 0.0))
         side = max(side, s.side.stiffness[b])
     below = d.race.exponent * d.race.stiffness * below + ring.bore_stiffness(m)
-    return max(math.sqrt(max(below / m.p.ring.mass, 4.0 * side / d.mass)), s.seat.fastest)
+    return max(math.sqrt(max(ring.square_of(below, m), 4.0 * side / d.mass)), s.seat.fastest)
 
 
 class BallBlock(NamedTuple):
@@ -411,7 +422,8 @@ def linearise(q, stiff, m):
     for b in range(count):
         i = BALLS + b
         orbit = q[i + count]
-        at = meet(gap, s.cosine[b], s.sine[b], orbit, q[i + 2 * count], way)
+        bulge = m.s.inner.shape.opening[b], m.s.inner.shape.rate[b]
+        at = meet(gap, s.cosine[b], s.sine[b], orbit, q[i + 2 * count], way, bulge)
         pressed = m.s.inner.normal[b] + at.radius * d.mass * orbit * orbit
         stiff[i] = slope(at.inner, d.race_friction) * m.s.inner.normal[b]
         stiff[i + count] = slope(at.outer, d.race_friction) * pressed
@@ -480,6 +492,6 @@ def solve(stiff, shift, right, m):
         right[i + 2 * count] += spin
     for i in range(BALLS):
         right[i] /= shift
-    for i in range(m.s.seat.inside, m.n):
+    for i in range(m.d.bending.at, m.n):
         right[i] /= shift
     right[ring.RW] = turned

@@ -14,6 +14,7 @@ from touchdown.bearings.rolling import ring
 
 ROLLING = ["simplified_caged", "simplified_cageless"]
 BEARINGS = ["bushing", *ROLLING]
+BENT = [(bearing, -1) for bearing in ROLLING]  # with rings that bend
 
 
 def accurate(bearing: str) -> dict[str, object]:
@@ -34,11 +35,12 @@ def landing(bearing: str, angle: float = 0.0, **rotor: float) -> list[tuple[str,
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("bearing", BEARINGS)
-def test_no_energy_is_made(bearing: str) -> None:
+@pytest.mark.parametrize(("bearing", "harmonics"), [*((name, 0) for name in BEARINGS), *BENT])
+def test_no_energy_is_made(bearing: str, harmonics: int) -> None:
     """All energies stated by rotor, bearing and housing add up through an impact."""
+    ring_settings = {"ring.harmonics": harmonics} if harmonics else {}
     scene = rotor_on(
-        bearing, dict(landing(bearing)), accurate(bearing), {"gravity": 0.0},
+        bearing, dict(landing(bearing)), {**accurate(bearing), **ring_settings}, {"gravity": 0.0},
         duration=5e-3, macro_step=2e-5,
     )  # fmt: skip
     names = [
@@ -80,8 +82,8 @@ def test_friction_brakes_the_rotor_and_drives_the_ring(bearing: str) -> None:
             assert way * found["bearing.ring.omega"][-1] > 10.0
 
 
-@pytest.mark.parametrize("bearing", BEARINGS)
-def test_turning_the_frame_changes_nothing(bearing: str) -> None:
+@pytest.mark.parametrize(("bearing", "harmonics"), [*((name, 0) for name in BEARINGS), *BENT])
+def test_turning_the_frame_changes_nothing(bearing: str, harmonics: int) -> None:
     """The same impact turned by an angle that the balls' arrangement allows for.
 
     Adaptive steps weigh their errors along x and y, so another frame takes other steps; at their tolerance
@@ -92,6 +94,7 @@ def test_turning_the_frame_changes_nothing(bearing: str) -> None:
     ends = []
     for turn in (0.0, angle):
         settings = {"gravity": 0.0} if bearing in ROLLING else {}
+        settings |= {"ring.harmonics": harmonics} if harmonics else {}
         scene = rotor_on(
             bearing, dict(landing(bearing, turn)), {**accurate(bearing), **settings},
             duration=2e-3, macro_step=2e-5,

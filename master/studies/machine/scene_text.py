@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from ....bearings.catalogue import Bearing
 from ....bearings.catalogue.landing import landing_load
+from ....bearings.catalogue.load_sharing import harmonics_worth
 from ...scene.plausible import MAX_BORE_SPEED, RPM
 from .design import (
     FORCE_LIMIT_RATIO,
@@ -152,8 +153,18 @@ def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
     radius, load = 0.5 * bearing.bore - clearance, landing_load(bearing, clearance, weight * clearance)
     yield f'journal_radius = "{radius * MM:g} mm"  # half the bore less the clearance'
     yield f'contact.load = "{rounded(load):g} N"  # at which that holds: what the fall presses it with'
+    yield _bending(bearing, load)
     if bearing.damping == 0.0:
         yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not tell'
+
+
+def _bending(bearing: Bearing, load: float) -> str:
+    """Whether the inner ring bends under the landing's load (N)."""
+    harmonics, gain = harmonics_worth(bearing, load)
+    added = f"{100.0 * gain:.0f} % to the most loaded ball's load, from geometry"
+    if harmonics == 0:
+        return f"ring.harmonics = 0  # a rigid inner ring: its bending would add {added}"
+    return f"ring.harmonics = {harmonics}  # the inner ring bends, as many as matter: it adds {added}"
 
 
 def _outer_ring(bearing: Bearing) -> str:

@@ -335,7 +335,8 @@ def empty_contacts() -> Any:
     """Contacts to be written to; past the last ball lies what may not matter."""
     contacts = np.zeros(1, dtype=layout(Contacts))[0]
     for name in Contacts.__dataclass_fields__:
-        contacts[name][:] = math.nan
+        if name != "shape":  # of a rigid race: zero
+            contacts[name][:] = math.nan
     contacts["stored"][:] = UNLIMITED_ENERGY
     return contacts
 
@@ -377,7 +378,9 @@ def squeeze_all(bunch: Bunch, h: float, across: np.ndarray | None) -> None:
     balls, c, rates, at = bunch.balls, bunch.contacts, bunch.rates, bunch.ring_rates
     count, n = len(balls.x), rounded(len(balls.x))
     places = Places(*(c[name][:n] for name in Places._fields))
-    forces = Forces(*(c[name][:n] for name in Forces._fields))
+    shape = c["shape"]
+    pressing = (c[name][:n] for name in Forces._fields[:-2])
+    forces = Forces(*pressing, shape["rate"][:n], shape["ahead"][:n])
     before = Before(Beat(h, 0.5 * h), rates.vx, rates.vy, h * at.vx, h * at.vy, h / MASS)
     c["normal"][:count] = bunch.last
     press_circle(balls, bunch.ring, bunch.race, before, places, forces)
