@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "src")
-KERNELS = {"kernel", "woven", "njit"}
+KERNELS = {"kernel", "inlined", "njit"}
 LONG, MANY, STRETCH = 40, 6, 6
 
 
