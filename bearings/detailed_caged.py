@@ -151,7 +151,7 @@ def _problem(p, told):
 def _settle_cage(m):
     """Set in m.d the cage, its pockets and the laws in them; returns the lighter mass there (kg)."""
     p, d, b = m.p, m.d, m.p.balls
-    radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b.rows, b.diameter, b.density), p.cage.mass)
+    radius, lighter = 0.5 * b.pitch_diameter, min(ball_mass(b), p.cage.mass)
     d.cage_contact, d.cage_friction = p.cage_contact, p.cage_friction
     broadcast_law(d.cage_contact, b.rows)
     damp(d.cage_contact, lighter)

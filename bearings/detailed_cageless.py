@@ -191,7 +191,7 @@ def settle(words):
         return problem
     d.ball_contact, d.ball_friction = p.ball_contact, p.ball_friction
     broadcast_law(d.ball_contact, p.balls.rows)
-    mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
+    mass = ball_mass(p.balls)
     damp(d.ball_contact, mass)
     friction.settle(d.ball_friction)
     bodies.settle(m, spread_of(p.balls), d.ball_contact, 0.5 * mass, math.inf)

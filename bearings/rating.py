@@ -16,14 +16,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import root_scalar
 
-from .contact.laws import EXACT, effective_modulus, exact_ellipse, race_contact_stiffness
+from .contact.laws import EXACT, exact_ellipse, race_contact_stiffness
+from .contact.materials import (
+    SILICON_NITRIDE_NUMBERS,
+    STEEL,
+    STEEL_NUMBERS,
+    Elastic,
+    effective_modulus,
+)
 
 INNER: Final = "inner"
 OUTER: Final = "outer"
@@ -44,14 +51,16 @@ class RatedBearing:
     outer_groove: float = 0.53
     rows: int = 1
     contact_angle: float = 0.0  # rad, nominal
-    modulus: float = 207e9  # Pa; ISO 76
-    poisson: float = 0.3
+    balls: Elastic = STEEL_NUMBERS
+    rings: Elastic = STEEL_NUMBERS
+    hybrid: bool = False  # ceramic balls in steel rings
 
     def __post_init__(self) -> None:
         lengths = 0.0 < self.diameter < self.pitch_diameter < math.inf
         grooves = all(0.5 < groove <= 1.0 for groove in (self.inner_groove, self.outer_groove))
-        material = 0.0 < self.modulus < math.inf and 0.0 <= self.poisson <= 0.5
-        if not (lengths and grooves and material and min(self.count, self.rows) >= 1):
+        bodies = (self.balls, self.rings)
+        materials = all(0.0 < one.modulus < math.inf and 0.0 <= one.poisson <= 0.5 for one in bodies)
+        if not (lengths and grooves and materials and min(self.count, self.rows) >= 1):
             raise ValueError(f"not a ball bearing: {self}")
         if not 0.0 <= self.contact_angle < 0.5 * math.pi:
             raise ValueError(
@@ -70,9 +79,20 @@ class RatedBearing:
             outer_groove=0.5 * (values.get("balls.outer_conformity", 0.0) or inner),
             rows=int(values.get("balls.rows", 1)),
             contact_angle=contact_angle,
-            modulus=values["balls.modulus"],
-            poisson=values["balls.poisson"],
+            balls=_elastic("balls", values),
+            rings=_elastic("ring", values),
+            hybrid=values.get("balls.material", STEEL) != values.get("ring.material", STEEL),
         )
+
+    @property
+    def modulus(self) -> float:
+        """E_tot of ball and race (Pa)."""
+        return effective_modulus(self.balls, self.rings)
+
+    @property
+    def pressure_limit(self) -> float:
+        """Largest pressure (Pa) that leaves a dent of 1e-4 of the ball's diameter."""
+        return HYBRID_PRESSURE_LIMIT if self.hybrid else PRESSURE_LIMIT
 
     @property
     def gamma(self) -> float:
@@ -88,6 +108,12 @@ class RatedBearing:
         at_contact = 0.5 * self.pitch_diameter / math.cos(self.contact_angle)
         ball = 0.5 * self.diameter
         return at_contact - ball if race == INNER else -(at_contact + ball)
+
+
+def _elastic(body: str, values: Mapping[str, float]) -> Elastic:
+    """Of balls or ring, from a model's parameters by name; what is 0 or not there is the material's."""
+    own = STEEL_NUMBERS if values.get(f"{body}.material", STEEL) == STEEL else SILICON_NITRIDE_NUMBERS
+    return Elastic(*(values.get(f"{body}.{name}", 0.0) or getattr(own, name) for name in Elastic._fields))
 
 
 @dataclass(frozen=True)
@@ -132,8 +158,8 @@ def point_contact(bearing: RatedBearing, race: str) -> PointContact:
     across = 2.0 / b.diameter - 1.0 / (groove * b.diameter)
     ellipse = exact_ellipse(along / across)
     compliance = 6.0 * ellipse.second_kind / (math.pi * (along + across))
-    longer = (ellipse.ellipticity**2 * compliance / effective_modulus(b.modulus, b.poisson)) ** (1.0 / 3.0)
-    stiffness = race_contact_stiffness(b.diameter, radius, 2.0 * groove, b.modulus, b.poisson, EXACT)
+    longer = (ellipse.ellipticity**2 * compliance / b.modulus) ** (1.0 / 3.0)
+    stiffness = race_contact_stiffness(b.diameter, radius, 2.0 * groove, b.modulus, EXACT)
     return PointContact(longer, longer / ellipse.ellipticity, stiffness)
 
 
@@ -178,6 +204,9 @@ def load_distribution(
 
 
 PRESSURE_LIMIT = 4.2e9  # Pa; of ISO 76 for ball bearings: a ball and its race keep 1e-4 of its diameter
+# Pa; of ISO 20056-2 for silicon nitride balls in steel rings (its number from memory): the ball keeps no
+# dent, so the race may have all of it
+HYBRID_PRESSURE_LIMIT = 4.6e9
 BALL_SHARE = 5.0  # of the mean load, on the most loaded ball of a bearing with usual clearance (ISO 76)
 STEEL_FACTOR = 1.3  # b_m of ISO 281, radial ball bearings of contemporary steel
 LARGE_BALL_MM = 25.4  # mm, from which on the rating rises less
@@ -199,14 +228,20 @@ class Capacity(NamedTuple):
 
 
 def capacity(bearing: RatedBearing, static: float = 0.0, dynamic: float = 0.0) -> Capacity:
-    """`Capacity` by the ratings of a row that a maker states (N), where above 0, else by the standards."""
-    all_static, all_dynamic = bearing.rows * static, bearing.rows**0.7 * dynamic
+    """`Capacity` by the ratings of a row that a maker states (N), where above 0, else by the standards.
+
+    Those stated are of steel balls. With ceramic ones the static rating is another by the ratio that the
+    standards give; the dynamic one stays (ISO 20056-1: such bearings live at least as long).
+    """
+    steel = replace(bearing, balls=STEEL_NUMBERS, rings=STEEL_NUMBERS, hybrid=False)
+    all_static = bearing.rows * static * static_rating(bearing) / static_rating(steel)
+    all_dynamic = bearing.rows**0.7 * dynamic
     return Capacity(all_static or static_rating(bearing), all_dynamic or dynamic_rating(bearing))
 
 
 def static_rating(bearing: RatedBearing) -> float:
-    """C_0r (N) by ISO 76: the load at which the most loaded ball presses a race with 4200 MPa."""
-    most = min(float(point_contact(bearing, race).load(PRESSURE_LIMIT)) for race in RACES)
+    """C_0r (N) by ISO 76, hybrid by ISO 20056-2: the most loaded ball presses a race to the limit."""
+    most = min(float(point_contact(bearing, race).load(bearing.pressure_limit)) for race in RACES)
     return bearing.rows * bearing.count * math.cos(bearing.contact_angle) * most / BALL_SHARE
 
 
@@ -244,10 +279,10 @@ def static_safety(rating: float, load: ArrayLike) -> np.ndarray:
         return rating / np.abs(np.asarray(load, float))
 
 
-def pressure_safety(pressure: ArrayLike) -> np.ndarray:
-    """The same from a contact's largest pressure (Pa): load over that at 4200 MPa is as its third power."""
+def pressure_safety(pressure: ArrayLike, limit: float = PRESSURE_LIMIT) -> np.ndarray:
+    """The same from a contact's largest pressure (Pa): loads are as third powers of pressures."""
     with np.errstate(divide="ignore"):
-        return (PRESSURE_LIMIT / np.asarray(pressure, float)) ** 3
+        return (limit / np.asarray(pressure, float)) ** 3
 
 
 MILLION = 1e6  # revolutions

@@ -31,7 +31,15 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, elastic_force
 from .contact.peaks import Largest
 from .rolling import bending, declarations, ring
-from .rolling.ball_set import EVEN_SPREAD, MAX_BALLS, ball_inertia, ball_mass, set_race_law, start_angle
+from .rolling.ball_set import (
+    EVEN_SPREAD,
+    MAX_BALLS,
+    ball_inertia,
+    ball_mass,
+    series_dissipation,
+    set_race_law,
+    start_angle,
+)
 from .rolling.balls import Total, watch_balls
 from .rolling.bending import BendingMemory
 from .rolling.declarations import (
@@ -316,8 +324,8 @@ def settle(words):
     if problem != 0:
         return problem
     declarations.settle(m, EVEN_SPREAD)
-    d.mass = ball_mass(p.balls.rows, p.balls.diameter, p.balls.density)
-    set_race_law(d.race, p.balls, d.stiffness.series, d.mass)
+    d.mass = ball_mass(p.balls)
+    set_race_law(d.race, p.balls, d.stiffness.series, d.mass, series_dissipation(d.stiffness))
     d.race_friction = p.race_friction
     friction.settle(d.race_friction)
     d.size.coordinates, d.size.rings = 5 + 2 * p.slip, p.balls.count

@@ -55,6 +55,7 @@ from .rolling.ball_set import (
     ball_inertia,
     ball_mass,
     outer_share,
+    series_dissipation,
     set_race_law,
     spread_of,
     start_angle,
@@ -270,7 +271,7 @@ def _problem(p, told):
 def _settle_laws(m):
     """Set in m.d the laws at the balls, and the steps that resolve them."""
     p, d, b = m.p, m.d, m.p.balls
-    set_race_law(d.race, b, d.stiffness.series, d.mass)
+    set_race_law(d.race, b, d.stiffness.series, d.mass, series_dissipation(d.stiffness))
     d.race_friction, d.ball_friction = p.race_friction, p.ball_friction
     friction.settle(d.race_friction)
     friction.settle(d.ball_friction)
@@ -290,7 +291,7 @@ def _settle_laws(m):
 def _settle_balls(m, spread):
     """Set in m.d what the balls are, where they run and where they start."""
     d, b = m.d, m.p.balls
-    d.mass, d.touch_angle = ball_mass(b.rows, b.diameter, b.density), touch_angle(b)
+    d.mass, d.touch_angle = ball_mass(b), touch_angle(b)
     d.inertia = ball_inertia(d.mass, b.diameter)
     d.ball_radius, d.pitch_radius = 0.5 * b.diameter, 0.5 * b.pitch_diameter
     d.run_radius, d.run_share = d.pitch_radius, 0.0

@@ -93,6 +93,7 @@ def fast_case(model: str, seed: int) -> Case:
     parameters["clearance"] = min(parameters["clearance"], 0.05 * parameters["journal_radius"])
     parameters |= {
         "balls.modulus": CERAMIC,
+        "ring.modulus": CERAMIC,  # the harder case
         "balls.density": _between(rng, 100.0, 8000.0),
         "balls.play": rng.uniform(0.0, 1e-4),
         "balls.damping_ratio": 0.0,

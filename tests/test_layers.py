@@ -70,6 +70,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},
+    "touchdown.bearings.contact.materials": {"touchdown.master.studies.dissertation.exhibits.disk_forces"},
 }
 STEPPED = {"touchdown.modelkit.model", "touchdown.modelkit.instance"}
 

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
 from .file import OWN_FILE, CatalogueError, as_file, read
 from .sizes import FROM_SOURCE, designations, size
 
 __all__ = [
+    "BALL_MATERIALS",
     "NUMBERS",
     "OWN_FILE",
     "Bearing",
@@ -24,6 +26,8 @@ __all__ = [
     "own",
     "reference",
 ]
+
+BALL_MATERIALS = MATERIALS.words
 
 _FROM_SOURCE = {bearing.designation: bearing for bearing in FROM_SOURCE}
 

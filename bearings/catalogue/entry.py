@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ..rating import Capacity, RatedBearing, capacity
 from ..rolling.ball_set import BallSet
@@ -63,6 +63,7 @@ class Bearing:
             "balls.conformity": b.conformity,
             "balls.outer_conformity": b.outer_conformity,
             "balls.hertz": b.hertz,
+            "balls.material": b.material,
             "ring.mass": self.ring.mass,
             "ring.inertia": self.ring.inertia,
             "cage.mass": self.cage,
@@ -71,6 +72,10 @@ class Bearing:
             "contact.length": self.width,
             "contact.depth": self.depth,
         }
+
+    def with_balls(self, material: int) -> Bearing:
+        """The same with balls of another material (`contact.materials`)."""
+        return replace(self, balls=replace(self.balls, material=material))
 
     @property
     def depth(self) -> float:
@@ -105,8 +110,7 @@ class Bearing:
 
     def rated(self) -> RatedBearing:
         """As `bearings.rating` sees it."""
-        values = {f"balls.{name}": getattr(self.balls, name) for name in ("modulus", "poisson")}
-        return RatedBearing.of(self.settings() | values, self.contact_angle)
+        return RatedBearing.of(self.settings(), self.contact_angle)
 
     def capacity(self) -> Capacity:
         """Load ratings of the whole bearing, all its rows (N)."""

@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..rating import RatedBearing, dynamic_rating, static_rating
-from ..rolling.ball_set import MAX_BALLS, BallSet, ball_mass
+from ..rolling.ball_set import MAX_BALLS, BallSet
 from ..rolling.ring import Ring
 from .entry import Bearing
 from .section import SHOULDER_HEIGHT, segment
@@ -93,9 +93,8 @@ def filled_in(
     n.setdefault("ring_mass", rings.inner)
     n.setdefault("ring_inertia", n["ring_mass"] / rings.inner * rings.inertia)
     n.setdefault("outer_ring_mass", rings.outer)
-    n.setdefault(
-        "cage_mass", CAGE_MASS_IN_BALLS * ball_mass(int(n["rows"]), n["ball_diameter"], STEEL_DENSITY)
-    )
+    ball = STEEL_DENSITY * math.pi / 6.0 * n["ball_diameter"] ** 3
+    n.setdefault("cage_mass", CAGE_MASS_IN_BALLS * int(n["rows"]) * ball)
     row = RatedBearing(
         count=int(n["balls"]),
         diameter=n["ball_diameter"],

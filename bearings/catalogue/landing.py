@@ -2,36 +2,60 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from scipy.optimize import brentq
 
 from ...modelkit.variables import as_record
-from ..contact.line import BoreContact, approach
+from ..contact.line import WIDEST, BoreContact, approach, is_line
+from ..contact.materials import elastic_of
 from ..rolling.ball_set import RaceStiffness, set_stiffness
 from .entry import Bearing
 
 STRIBECK = 4.37  # largest ball load over the mean one, of balls without play
-BRACKET = (1.0, 1e6)  # N
+LIGHTEST = 1.0  # N
+BACK = 0.95  # by which a load is lowered until it makes a line contact
 
 
-def landing_load(bearing: Bearing, clearance: float, energy: float) -> float:
-    """Load (N) at which bore and balls of `bearing` hold the `energy` (J) that a journal brings.
+class Landing(NamedTuple):
+    """What a landing presses the bearing with."""
 
-    clearance: radial, of journal and bore (m). Steel on steel; the ring stays round and has no mass, the
-    outer one is held. Within 1 N and 1 MN.
+    load: float  # N
+    indentation: float  # m, of the most loaded ball between both races
+    is_most: bool  # more would be no line contact
+
+
+def landing(bearing: Bearing, clearance: float, energy: float) -> Landing:
+    """Load at which bore and balls of `bearing` hold the `energy` (J) that a journal brings.
+
+    clearance: radial, of journal and bore (m). Journal and bore of steel; the ring stays round and has no
+    mass, the outer one is held. From 1 N up to what makes a line contact.
     """
     law = as_record(BoreContact(length=bearing.width, depth=bearing.depth))
     stiffness = as_record(RaceStiffness())
-    set_stiffness(stiffness, as_record(bearing.balls))
+    set_stiffness(stiffness, as_record(bearing.balls), elastic_of(as_record(bearing.ring)))
     share = STRIBECK / (bearing.balls.count * bearing.balls.rows)
     radius = 0.5 * bearing.bore - clearance
 
+    def deepest(load: float) -> float:
+        return (share * load / float(stiffness["series"])) ** (2.0 / 3.0)
+
     def missing(load: float) -> float:
         bore = approach(load, law, radius, clearance)
-        exponent = bore.indentation / (load * bore.slope)
-        balls = (share * load / float(stiffness["series"])) ** (2.0 / 3.0)
-        return load * (bore.indentation / (exponent + 1.0) + 0.4 * balls) - energy
+        stored = 0.25 * load * (bore.indentation + load * bore.slope)  # of P (A - B ln P)
+        return stored + 0.4 * load * deepest(load) - energy
 
-    low, high = BRACKET
-    if missing(low) >= 0.0:
-        return low
-    return float(brentq(missing, low, high)) if missing(high) > 0.0 else high  # type: ignore[arg-type]
+    high = (WIDEST * radius / approach(LIGHTEST, law, radius, clearance).half_width) ** 2 * LIGHTEST
+    while high > LIGHTEST and not _makes_line(law, high, radius, clearance):
+        high *= BACK
+    if missing(LIGHTEST) >= 0.0 or high <= LIGHTEST:
+        return Landing(LIGHTEST, deepest(LIGHTEST), False)
+    if missing(high) <= 0.0:
+        return Landing(high, deepest(high), True)
+    load = float(brentq(missing, LIGHTEST, high))  # type: ignore[arg-type]
+    return Landing(load, deepest(load), False)
+
+
+def _makes_line(law: object, load: float, radius: float, clearance: float) -> bool:
+    law["load"] = load  # type: ignore[index]
+    return bool(is_line(law, radius, clearance))

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...modelkit.variables import as_record
+from ..contact.materials import elastic_of
 from ..rolling.ball_set import RaceStiffness, set_stiffness
 from ..rolling.bending import AUTOMATIC, HARMONICS_PER_BALL, SHOULDER_HEIGHT, Groove, compliance, section_of
 from .entry import Bearing
@@ -52,15 +53,15 @@ def ball_loads(bearing: Bearing, load: float, harmonics: int, offset: float = 0.
     """
     count, rows = bearing.balls.count, bearing.balls.rows
     stiffness = as_record(RaceStiffness())
-    set_stiffness(stiffness, as_record(bearing.balls))
+    set_stiffness(stiffness, as_record(bearing.balls), elastic_of(as_record(bearing.ring)))
     spring = rows * float(stiffness["series"])
     depth = (load / spring) ** (2.0 / 3.0)
     angles = 2.0 * math.pi / count * (np.arange(count) - offset)
     shapes = [np.cos(angles), np.sin(angles)]
     push = [1.0, 0.0]
-    section = section_of(inner_groove(bearing))
+    section, rings = section_of(inner_groove(bearing)), elastic_of(as_record(bearing.ring))
     for n in range(2, harmonics + 1):
-        given = compliance(section, n, bearing.balls.modulus, bearing.balls.poisson)
+        given = compliance(section, n, rings.modulus, rings.poisson)
         root = math.sqrt(given * load / depth)
         shapes += [root * np.cos(n * angles), root * np.sin(n * angles)]
         push += [root, 0.0]

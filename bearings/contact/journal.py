@@ -24,7 +24,7 @@ from ...modelkit.ports import PARTING_TOLERANCE
 from ...modelkit.variables import group, real
 from . import friction
 from .laws import damp
-from .line import FROM_GEOMETRY, is_line, set_line
+from .line import FROM_GEOMETRY, STEEPEST, is_line, is_narrow, set_line
 from .pair import INSIDE, NO_KICK, Place, heat, press, slip
 from .peaks import Largest, PeakMemory, watch_peaks
 
@@ -56,7 +56,11 @@ _LINE = (
     "contact.load = {0:g} N makes no line contact of a journal of {1:g} m with a clearance of {2:g} m: "
     "they touch over more than 40 degrees; take a smaller load, or a greater contact.length"
 )
-PROBLEMS = (*_LENGTHS, _LINE, *friction.problems("friction"))
+_STEEP = (
+    "contact.load = {0:g} N makes no power law of a journal of {1:g} m with a clearance of {2:g} m: its "
+    "exponent would be above {3:g}; take a smaller load, or a greater contact.length"
+)
+PROBLEMS = (*_LENGTHS, _LINE, _STEEP, *friction.problems("friction"))
 
 
 @kernel
@@ -71,11 +75,11 @@ def bore_problem(p, usual, told):
     elif out_of_proportion(p.contact.expected_indentation, p.journal_radius, told):
         found = 2
     elif p.contact.law == FROM_GEOMETRY and not is_line(p.contact, p.journal_radius, p.clearance):
-        told[0], told[1], told[2] = p.contact.load, p.journal_radius, p.clearance
-        found = 3
+        told[0], told[1], told[2], told[3] = p.contact.load, p.journal_radius, p.clearance, STEEPEST
+        found = 4 if is_narrow(p.contact, p.journal_radius, p.clearance) else 3
     else:
         found = friction.problem(p.friction, usual, told)
-        found = found + 3 if found != 0 else 0
+        found = found + 4 if found != 0 else 0
     return found
 
 

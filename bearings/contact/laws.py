@@ -176,17 +176,11 @@ def printed_ellipse(ratio):
 
 
 @kernel
-def effective_modulus(modulus, poisson):
-    """E_tot of (2.46) for two bodies of the same material (Pa)."""
-    return modulus / (1.0 - poisson * poisson)
-
-
-@kernel
-def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, poisson, hertz):
+def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, hertz):
     """Hertz stiffness of a ball on its race (2.45), N/m^1.5; not a number where they meet in no point.
 
     ball_diameter, race_radius in m; race_radius is positive for the inner race (convex) and negative
-    for the outer one (concave). `conformity` is the groove radius over the ball radius, modulus in Pa;
+    for the outer one (concave). `conformity` is the groove radius over the ball radius, modulus E_tot (Pa);
     hertz: EXACT or PRINTED. (2.45) reads lengths in mm and gives N/mm^1.5; in SI it needs no factor.
     """
     ball_radius = ball_diameter / 2.0
@@ -198,7 +192,7 @@ def race_contact_stiffness(ball_diameter, race_radius, conformity, modulus, pois
     ellipse = printed_ellipse(ratio) if hertz == PRINTED else exact_ellipse(ratio)
     curvature_sum = 1.0 / (across + along)
     root = math.sqrt(2.0 * curvature_sum * ellipse.second_kind / ellipse.first_kind**3.0)
-    return math.pi / 3.0 * root * ellipse.ellipticity * effective_modulus(modulus, poisson)
+    return math.pi / 3.0 * root * ellipse.ellipticity * modulus
 
 
 @kernel

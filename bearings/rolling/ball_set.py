@@ -16,6 +16,7 @@ from ...modelkit.variables import SWITCH, Choices, choice, integer, real
 from ..contact import journal
 from ..contact.journal import out_of_proportion
 from ..contact.laws import EXACT, broadcast_law, damp, in_series, race_contact_stiffness
+from ..contact.materials import MATERIALS, STEEL, density_of, effective_modulus, elastic_of
 
 MAX_BALLS = 32  # room in the state vector
 INTEGRALS = Choices("EllipticIntegrals", ("exact", "printed"), ("", "as the source prints them (2.46)"))
@@ -40,9 +41,16 @@ class BallSet:
         0.0, "1", "the same of the outer race; 0: as of the inner one", minimum=0.0, maximum=2.0
     )
     hertz: int = choice(EXACT, INTEGRALS, "elliptic integrals of the race contacts")
-    modulus: float = real(207e9, "Pa", "modulus of elasticity of balls and rings", above=0.0)
-    poisson: float = real(0.3, "1", "Poisson's ratio of balls and rings", minimum=0.0, maximum=0.5)
-    density: float = real(7830.0, "kg/m3", "density of the balls", above=0.0)
+    material: int = choice(
+        STEEL, MATERIALS, "material of the balls; ceramic ones in steel rings make a hybrid bearing"
+    )
+    modulus: float = real(
+        0.0, "Pa", "modulus of elasticity of the balls; 0: the material's", minimum=0.0, shown="GPa"
+    )
+    poisson: float = real(
+        0.0, "1", "Poisson's ratio of the balls; 0: the material's", minimum=0.0, maximum=0.5
+    )
+    density: float = real(0.0, "kg/m3", "density of the balls; 0: the material's", minimum=0.0)
     first_angle: float = real(-math.pi / 2, "rad", "attitude angle of the first ball at the start")
     damping: float = real(
         0.0, "N.s/m2", "damping of the race contacts, proportional to indentation (2.38)", minimum=0.0
@@ -140,9 +148,9 @@ ROUNDING = 1e-12  # of a full turn of balls
 
 
 @kernel
-def ball_mass(rows, diameter, density):
-    """Of the balls side by side (kg); diameter: m, density: kg/m3."""
-    return rows * (density * math.pi / 6.0 * diameter**3.0)
+def ball_mass(b):
+    """Of the balls side by side (kg)."""
+    return b.rows * (density_of(b) * math.pi / 6.0 * b.diameter**3.0)
 
 
 @kernel
@@ -185,12 +193,16 @@ def start_angle(first, count, spread, i):
 
 
 @kernel
-def set_stiffness(stiffness, b):
-    """Set `stiffness`, a record of `RaceStiffness`: of a ball on either race (2.45), and through both."""
+def set_stiffness(stiffness, b, rings):
+    """Set `stiffness`, a record of `RaceStiffness`: of a ball on either race (2.45), and through both.
+
+    rings: `Elastic`.
+    """
+    modulus = effective_modulus(elastic_of(b), rings)
     groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner, outer = inner_radius(b), -outer_radius(b)
-    stiffness.inner = race_contact_stiffness(b.diameter, inner, b.conformity, b.modulus, b.poisson, b.hertz)
-    stiffness.outer = race_contact_stiffness(b.diameter, outer, groove, b.modulus, b.poisson, b.hertz)
+    stiffness.inner = race_contact_stiffness(b.diameter, inner, b.conformity, modulus, b.hertz)
+    stiffness.outer = race_contact_stiffness(b.diameter, outer, groove, modulus, b.hertz)
     stiffness.series = in_series(stiffness.inner, stiffness.outer)
 
 
@@ -201,21 +213,32 @@ def outer_share(stiffness):
     return outer / (inner + outer)
 
 
+@kernel
+def series_dissipation(stiffness):
+    """Dissipation parameter of both contacts of a ball as one, over that of each; a `RaceStiffness`.
+
+    At the same force each loses eps F d_i'^2, and the rings approach at the sum of both rates.
+    """
+    outer = outer_share(stiffness)
+    return outer * outer + (1.0 - outer) * (1.0 - outer)
+
+
 # Hits on a Hertz contact to one depth lose as much by c d as by eps k d^1.5 where c is this times
 # eps k times the root of the depth: the integrals of x^1.5 and of x, times sqrt(1 - x^2.5), from 0 to 1
 EQUAL_LOSS = 2.0 / 3.0 * math.gamma(2.3) / (math.gamma(0.8) * math.gamma(1.5))
 
 
 @kernel
-def set_race_law(law, b, stiffness, mass):
+def set_race_law(law, b, stiffness, mass, share):
     """Set `law`, a record, to that of the balls side by side on races, each of `stiffness` (N/m^1.5).
 
-    mass: of the balls side by side (kg). Hits are damped in proportion to indentation (2.38); one to the
-    expected indentation loses what the dissipation parameter of (2.12) asks for, to first order.
+    mass: of the balls side by side (kg); share: of the dissipation parameter, 1 for a contact alone and
+    `series_dissipation` for both races as one. Hits are damped in proportion to indentation (2.38); one to
+    the expected indentation loses what the dissipation parameter of (2.12) asks for, to first order.
     """
     law.stiffness, law.exponent = stiffness, 1.5
     law.damping, law.dissipation, law.viscous, law.mass = b.damping, 0.0, 0.0, 0.0
-    law.damping += EQUAL_LOSS * b.dissipation * stiffness * math.sqrt(b.expected_indentation)
+    law.damping += EQUAL_LOSS * share * b.dissipation * stiffness * math.sqrt(b.expected_indentation)
     law.damping_ratio, law.expected_indentation = b.damping_ratio, b.expected_indentation
     broadcast_law(law, b.rows)
     damp(law, mass)

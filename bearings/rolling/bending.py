@@ -31,6 +31,7 @@ from typing import NamedTuple
 
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import array, integer, real
+from ..contact.materials import elastic_of
 from .ball_set import MAX_BALLS
 
 MAX_HARMONICS = 13  # as many as `MAX_BALLS` ask for
@@ -262,12 +263,12 @@ def settle(bending, p, at, limit):
     bending.damping_ratio = p.ring.damping_ratio
     if top < 2:
         return
-    section = section_of(groove_of(p))
+    section, (modulus, poisson) = section_of(groove_of(p)), elastic_of(p.ring)
     density = p.ring.mass / (2.0 * math.pi * section.m0)
     for n in range(2, top + 1):
-        w = min(frequency(section, n, p.ring.modulus, p.ring.poisson, density), limit)
+        w = min(frequency(section, n, modulus, poisson, density), limit)
         bending.frequency[n - 2] = w
-        bending.weight[n - 2] = w * math.sqrt(compliance(section, n, p.ring.modulus, p.ring.poisson))
+        bending.weight[n - 2] = w * math.sqrt(compliance(section, n, modulus, poisson))
         bending.answer += bending.weight[n - 2] ** 2.0
         bending.fastest = max(bending.fastest, w)
 

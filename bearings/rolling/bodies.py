@@ -179,11 +179,11 @@ def settle(m, spread, side, lighter, reach):
     """
     p, d, b = m.p, m.d, m.p.balls
     declarations.settle(m, spread)
-    d.mass, d.ball_radius = ball_mass(b.rows, b.diameter, b.density), 0.5 * b.diameter
+    d.mass, d.ball_radius = ball_mass(b), 0.5 * b.diameter
     d.inertia = ball_inertia(d.mass, b.diameter)
     d.inner_radius, d.outer_radius = inner_radius(b) - 0.5 * b.play, outer_radius(b) + 0.5 * b.play
-    set_race_law(d.inner, b, d.stiffness.inner, d.mass)
-    set_race_law(d.outer, b, d.stiffness.outer, d.mass)
+    set_race_law(d.inner, b, d.stiffness.inner, d.mass, 1.0)
+    set_race_law(d.outer, b, d.stiffness.outer, d.mass, 1.0)
     d.race_friction = p.race_friction
     friction.settle(d.race_friction)
     d.micro_step = min(

@@ -13,6 +13,7 @@ from ..contact import journal as bore
 from ..contact.friction import FrictionLaw
 from ..contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, swing_rate
 from ..contact.line import BoreContact
+from ..contact.materials import elastic_of
 from ..contact.peaks import PeakMemory
 from . import ball_set, bending, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
@@ -116,7 +117,7 @@ def settle(m, spread):
     """Set in m.d what all rolling bearings share; spread: as in `balls.geometry`."""
     p, d, b = m.p, m.d, m.p.balls
     bore.settle(d, p, p.ring.mass)
-    ball_set.set_stiffness(d.stiffness, b)
+    ball_set.set_stiffness(d.stiffness, b, elastic_of(p.ring))
     d.inner_radius = ball_set.inner_radius(b)
     springs = Springs(b.count, b.first_angle, spread, b.play, b.rows * d.stiffness.series)
     d.rest_x, d.rest_y = resting_place(springs, p.ring.mass * p.gravity, b.pitch_diameter)
@@ -124,7 +125,8 @@ def settle(m, spread):
 
 GEOMETRY = (
     *("balls.diameter", "balls.pitch_diameter", "balls.conformity"),
-    *("balls.modulus", "balls.poisson", "balls.hertz"),
+    *("balls.material", "balls.modulus", "balls.poisson", "balls.hertz"),
+    *("ring.material", "ring.modulus", "ring.poisson"),
 )
 
 

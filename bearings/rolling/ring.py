@@ -16,11 +16,12 @@ from dataclasses import dataclass
 
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.ports import Motion
-from ...modelkit.variables import integer, real
+from ...modelkit.variables import choice, integer, real
 from .. import seat
 from ..contact.friction import curve
 from ..contact.journal import note, place_in_bore, time_to_touch, touch_at, touch_of, watch_contact
 from ..contact.laws import elastic_energy, elastic_force
+from ..contact.materials import MATERIALS, STEEL
 from ..contact.pair import INSIDE, Place, friction_line, heat, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled
 from . import bending
@@ -49,8 +50,13 @@ class Ring:
         maximum=MAX_HARMONICS,
     )
     width: float = real(0.0, "m", "width, of a ring that bends; 0: contact.length", minimum=0.0)
-    modulus: float = real(207e9, "Pa", "modulus of elasticity, of a ring that bends", above=0.0)
-    poisson: float = real(0.3, "1", "Poisson's ratio, of a ring that bends", minimum=0.0, maximum=0.5)
+    material: int = choice(STEEL, MATERIALS, "material of both rings; their mass is set apart")
+    modulus: float = real(
+        0.0, "Pa", "modulus of elasticity of both rings; 0: the material's", minimum=0.0, shown="GPa"
+    )
+    poisson: float = real(
+        0.0, "1", "Poisson's ratio of both rings; 0: the material's", minimum=0.0, maximum=0.5
+    )
     damping_ratio: float = real(0.0, "1", "damping ratio of each of its modes", minimum=0.0, maximum=1.0)
 
 

@@ -31,6 +31,7 @@ class MachineOptions(TypedDict, total=False):
     clearance: float | str
     mass: float | str  # of a rigid rotor, without `rotor`
     inertia: float | str
+    balls: str  # material of the bearings' balls
 
 
 def catalogue(folder: PathLike = ".") -> dict[str, Bearing]:
@@ -61,8 +62,9 @@ def new(
     of a rotor's .toml, or a Rotor; without, a rigid one of `mass`. options: `at` and `amb`, stations of the
     rotor for touchdown and magnetic bearings (by default those not in levitated_at, and those in it),
     `speed` (rad/s; by default below its first bending frequency), `clearance` (m, radial; 0.25 mm), `mass`
-    (kg), `inertia` (kg m2). What is to be known of the machine is warned of. Raises TouchdownError for what
-    cannot be, and where files are there already, unless `force` replaces them.
+    (kg), `inertia` (kg m2), `balls` ("steel" or "Si3N4"). What is to be known of the machine is warned of.
+    Raises TouchdownError for what cannot be, and where files are there already, unless `force` replaces
+    them.
 
     >>> scene = touchdown.new("my-machine", "7014", rotor="rotor_II", speed="9000 rpm")
     >>> scene.components["bearing_A"].preset
@@ -79,6 +81,7 @@ def new(
         rotor=None if rotor is None else os.fspath(rotor),
         at=_stations(options.get("at")),
         amb=_stations(options.get("amb")),
+        balls=options.get("balls", "steel"),
         **{"clearance": CLEARANCE, **given},
     )
     path = Path(os.fspath(folder))

@@ -118,9 +118,10 @@ class Rated:
 
     @property
     def pressure_safety(self) -> float:
-        """Load at which a race is pressed with 4200 MPa over the largest of the run."""
+        """Load at which a race is pressed to its limit (4200 MPa; hybrid 4600) over the run's largest."""
         hardest = max(self.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
-        return float(rating.pressure_safety(hardest)) if hardest > 0.0 else math.inf
+        limit = self.bearing.pressure_limit
+        return float(rating.pressure_safety(hardest, limit)) if hardest > 0.0 else math.inf
 
     @property
     def equivalent_load(self) -> float:
@@ -132,6 +133,17 @@ class Rated:
     def static_safety(self) -> float:
         """s_0 = C_0 / P_0."""
         return float(rating.static_safety(self.capacity.static, self.equivalent_load))
+
+    @property
+    def safety(self) -> float:
+        """The lowest of both."""
+        return min(self.static_safety, self.pressure_safety)
+
+    @property
+    def safety_by(self) -> str:
+        """Which of both the lowest is, in words."""
+        limit = f"against {1e-9 * self.bearing.pressure_limit:g} GPa on a race"
+        return limit if self.pressure_safety <= self.static_safety else "by the rating C₀"
 
     @property
     def turns(self) -> float:
@@ -160,7 +172,7 @@ def rated(subject: Subject, a: Attachment) -> Rated | str:
     lacking = [name for name in (LOAD, RING) if not subject.has(a, name)]
     if lacking:
         return f"{a.bearing} has no {' and no '.join(lacking)}, or it was not recorded"
-    names = [n for n in component.variables if n.startswith("balls.")]
+    names = [n for n in component.variables if n.startswith(("balls.", "ring."))]
     entry = catalogued(subject.result.scene.components[a.bearing].preset)
     try:
         values = dict(zip(names, component.read(names), strict=True))

@@ -188,6 +188,12 @@ def _declare_new(verb: argparse.ArgumentParser) -> None:
         "over the bore)",
     )
     verb.add_argument("--clearance", default="0.25 mm", help='radial (default: "0.25 mm")')
+    verb.add_argument(
+        "--balls",
+        default="steel",
+        metavar="MATERIAL",
+        help="of their balls: steel (the default) or Si3N4, ceramic ones of hybrid bearings",
+    )
     verb.add_argument("--mass", help="of a rigid rotor, instead of --rotor")
     verb.add_argument(
         "--inertia", help="its polar moment of inertia (default: mass times journal radius^2)"
@@ -208,6 +214,7 @@ def _execute_new(options: argparse.Namespace) -> int:
         amb=_names(options.amb),
         speed=above_zero(options.speed, "rad/s", "--speed"),
         clearance=above_zero(options.clearance, "m", "--clearance") or 0.0,
+        balls=options.balls,
         mass=above_zero(options.mass, "kg", "--mass"),
         inertia=above_zero(options.inertia, "kg.m2", "--inertia"),
     )

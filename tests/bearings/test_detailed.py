@@ -248,7 +248,10 @@ HARD = {
         for law in ("friction", "race_friction")
         for key, value in (("slope", 100.0), ("g2", 100.0), ("g3", 10.0))
     },
-    "races a hundred times stiffer": {"bearing.balls.modulus": 207e11},
+    "races a hundred times stiffer": {
+        "bearing.balls.modulus": 207e11,
+        "bearing.ring.modulus": 207e11,
+    },
     "1e5 rpm": {"rotor.speed": "100000 rpm"},
     "bunched": {"bearing.balls.bunching": 0.8},
     "stiff contacts between balls": {"bearing.ball_contact.stiffness": 1e12},

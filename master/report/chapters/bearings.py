@@ -162,12 +162,14 @@ def _static(found: dict[str, Rated]) -> Table:
             quantity(one.equivalent_load, "N", 3),
             digits(one.static_safety, 3),
             digits(one.pressure_safety, 3),
+            f"{1e-9 * one.bearing.pressure_limit:g} GPa",
         ]
         for seat, one in found.items()
     ]
     head = [
         *("Seat", "Static rating C₀", "C₀ from", "Equivalent load P₀", "s₀ = C₀/P₀"),
-        "Safety against 4.2 GPa",
+        "Safety against dents",
+        "by a pressure of",
     ]
     return Table("Static safety at the largest ball load of the run", head, rows, 1)
 
@@ -196,8 +198,8 @@ def _words(found: dict[str, Rated]) -> list[Block]:
     if dented:
         said.append(
             Text(
-                f"At {listed(dented)} the races are pressed beyond 4.2 GPa: the first drop reaches the "
-                "limit, and dents them."
+                f"At {listed(dented)} the races are pressed beyond what they bear without a dent: "
+                "the first drop reaches the limit, and dents them."
             )
         )
     close = [seat for seat, one in found.items() if 1.0 <= one.pressure_safety < USUAL_STATIC_SAFETY]

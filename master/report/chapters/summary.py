@@ -100,10 +100,12 @@ def _rated(subject: Subject) -> Iterator[Tile]:
     told = [(one, a) for a in subject.seats if isinstance(one := rated(subject, a), Rated)]
     if subject.first_contact is None or not told:
         return
-    one, a = min(told, key=lambda pair: pair[0].pressure_safety)
+    one, a = min(told, key=lambda pair: pair[0].safety)
     pressure = max(one.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
     yield Tile("Largest Hertz pressure", quantity(pressure, "Pa", 3), _at(subject, a))
-    yield Tile("Static safety s₀, estimate", digits(one.static_safety, 3), _at(subject, a))
+    yield Tile(
+        "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
+    )
 
 
 def _at(subject: Subject, a: Attachment) -> str:

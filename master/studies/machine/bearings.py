@@ -13,6 +13,13 @@ from ...common.errors import TouchdownError, one_of, with_remedy
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
 MICROMETRE_KEYS = ("play",)  # in um
 BORE_TOLERANCE = 1e-6  # m, of a bore asked for
+HINTS = (
+    "ceramic balls, as of hybrid bearings: `touchdown new --balls Si3N4`, or beside a preset in a scene "
+    'balls.material = "Si3N4"',
+    "duplex: a pair side by side is one set of balls with balls.rows = 2 (as 7914 pair); it takes radial "
+    "load only, preload is a negative play",
+    "numbers of one bearing and where each is from: `touchdown catalogue NAME`",
+)
 
 
 def known(folder: Path) -> dict[str, Bearing]:
@@ -59,7 +66,7 @@ def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
         )
     width = max(len(name) for name in chosen)
     head = f"{'':<{width}}  bore x outside x width [mm]   balls     C [kN]    C0 [kN]  ratings by"
-    return "\n".join((head, *_lines(chosen, width)))
+    return "\n".join((head, *_lines(chosen, width), "", *HINTS))
 
 
 def _lines(chosen: Mapping[str, Bearing], width: int) -> Iterable[str]:

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ....bearings import catalogue
-from ....bearings.catalogue import OWN_FILE, Bearing, CatalogueError
+from ....bearings.catalogue import BALL_MATERIALS, OWN_FILE, Bearing, CatalogueError
 from ....modelkit.model import ModelError
 from ....rotor.beams.shaft import Shaft, Station
 from ....rotor.file import parse, shipped, text_of, written
-from ...common.errors import TouchdownError
+from ...common.errors import TouchdownError, one_of
 from ...common.files import keep_other, writing_to
 from ...scene.file import SCENE_FILE
 from ..rotor.report import find_rotor
@@ -103,6 +103,7 @@ class Wanted:
     clearance: float = CLEARANCE
     mass: float | None = None  # of a rigid rotor
     inertia: float | None = None  # and its polar moment of inertia
+    balls: str = "steel"  # material of the bearings' balls
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,7 @@ def machine(wanted: Wanted, title: str) -> Machine:
         value = getattr(wanted, name)
         if value is not None and not 0.0 < value < math.inf:
             raise TouchdownError(f"{name} = {value:g} {unit} must be above 0")
-    places = _Bearings(wanted.bearings)
+    places = _Bearings(wanted.bearings, wanted.balls)
     if wanted.rotor is not None:
         if wanted.mass is not None or wanted.inertia is not None:
             raise TouchdownError("--mass and --inertia are of a rigid rotor; leave them out, or --rotor")
@@ -156,12 +157,16 @@ def write(made: Machine, folder: Path, force: bool) -> Path:
 class _Bearings:
     """The touchdown bearings asked for, and the file of one's own that goes along with the scene."""
 
-    def __init__(self, names: Sequence[str]) -> None:
+    def __init__(self, names: Sequence[str], balls: str) -> None:
         if not names:
             raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
         self.files: dict[str, str] = {}
-        found = [(self._preset(name), find_bearing(name, Path())) for name in names]
-        self._found: list[tuple[str, Bearing]] = found
+        if balls not in BALL_MATERIALS:
+            raise TouchdownError(f"balls = {balls}: {one_of(balls, BALL_MATERIALS)}")
+        material = BALL_MATERIALS.index(balls)
+        self._found: list[tuple[str, Bearing]] = [
+            (self._preset(name), find_bearing(name, Path()).with_balls(material)) for name in names
+        ]
 
     def of(self, places: Sequence[Support]) -> tuple[tuple[str, ...], tuple[Bearing, ...]]:
         """What the scene calls them, and themselves, for each place. Raises TouchdownError."""

@@ -6,8 +6,8 @@ import json
 import math
 from collections.abc import Iterator
 
-from ....bearings.catalogue import Bearing
-from ....bearings.catalogue.landing import landing_load
+from ....bearings.catalogue import BALL_MATERIALS, Bearing
+from ....bearings.catalogue.landing import landing
 from ....bearings.catalogue.load_sharing import harmonics_worth
 from ...scene.plausible import MAX_BORE_SPEED, RPM
 from .design import (
@@ -122,6 +122,8 @@ def _touchdown(d: Design) -> Iterator[str]:
     yield f'clearance = "{d.clearance * MM:g} mm"  # radial; by default half an air gap of 0.5 mm'
     if _alike(d):
         yield from _fitted(d.bearings[0], d.clearance, d.landed_mass * GRAVITY)
+    material = BALL_MATERIALS[d.bearings[0].balls.material]
+    yield f'balls.material = "{material}"  # {" or ".join(BALL_MATERIALS)}, the ceramic of hybrid bearings'
     yield from (
         'contact.law = "line"  # steel journal in steel bore, from geometry; or "power"',
         "contact.damping = 0",
@@ -150,10 +152,13 @@ def _housings(d: Design) -> Iterator[str]:
 
 def _fitted(bearing: Bearing, clearance: float, weight: float) -> Iterator[str]:
     """What hangs on the bearing's size, and on the weight (N) that falls on it."""
-    radius, load = 0.5 * bearing.bore - clearance, landing_load(bearing, clearance, weight * clearance)
+    radius, hit = 0.5 * bearing.bore - clearance, landing(bearing, clearance, weight * clearance)
     yield f'journal_radius = "{radius * MM:g} mm"  # half the bore less the clearance'
-    yield f'contact.load = "{rounded(load):g} N"  # at which that holds: what the fall presses it with'
-    yield _bending(bearing, load)
+    why = "the most that makes a line contact" if hit.is_most else "what the fall presses it with"
+    load = rounded(hit.load, down=True)
+    yield f'contact.load = "{load:g} N"  # at which the line contact is matched: {why}'
+    yield f'balls.expected_indentation = "{rounded(1e6 * hit.indentation):g} um"  # of the worst ball, then'
+    yield _bending(bearing, hit.load)
     if bearing.damping == 0.0:
         yield 'damping = "300 N.s/m"  # between the rings, as of a 6014: catalogues do not tell'
 

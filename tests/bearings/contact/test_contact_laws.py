@@ -129,7 +129,7 @@ def test_a_ball_loses_what_its_dissipation_parameter_asks_for():
     deepest = impact(ContactLaw(stiffness=stiffness), speed=speed).indentation
     balls = as_record(BallSet(dissipation=dissipation, expected_indentation=deepest))
     law = as_record(ContactLaw())
-    set_race_law(law, balls, stiffness, MASS)
+    set_race_law(law, balls, stiffness, MASS, 1.0)
     found = impact(ContactLaw(stiffness=stiffness, damping=float(law["damping"])), speed=speed)
     assert 1.0 - found.restitution == pytest.approx(2.0 / 3.0 * dissipation * speed, rel=1e-2)
 

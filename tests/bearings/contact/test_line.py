@@ -9,8 +9,9 @@ from scipy.integrate import quad
 
 import touchdown
 from touchdown.bearings import catalogue
-from touchdown.bearings.catalogue.landing import landing_load
+from touchdown.bearings.catalogue.landing import landing
 from touchdown.bearings.contact.line import FROM_GEOMETRY, BoreContact, approach, set_line
+from touchdown.bearings.contact.materials import STEEL_NUMBERS
 from touchdown.bearings.rolling.ball_set import RaceStiffness, set_stiffness
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
@@ -110,11 +111,11 @@ def test_the_worst_ball_of_a_steel_bore(scene: str, ball: float) -> None:
 def test_the_landing_s_energy_is_in_bore_and_balls() -> None:
     """Work of the load found, by quadrature: the disk's fall through its clearance."""
     energy, one = 1.65 * 9.81 * CLEARANCE, BORES["6904"]
-    load = landing_load(one, CLEARANCE, energy)
+    load = landing(one, CLEARANCE, energy).load
     record = as_record(law("6904"))
     bore, _ = quad(lambda p: p * approach(p, record, RADIUS, CLEARANCE).slope, 1e-3, load)
     stiffness = as_record(RaceStiffness())
-    set_stiffness(stiffness, as_record(one.balls))
+    set_stiffness(stiffness, as_record(one.balls), STEEL_NUMBERS)
     indentation = (4.37 / 17.0 * load / float(stiffness["series"])) ** (2.0 / 3.0)
     assert bore + 0.4 * load * indentation == pytest.approx(energy, rel=0.01)
     assert 868.0 < load < 1.2 * 868.0  # N, of the detailed model's first impact, which has a housing, too

@@ -18,12 +18,21 @@ from touchdown.bearings.contact.laws import (
     EXACT,
     PRINTED,
     damping_from_ratio,
-    effective_modulus,
     exact_ellipse,
     in_series,
     race_contact_stiffness,
 )
-from touchdown.bearings.rolling.ball_set import BallSet, FreeBallSet
+from touchdown.bearings.contact.materials import (
+    SILICON_NITRIDE,
+    SILICON_NITRIDE_NUMBERS,
+    STEEL_NUMBERS,
+    Elastic,
+    effective_modulus,
+)
+from touchdown.bearings.rolling.ball_set import BallSet, FreeBallSet, ball_mass
+from touchdown.modelkit.variables import as_record
+
+TOTAL = effective_modulus(STEEL_NUMBERS, STEEL_NUMBERS)  # Pa
 
 SETS = {
     "6004": BallSet(),
@@ -94,17 +103,17 @@ def test_against_exact_hertz(balls):
     The integrals are good to 0.1 %; the ellipticity, 1.0339 ratio^0.636, is 1.6 % high at a ratio of 33.
     """
     for race_radius, tolerance in ((inner_radius(balls), 0.02), (-outer_radius(balls), 0.01)):
-        contact = (balls.diameter, race_radius, balls.conformity, balls.modulus, balls.poisson)
-        exact = exact_stiffness(*contact)
-        assert race_contact_stiffness(*contact, PRINTED) == pytest.approx(exact, rel=tolerance)
-        assert race_contact_stiffness(*contact, EXACT) == pytest.approx(exact, rel=1e-10)
+        geometry = (balls.diameter, race_radius, balls.conformity)
+        exact = exact_stiffness(*geometry, 207e9, 0.3)
+        assert race_contact_stiffness(*geometry, TOTAL, PRINTED) == pytest.approx(exact, rel=tolerance)
+        assert race_contact_stiffness(*geometry, TOTAL, EXACT) == pytest.approx(exact, rel=1e-10)
 
 
 @SETS_BY_NAME
 def test_exact_is_the_default(balls):
     """The source's fits are asked for; without, Hertz's theory holds."""
-    contact = (balls.diameter, inner_radius(balls), balls.conformity, balls.modulus, balls.poisson)
-    assert stiffness_of(balls)[0] == race_contact_stiffness(*contact, EXACT)
+    geometry = (balls.diameter, inner_radius(balls), balls.conformity)
+    assert stiffness_of(balls)[0] == race_contact_stiffness(*geometry, TOTAL, EXACT)
     assert stiffness_of(replace(balls, hertz=PRINTED))[0] > 1.013 * stiffness_of(balls)[0]
 
 
@@ -139,9 +148,11 @@ def test_displacement_of_a_loaded_bearing():
         play=0.0,
         modulus=210e9,
     )
-    assert resting_place(balls, 1000.0) == pytest.approx((0.0, -15.1101e-6), rel=1e-5, abs=1e-12)
+    assert resting_place(balls, 1000.0, Elastic(210e9, 0.3)) == pytest.approx(
+        (0.0, -15.1101e-6), rel=1e-5, abs=1e-12
+    )
     printed = replace(balls, hertz=PRINTED)
-    assert resting_place(printed, 1000.0)[1] == pytest.approx(-15.0296e-6, rel=1e-5)
+    assert resting_place(printed, 1000.0, Elastic(210e9, 0.3))[1] == pytest.approx(-15.0296e-6, rel=1e-5)
 
 
 def test_grooves_may_differ():
@@ -167,11 +178,27 @@ def test_exact_hertz_knows_spheres():
 @SETS_BY_NAME
 def test_stiffness_scales(balls):
     """Proportional to the modulus, and to the root of the size of everything."""
-    changed = replace(balls, modulus=3.0 * balls.modulus)
     larger = replace(balls, diameter=4.0 * balls.diameter, pitch_diameter=4.0 * balls.pitch_diameter)
-    assert stiffness_of(changed)[0] == pytest.approx(3.0 * stiffness_of(balls)[0], rel=1e-13)
+    stiffer = stiffness_of(replace(balls, modulus=3.0 * 207e9), Elastic(3.0 * 207e9, 0.3))
+    assert stiffer[0] == pytest.approx(3.0 * stiffness_of(balls)[0], rel=1e-13)
     assert stiffness_of(larger)[1] == pytest.approx(2.0 * stiffness_of(balls)[1], rel=1e-13)
-    assert effective_modulus(207e9, 0.3) == pytest.approx(207e9 / 0.91, rel=1e-15)
+    assert pytest.approx(207e9 / 0.91, rel=1e-15) == TOTAL
+
+
+def test_ceramic_balls_in_steel_rings():
+    """Hertz: half of the plane compliances' sum; stiffness is as E_tot, density the ceramic's."""
+    hybrid = effective_modulus(SILICON_NITRIDE_NUMBERS, STEEL_NUMBERS)
+    assert hybrid == pytest.approx(2.0 / ((1.0 - 0.26**2) / 310e9 + 0.91 / 207e9), rel=1e-15)
+    balls = BallSet()
+    ceramic = replace(balls, material=SILICON_NITRIDE)
+    stiffer = np.divide(stiffness_of(ceramic), stiffness_of(balls))
+    assert stiffer == pytest.approx(hybrid / TOTAL, rel=1e-13)
+    assert ball_mass(as_record(ceramic)) / ball_mass(as_record(balls)) == pytest.approx(3200.0 / 7830.0)
+    own = replace(
+        ceramic, modulus=207e9, poisson=0.3, density=7830.0
+    )  # numbers set override the material's
+    assert stiffness_of(own) == stiffness_of(balls)
+    assert ball_mass(as_record(own)) == ball_mass(as_record(balls))
 
 
 @pytest.mark.parametrize(
@@ -179,7 +206,7 @@ def test_stiffness_scales(balls):
 )
 def test_no_point_contact_has_no_stiffness(race_radius, conformity):
     """A groove tighter than the ball, or a race no wider than it, has no point contact."""
-    assert math.isnan(race_contact_stiffness(6.4e-3, race_radius, conformity, 207e9, 0.3, EXACT))
+    assert math.isnan(race_contact_stiffness(6.4e-3, race_radius, conformity, TOTAL, EXACT))
 
 
 @pytest.mark.parametrize(("inner", "outer"), [(2.3e10, 2.4e10), (1e10, 1e10), (1e8, 5e10)])

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from touchdown.bearings.contact.materials import Elastic
 from touchdown.bearings.rating import (
     INNER,
     OUTER,
@@ -17,7 +18,8 @@ from touchdown.bearings.rating import (
     static_rating,
 )
 
-PROGRAM = RatedBearing(7, 11.5e-3, 43.5e-3, inner_groove=0.52, outer_groove=0.53, modulus=210e9)
+STEEL = Elastic(210e9, 0.3)
+PROGRAM = RatedBearing(7, 11.5e-3, 43.5e-3, inner_groove=0.52, outer_groove=0.53, balls=STEEL, rings=STEEL)
 RATING = 23400.0  # N, its C
 F_0 = {  # ISO 76 (2006), Table 1, radial ball bearings, by D_w cos(alpha) / D_pw
     **dict(zip((0.01, 0.02, 0.03, 0.04, 0.05), (14.9, 15.1, 15.3, 15.5, 15.7), strict=True)),
@@ -50,7 +52,9 @@ def test_dynamic_ratings_are_those_of_iso_281(gamma: float) -> None:
 def test_spheres_press_as_hertz_says() -> None:
     """A groove as wide as the outer race: a ball in a hollow sphere of twice its radius."""
     ball, modulus, load = 10e-3, 200e9, 50.0
-    contact = point_contact(RatedBearing(3, ball, ball * (1.0 + 1e-12), 1.0, 1.0, modulus=modulus), OUTER)
+    steel = Elastic(modulus, 0.3)
+    bearing = RatedBearing(3, ball, ball * (1.0 + 1e-12), 1.0, 1.0, balls=steel, rings=steel)
+    contact = point_contact(bearing, OUTER)
     reduced, radius = modulus / (2.0 * (1.0 - 0.3**2)), ball
     axis = (3.0 * load * radius / (4.0 * reduced)) ** (1.0 / 3.0)
     assert contact.semi_axes(load) == pytest.approx((axis, axis))

@@ -9,7 +9,20 @@ import numpy as np
 import pytest
 
 from touchdown.bearings import rating
-from touchdown.bearings.rating import INNER, OUTER, RatedBearing
+from touchdown.bearings.contact.materials import (
+    SILICON_NITRIDE,
+    SILICON_NITRIDE_NUMBERS,
+    STEEL_NUMBERS,
+    effective_modulus,
+)
+from touchdown.bearings.rating import (
+    INNER,
+    OUTER,
+    RatedBearing,
+    capacity,
+    pressure_safety,
+    static_rating,
+)
 from touchdown.bearings.rolling.ball_set import BallSet
 
 BEARING = RatedBearing(9, 12.7e-3, 65e-3, 0.52, 0.52)
@@ -116,3 +129,27 @@ def test_damage_of_a_drop() -> None:
     assert rating.drops(rating.drop_damage(BEARING, 33200.0, [0.0], [1.0])) == math.inf
     with pytest.raises(ValueError, match="1 loads and 2 numbers"):
         rating.drop_damage(BEARING, 33200.0, [1.0], [1.0, 2.0])
+
+
+def test_ceramic_balls_take_a_smaller_static_load() -> None:
+    """ISO 20056-2: 4600 instead of 4200 MPa, at a contact stiffer by E_tot: (4600/4200)^3 over E_tot^2."""
+    hybrid = replace(BEARING, balls=SILICON_NITRIDE_NUMBERS, hybrid=True)
+    softer = effective_modulus(STEEL_NUMBERS, STEEL_NUMBERS) / effective_modulus(
+        SILICON_NITRIDE_NUMBERS, STEEL_NUMBERS
+    )
+    ratio = (4600.0 / 4200.0) ** 3 * softer**2
+    assert ratio == pytest.approx(0.932, abs=1e-3)
+    assert static_rating(hybrid) == pytest.approx(ratio * static_rating(BEARING), rel=1e-12)
+    stated = capacity(hybrid, static=5000.0, dynamic=9000.0)  # a maker's, of steel balls
+    assert stated == pytest.approx((5000.0 * ratio, 9000.0), rel=1e-12)
+    assert pressure_safety(4600e6, hybrid.pressure_limit) == 1.0
+
+
+def test_a_model_s_material_is_rated() -> None:
+    values = {"balls.count": 9, "balls.diameter": 12.7e-3, "balls.pitch_diameter": 65e-3}
+    values |= {"balls.conformity": 1.04, "balls.material": SILICON_NITRIDE, "ring.material": 0}
+    found = RatedBearing.of(values)
+    assert found.hybrid
+    assert found.balls == SILICON_NITRIDE_NUMBERS
+    assert not RatedBearing.of(values | {"ring.material": SILICON_NITRIDE}).hybrid
+    assert RatedBearing.of(values | {"balls.modulus": 300e9}).balls.modulus == 300e9

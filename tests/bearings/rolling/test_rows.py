@@ -50,6 +50,7 @@ def test_two_rows_move_like_one_of_twice_the_stiffness_and_mass(bearing: str) ->
     twice: dict[str, object] = {
         "balls.damping": 2e5,
         "balls.modulus": 2 * 207e9,
+        "ring.modulus": 2 * 207e9,
         "balls.density": 2 * 7830.0,
     }
     side = SIDE[bearing]

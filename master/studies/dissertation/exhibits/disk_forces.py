@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .....bearings.contact.materials import STEEL_DENSITY
 from ....coupling.simulation import opened
 from ....results.figures.forces import draw_contacts, forces
 from ....results.figures.spectra import HARMONICS, LOW_BAND_HZ, RPM, spectrum
@@ -153,7 +154,7 @@ def _one_mass(run: Result) -> float:
     value = run.ending.value
     volume = math.pi / 6.0 * value("bearing.balls.diameter") ** 3
     masses = [value(name) for name in MASSES]
-    balls = value("bearing.balls.count") * value("bearing.balls.density") * volume
+    balls = value("bearing.balls.count") * STEEL_DENSITY * volume
     return math.sqrt(value("housing.stiffness") / (sum(masses) + balls)) / (2.0 * math.pi)
 
 
