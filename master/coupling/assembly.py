@@ -9,7 +9,7 @@ from ...fmus.recipes import bore_of, preset
 from ...modelkit.model import ModelError
 from ...modelkit.units import is_bare
 from ...modelkit.variables import Causality
-from ..common.errors import TouchdownError
+from ..common.errors import TouchdownError, one_of
 from ..components.component import SETTABLE, Component, check_value, value_of
 from ..scene.plausible import Seat, plausibility_warnings
 from ..scene.scene import ComponentSpec, Scene
@@ -58,6 +58,7 @@ def assemble(scene: Scene, load: Callable[[str, str], Component], hear: Hearing)
 def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> System:
     scheme = scene.run.scheme
     _check_zero(scene, components)
+    _check_gaps(scene, components)
     settings: dict[tuple[str, str], float] = {}
     left_out: list[str] = []
     for name, component in components.items():
@@ -78,6 +79,22 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     components = hear(components, attachments)
     start = scene.run.start_time
     return System(components, attachments, connections, settings, every, told, bonds, start)
+
+
+def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
+    """Raise TouchdownError for a gap at a place that no component tells."""
+    for gap in scene.gaps:
+        for port in filter(None, (gap.at, gap.stator)):
+            name, _, inner = port.partition(".")
+            if name not in components:
+                raise TouchdownError(f"gap {gap.name}: {port}: {one_of(name, components)}")
+            there = components[name].variables
+            if not {f"{inner}.x", f"{inner}.y"} <= there.keys():
+                ports = sorted({one.rpartition(".")[0] for one in there if one.endswith(".x")} - {""})
+                raise TouchdownError(
+                    f"gap {gap.name}: {name} tells no place {inner}; {one_of(inner, ports)}. Each station "
+                    "of a rotor's file is a place"
+                )
 
 
 def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterator[str]:

@@ -20,6 +20,7 @@ from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .ending import Finished, ending
 from .folder import TABLE_FILE, ResultsFolder, claimed, write_ending
+from .gaps import closed
 from .recording import Recording, write_csv
 from .result import RECORDING, Result, Scratch
 from .summary import summarise
@@ -63,7 +64,13 @@ def run_scene(
             outcome = outcome.wanted().after(system.close())
             recording = _reopened(folder / RECORDING, scratch, outcome)
             summary = summarise(scene, told, outcome, recording)
-            warnings = [*system.remarks, *_early(summary), *unsettled(scene, summary), *_warnings(outcome)]
+            warnings = [
+                *system.remarks,
+                *_early(summary),
+                *unsettled(scene, summary),
+                *closed(scene, summary),
+            ]
+            warnings += _warnings(outcome)
             with _writing(folder, outcome.ended is not Ended.STOPPED):
                 drawn: list[Path] = []
                 try:

@@ -17,6 +17,7 @@ from ..coupling.simulation import Outcome, energy_scale
 from ..scene.scene import Scene
 from .ending import Readable, housing_port
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
+from .gaps import gap_figures
 from .recording import NotRecordedError, Recording
 from .settling import Course, course, proposed, settled_at
 from .spectra import hann
@@ -120,6 +121,8 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
     if by_master := [a.bearing for a in seats if is_heard(system, a)]:
         figures["contact_heard_by_master"] = ", ".join(by_master)
+    with suppress(NotRecordedError):
+        figures |= gap_figures(scene, recording, outcome.zero)
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)

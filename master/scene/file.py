@@ -48,6 +48,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..common.errors import TouchdownError, one_of
+from .gaps import Gap, gaps
 from .run_spec import READERS, RunSpec, with_changes
 from .scene import BondSpec, ComponentSpec, Scene, Wire, bonds, checked_preset, wires
 from .tables import (
@@ -145,6 +146,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "sense",
         "connect",
         "bond",
+        "gap",
         "run",
         "components",
         "set",
@@ -169,6 +171,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         energy_scale=references(data.get("energy_scale", []), f"scene {name}: energy_scale"),
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
+        gaps=gaps(data.get("gap", []), f"scene {name}: gap"),
     )
     return _with_shared(scene, data.get("set", ()))
 
@@ -349,6 +352,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
         "own": own,
         "run": with_changes(RunSpec(), table(parts["run"], "run")),
         "folder": Path(parts["folder"]),
+        "gaps": tuple(Gap(*gap) for gap in parts.get("gaps", ())),
     }
     return Scene(**parts)
 

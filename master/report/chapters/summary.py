@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ....bearings import rating
 from ...common.errors import Ended
 from ...coupling.connections import Attachment
 from ...results.whirl.evidence import CONTACT, evidence, unbalanced
+from ...scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
 from ..numbers import RPM, digits, listed, quantity, share
@@ -63,6 +64,8 @@ def summary(subject: Subject) -> list[Block]:
         blocks.append(_verdicts(subject, subject.seats))
         told = [f"{line.removeprefix('whirl_')}." for line in evidence(subject.summary)]
         blocks += [Text("What the verdicts rest on:"), Points(told)] if told else []
+    if gaps := subject.result.scene.gaps:
+        blocks.append(_gaps(subject, gaps))
     return blocks
 
 
@@ -81,6 +84,10 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
             note = f"{_at(subject, a)}; {subject.firmness(key, a)}"
             yield Tile(label, quantity(factor * value, unit, 3), note)
     yield from _rated(subject)
+    least = number(subject.summary.get("least_gap_um"))
+    if least is not None:
+        label = "Least gap left" if least > 0.0 else "A gap closes: beyond it by"
+        yield Tile(label, quantity(1e-6 * abs(least), "m", 3), f"at {subject.summary['least_gap_at']}")
     settled = number(subject.summary.get("settling_time_s"))
     if subject.first_contact is not None:
         when = "not in this run" if settled is None else "after the shutdown"
@@ -137,6 +144,30 @@ def _verdicts(subject: Subject, seats: list[Attachment]) -> Table:
         *("How firm that is", "How it ends up", "Whirl turns", "Whirl frequency"),
     ]
     return Table("Verdict at each touchdown bearing", head, rows, numbers=2)
+
+
+def _gaps(subject: Subject, gaps: Sequence[Gap]) -> Table:
+    """What is left of each gap."""
+    rows = []
+    for gap in gaps:
+        figure = {
+            key: number(subject.summary.get(f"{gap.key}_{key}"))
+            for key in ("least_um", "least_time_s", "least_rotor_speed_rpm", "touches")
+        }
+        least, speed = figure["least_um"], figure["least_rotor_speed_rpm"]
+        rows.append(
+            [
+                gap.name,
+                quantity(gap.radial, "m"),
+                f"{gap.at} against {gap.stator or 'space'}",
+                quantity(None if least is None else 1e-6 * least, "m", 3),
+                quantity(figure["least_time_s"], "s", 3),
+                "-" if speed is None else f"{digits(speed, 4)} rpm",
+                "-" if figure["touches"] is None else digits(figure["touches"], 3),
+            ]
+        )
+    head = ["Gap", "Radial", "Place", "Least left", "At", "Rotor's speed then", "Touches"]
+    return Table("Does it hit?", head, rows, 1)
 
 
 def _settled(subject: Subject, a: Attachment) -> str:

@@ -209,8 +209,8 @@ def _draw_orbit(axes: Axes, run: Finished, a: Attachment) -> None:
     x, y = (UM * run.recording[a.motion(axis)] for axis in "xy")
     axes.plot(x, y, color=BLUE, lw=0.6, label="rotor")
     axes.set_aspect("equal", adjustable="box")
-    axes.set_xlabel("x [µm]")
-    axes.set_ylabel("y [µm]")
+    axes.set_xlabel("x in space [µm]")
+    axes.set_ylabel("y in space [µm]")
 
 
 def _draw_landing(axes: Axes, run: Finished, a: Attachment) -> None:
@@ -309,8 +309,8 @@ def _draw(axes: Axes, run: Finished, a: Attachment, seat: str) -> float:
     axes.plot(x[-1], y[-1], "o", color=ORANGE, ms=5, label="rotor at the end")
     axes.set_aspect("equal", adjustable="box")
     axes.set_title(f"{seat} ({a.bearing}): {_verdict(run, a)}")
-    axes.set_xlabel("x [µm]")
-    axes.set_ylabel("y [µm]")
+    axes.set_xlabel("x against the housing [µm]")
+    axes.set_ylabel("y against the housing [µm]")
     return reach
 
 

@@ -20,6 +20,7 @@ from ..stresses import stressed
 from ..summary import energy_total, is_heard, touchdown_seats
 from .energy import energy
 from .forces import contacts, forces, has_contacts
+from .gaps import gaps_left
 from .motion import distance, orbits, paths, slowing, speeds
 from .spectra import has_spectrum, has_waterfall, motion_waterfall, spectrum
 from .stress import has_stress, stress
@@ -57,7 +58,7 @@ OF_BEARING = [
     OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),
 ]
 
-NAMES = (*(picture.name for picture in OF_BEARING), "orbits", "stress", "energy")
+NAMES = (*(picture.name for picture in OF_BEARING), "orbits", "gaps", "stress", "energy")
 """Of all files, before the component that some have at the end."""
 
 
@@ -89,6 +90,8 @@ def _pictures(run: Finished) -> Iterator[Picture]:
                 yield f"{picture.name}{tail}", _of_bearing(picture, run, a)
     if len(seats) > 1:
         yield "orbits", partial(orbits, run=run, seats=seats)
+    if run.scene.gaps:
+        yield "gaps", partial(gaps_left, run=run)
     rotors = stressed(run.system)
     for name in rotors:
         tail = f"-{name}" if len(rotors) > 1 else ""

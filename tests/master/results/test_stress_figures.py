@@ -137,7 +137,10 @@ def test_the_orbits_stand_side_by_side(drop: Drop) -> None:
     assert first.get_xlim() == second.get_xlim() == first.get_ylim() == second.get_ylim()
     for axes, seat in zip(figure.axes, "AB", strict=True):
         assert axes.get_title() == f"{seat} (bearing_{seat}): {drop.summary[f'whirl_{seat}']}"
-        assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [µm]", "y [µm]")
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (
+            "x against the housing [µm]",
+            "y against the housing [µm]",
+        )
         assert axes.get_aspect() == 1.0
 
 

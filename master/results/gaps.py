@@ -1,0 +1,118 @@
+"""What is left of the gaps around a rotor along a run, and how often it touched there.
+
+Between recorded times the way is a cubic of places and velocities, where velocities were recorded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scene.gaps import Gap
+from ..scene.scene import Scene
+from .recording import Recording
+
+PARTS = 8  # of an interval between recorded times, in which the way is looked at
+RPM = 60.0 / (2.0 * math.pi)
+
+
+@dataclass(frozen=True)
+class Left:
+    """What is left of a gap over time."""
+
+    gap: Gap
+    time: np.ndarray  # s, (n,)
+    left: np.ndarray  # m, (n,); below 0 the rotor would be in the stator
+
+    def since(self, time: float) -> Left:
+        """The same from a time (s) on; all of it where the run ends before."""
+        later = self.time >= time
+        return Left(self.gap, self.time[later], self.left[later]) if later.any() else self
+
+    @property
+    def least(self) -> int:
+        """Where in time it is least."""
+        return int(np.argmin(self.left))
+
+    @property
+    def touches(self) -> int:
+        """How often the rotor comes to the stator."""
+        closed = self.left <= 0.0
+        return int(closed[0]) + int(np.count_nonzero(closed[1:] & ~closed[:-1]))
+
+
+def left_of(gap: Gap, recording: Recording) -> Left:
+    """What is left of `gap`. Raises NotRecordedError where its place was not recorded."""
+    time = recording.time
+    ways = [_way(gap, axis, recording) for axis in "xy"]
+    if len(time) < 2 or any(speed is None for _, speed in ways):
+        return Left(gap, time, gap.radial - np.hypot(ways[0][0], ways[1][0]))
+    between = np.linspace(0.0, 1.0, PARTS, endpoint=False)
+    finer = (time[:-1, None] + np.diff(time)[:, None] * between).ravel()
+    x, y = (_cubic(time, place, speed, between) for place, speed in ways if speed is not None)
+    finer = np.append(finer, time[-1])
+    return Left(gap, finer, gap.radial - np.hypot(x, y))
+
+
+def _way(gap: Gap, axis: str, recording: Recording) -> tuple[np.ndarray, np.ndarray | None]:
+    """Place (m) and velocity (m/s) of the rotor against the stator; None where not recorded."""
+    names = [f"{port}.v{axis}" for port in (gap.at, gap.stator) if port]
+    place = recording[f"{gap.at}.{axis}"] - (recording[f"{gap.stator}.{axis}"] if gap.stator else 0.0)
+    if not all(name in recording for name in names):
+        return place, None
+    return place, recording[names[0]] - (recording[names[1]] if gap.stator else 0.0)
+
+
+def _cubic(time: np.ndarray, place: np.ndarray, speed: np.ndarray, between: np.ndarray) -> np.ndarray:
+    """Hermite's cubic in all intervals, at `between` (0 to 1) in each, and the last place."""
+    h, s = np.diff(time)[:, None], between[None, :]
+    r = 1.0 - s
+    begin, end = place[:-1, None], place[1:, None]
+    way = r * r * ((1.0 + 2.0 * s) * begin + s * h * speed[:-1, None])
+    way = way + s * s * ((3.0 - 2.0 * s) * end - r * h * speed[1:, None])
+    return np.append(way.ravel(), place[-1])
+
+
+def gap_figures(scene: Scene, recording: Recording, zero: float) -> dict[str, object]:
+    """Figures of a run from `zero` (s) on for each gap, and the least of all; without gaps, none.
+
+    Times count from there. Raises NotRecordedError where a place was not recorded.
+    """
+    figures: dict[str, object] = {}
+    found = [left_of(gap, recording).since(zero) for gap in scene.gaps]
+    for one in found:
+        key, at = one.gap.key, one.least
+        figures[f"{key}_least_um"] = 1e6 * float(one.left[at])
+        figures[f"{key}_least_time_s"] = float(one.time[at]) - zero
+        figures[f"{key}_least_rotor_speed_rpm"] = _rotor_speed(one, recording)
+        figures[f"{key}_touches"] = one.touches
+    if found:
+        least = min(found, key=lambda one: float(one.left.min()))
+        figures |= {"least_gap_um": 1e6 * float(least.left.min()), "least_gap_at": least.gap.name}
+    return figures
+
+
+def _rotor_speed(one: Left, recording: Recording) -> float | None:
+    """Of the rotor (rpm) when the gap is least; None where that was not recorded."""
+    name = f"{one.gap.at}.omega"
+    if name not in recording:
+        return None
+    return RPM * float(np.interp(one.time[one.least], recording.time, recording[name]))
+
+
+def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
+    """What is to be said of gaps that the rotor closed, a line each."""
+    said: list[str] = []
+    for gap in scene.gaps:
+        touches, least = summary.get(f"{gap.key}_touches"), summary.get(f"{gap.key}_least_um")
+        if isinstance(touches, int) and isinstance(least, float) and touches > 0:
+            times = "once" if touches == 1 else f"{touches} times"
+            said.append(
+                f"gap {gap.name} ({1e3 * gap.radial:g} mm at {gap.at}) is closed {times}: the rotor goes "
+                f"{-least:.3g} um beyond it. Nothing acts there in this run; a bushing of that clearance "
+                f"attached to {gap.at} would"
+            )
+    return said

@@ -1,0 +1,104 @@
+"""Gaps around the rotor: what is left of them, when, how often they close, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import touchdown
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.results.gaps import left_of
+from touchdown.master.scene.file import read_resolved
+from touchdown.master.scene.gaps import Gap, gaps
+
+SCENE = """
+extends = "disk-caged-simplified"
+[[gap]]
+name = "AMB A"
+at = "rotor.amb"
+radial = "0.5 mm"
+[[gap]]
+name = "impeller shroud"
+at = "rotor.A"
+radial = "0.29 mm"
+stator = "housing.seat"
+"""
+
+
+@pytest.fixture(scope="module")
+def dropped(tmp_path_factory: pytest.TempPathFactory) -> touchdown.Result:
+    """A disk that falls 0.3 mm into its bearing, and bounces."""
+    folder = tmp_path_factory.mktemp("gaps")
+    (folder / "own.toml").write_text(SCENE, encoding="utf-8")
+    scene = touchdown.load(folder / "own.toml").set({"run.duration": "30 ms"})
+    return touchdown.run(scene, folder / "run", in_process=True, pictures=True)
+
+
+def test_the_least_is_that_of_the_way(dropped: touchdown.Result) -> None:
+    """Of recorded places, and of a cubic between them: some nanometres less."""
+    summary, recording = dropped.summary, dropped.recording
+    far = np.hypot(recording["rotor.amb.x"], recording["rotor.amb.y"])
+    assert summary["gap_AMB_A_least_um"] == pytest.approx(500.0 - 1e6 * far.max(), abs=0.3)
+    assert summary["gap_AMB_A_least_um"] <= 500.0 - 1e6 * far.max()
+    assert summary["gap_AMB_A_touches"] == 0
+    assert summary["gap_AMB_A_least_rotor_speed_rpm"] == pytest.approx(9000.0, rel=2e-3)
+
+
+def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
+    """Against the housing, which the landing pushes down: 0.3 mm and the bearing's give close 0.29 mm."""
+    found = left_of(Gap("one", "rotor.A", 0.29e-3, "housing.seat"), dropped.recording)
+    x, y = (dropped.recording[f"rotor.A.{k}"] - dropped.recording[f"housing.seat.{k}"] for k in "xy")
+    assert found.left.min() == pytest.approx(0.29e-3 - np.hypot(x, y).max(), abs=3e-7)
+    assert dropped.summary["gap_impeller_shroud_touches"] >= 1
+    assert dropped.summary["least_gap_at"] == "impeller shroud"
+    assert any("gap impeller shroud (0.29 mm at rotor.A) is closed" in w for w in dropped.warnings)
+    assert (dropped.folder / "gaps.png").is_file()
+
+
+def test_a_circle_between_few_points_is_followed() -> None:
+    """Radius 1 mm, 8 recorded points a turn: the cubic's radius is off by 1e-3 of it at most."""
+
+    class Way(dict):  # type: ignore[type-arg]
+        time = np.linspace(0.0, 1.0, 9)
+
+    turns = 2.0 * np.pi * Way.time
+    way = Way({
+        "r.A.x": 1e-3 * np.cos(turns), "r.A.y": 1e-3 * np.sin(turns),
+        "r.A.vx": -2e-3 * np.pi * np.sin(turns), "r.A.vy": 2e-3 * np.pi * np.cos(turns),
+    })  # fmt: skip
+    left = left_of(Gap("one", "r.A", 2e-3), way).left  # type: ignore[arg-type]
+    assert len(left) == 65
+    assert left == pytest.approx(1e-3, abs=2e-6)
+
+
+def test_it_is_left_and_found_again(dropped: touchdown.Result) -> None:
+    """The scene as it was run has its gaps, as one of before that has none is read."""
+    left = read_resolved(dropped.folder / "scene.json")
+    assert [gap.name for gap in left.gaps] == ["AMB A", "impeller shroud"]
+    values = json.loads((dropped.folder / "scene.json").read_text(encoding="utf-8"))
+    del values["gaps"]
+    (dropped.folder / "older.json").write_text(json.dumps(values), encoding="utf-8")
+    assert read_resolved(dropped.folder / "older.json").gaps == ()
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"name": "AMB"}, "gap 1 lacks at; write such as"),
+        ({"name": "AMB", "at": "rotor.A", "radial": "0 mm"}, "radial = 0 mm must be above 0"),
+        ({"name": "a/b", "at": "rotor.A", "radial": 1e-3}, "name = 'a/b'; take letters"),
+        ({"name": "AMB", "at": "rotor.A", "radial": 1e-3, "hits": 1}, "unknown key hits"),
+    ],
+)
+def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
+    with pytest.raises(TouchdownError, match=message):
+        gaps([entry], "gap")
+
+
+def test_a_place_that_is_none_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(SCENE.replace("rotor.amb", "rotor.B"), encoding="utf-8")
+    with pytest.raises(TouchdownError, match=r"gap AMB A: rotor tells no place B; .*A, .*amb"):
+        touchdown.run(touchdown.load(tmp_path / "own.toml"), in_process=True)
