@@ -34,7 +34,9 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
         completion.schemes,
     )
     verb.add_argument("--macro-step", help='macro step, in s, as text such as "20 us", or auto')
-    verb.add_argument("--duration", help='of the run from the scene\'s zero on, such as "0.2 s"')
+    verb.add_argument(
+        "--duration", help='of the run, counted from the scene\'s zero of time, such as "0.2 s"'
+    )
     add_settings(verb, "set run.KEY or COMPONENT.VARIABLE")
     add_swaps(verb)
 

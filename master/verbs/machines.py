@@ -150,7 +150,7 @@ def _execute_catalogue(options: argparse.Namespace) -> int:
 
 CATALOGUE = Verb(
     "catalogue",
-    "list the bearings there are, or show one",
+    "list the bearings of the catalogue, or show one",
     CATALOGUE_EXAMPLES,
     _declare_catalogue,
     _execute_catalogue,
@@ -236,7 +236,7 @@ def _names(text: str | None) -> tuple[str, ...] | None:
 
 NEW = Verb(
     "new",
-    "a machine of one's own: a folder with a scene to start from",
+    "create a folder with a first scene for your machine",
     NEW_EXAMPLES,
     _declare_new,
     _execute_new,
@@ -357,7 +357,7 @@ def _stiffness(name: str, text: str) -> float:
 
 ROTOR = Verb(
     "rotor",
-    "describe rotors, also in a scene's bearings: frequencies, modes, critical speeds, how they lie",
+    "describe rotors, also in a scene's bearings: frequencies, modes, critical speeds, static position",
     ROTOR_EXAMPLES,
     _declare_rotor,
     _execute_rotor,

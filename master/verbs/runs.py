@@ -40,8 +40,8 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
         help="also run N siblings, whose starts are nanometres apart, and tell how far peaks lie apart",
     )
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
-    verb.add_argument("--no-pictures", action="store_true", help="draw nothing")
-    verb.add_argument("--dark", action="store_true", help="pictures on a dark ground")
+    verb.add_argument("--no-pictures", action="store_true", help="do not draw pictures")
+    verb.add_argument("--dark", action="store_true", help="pictures on a dark background")
     add_quiet(verb)
 
 
@@ -112,7 +112,9 @@ def _declare_report(verb: argparse.ArgumentParser) -> None:
     meant = "folder that `touchdown run` or `touchdown sweep` wrote"
     verb.add_argument("folder", metavar="RUN|SWEEP", type=Path, help=meant)
     add_output(verb, "RUN/report.html", "file")
-    verb.add_argument("--pdf", action="store_true", help="print it as PDF, too, by a Chromium on the PATH")
+    verb.add_argument(
+        "--pdf", action="store_true", help="also print it to PDF, with a Chromium on the PATH"
+    )
 
 
 def _execute_report(options: argparse.Namespace) -> int:
@@ -125,7 +127,11 @@ def _execute_report(options: argparse.Namespace) -> int:
 
 
 REPORT = Verb(
-    "report", "a run or a sweep as a page to hand on", REPORT_EXAMPLES, _declare_report, _execute_report
+    "report",
+    "write the report of a run or a sweep as one HTML page",
+    REPORT_EXAMPLES,
+    _declare_report,
+    _execute_report,
 )
 
 
@@ -150,4 +156,4 @@ def _execute_animate(options: argparse.Namespace) -> int:
     return 0
 
 
-ANIMATE = Verb("animate", "a run's drop as a film", ANIMATE_EXAMPLES, _declare_animate, _execute_animate)
+ANIMATE = Verb("animate", "make a film of a run", ANIMATE_EXAMPLES, _declare_animate, _execute_animate)
