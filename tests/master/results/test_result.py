@@ -215,7 +215,7 @@ def test_a_picture_of_one_panel_goes_onto_given_axes(name: str, detailed: Result
     figure = Figure()
     axes = figure.subplots(1, 2)[1]
     assert getattr(detailed.plot, name)(ax=axes) is axes
-    assert axes.get_xlabel().startswith("x in space [")
+    assert axes.get_xlabel().startswith("x ")
     assert axes.lines
 
 
