@@ -58,7 +58,10 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("python", "messages", "version"),
     ),
 }
-RATED = {"touchdown.master.report", "touchdown.master.studies.machine", "touchdown.master.api.machines"}
+RATED = {
+    *("touchdown.master.results.ratings", "touchdown.master.report"),
+    *("touchdown.master.studies.machine", "touchdown.master.api.machines"),
+}
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.machines"),

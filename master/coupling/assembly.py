@@ -67,6 +67,7 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
         left_out += _left_out(scene, component, [key for key in spec.inherited if key not in inherited])
         values = _settings(component, spec, inherited, scheme)
         component.set(values)
+        left_out += _of_another_bearing(name, spec)
         settings |= {(name, key): value for key, value in values.items()}
     connections = _connections(scene, scheme, components)
     attachments = recognised(connections, components)
@@ -198,6 +199,24 @@ def _left_out(scene: Scene, component: Component, settings: Sequence[str]) -> li
         lost.append("energy_scale, so energies are in J only")
     what = f"{component.name} is {spec.fmu} instead of {spec.instead_of}, and does not take over"
     return [f"{what} {'; '.join(lost)}"] if lost else []
+
+
+# What scenes set of a bearing that another bearing would have otherwise
+OF_A_BEARING = (
+    *("contact.stiffness", "contact.exponent", "contact.load", "contact.length", "contact.depth"),
+    *("contact.expected_indentation", "balls.expected_indentation", "ring.harmonics", "damping"),
+)
+
+
+def _of_another_bearing(name: str, spec: ComponentSpec) -> list[str]:
+    """What stays of the scene where another bearing is set beside it: a line, or none."""
+    stays = [key for key in OF_A_BEARING if key in spec.set and key not in spec.own]
+    if "preset" not in spec.own or not stays:
+        return []
+    return [
+        f"{name}.preset = {spec.preset} is set beside the scene, which has {', '.join(stays)} for another "
+        "bearing: they stay; set them, too, or leave them out of the scene"
+    ]
 
 
 def _lacks(component: Component, name: str) -> bool:

@@ -15,10 +15,12 @@ from ..coupling.connections import Attachment
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
 from ..scene.scene import Scene
-from .ending import Readable, housing_port
+from .ending import Finished, Readable, housing_port
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
+from .ratings import rating_figures
 from .recording import NotRecordedError, Recording
+from .requirements import requirement_figures
 from .settling import Course, course, proposed, settled_at
 from .spectra import hann
 from .stresses import stress_figures
@@ -123,6 +125,11 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         figures["contact_heard_by_master"] = ", ".join(by_master)
     with suppress(NotRecordedError):
         figures |= gap_figures(scene, recording, outcome.zero)
+    for a in seats:
+        tail = f"_{a.bearing}" if len(seats) > 1 else ""
+        own = _strain_figures(Finished(scene, system, recording), a)
+        figures |= {f"{key}{tail}": value for key, value in own.items()}
+    figures |= requirement_figures(scene.requirements, figures)
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
     figures |= outcome.coupling
     figures |= _run_figures(scene, system, outcome, recording)
@@ -148,6 +155,18 @@ def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[
             figures[figure.key] = value
         else:
             figures[figure.key] = figure.factor * (value - (outcome.zero if figure.from_zero else 0.0))
+    return figures
+
+
+def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
+    """What the run is to a bearing and its housing: pressure, safety, fatigue, heat, stroke."""
+    figures = rating_figures(run, a)
+    port, heat = housing_port(run.system, a), f"{a.bearing}.energy.dissipated"
+    if heat in run.recording:
+        figures["bearing_heat_J"] = float(run.recording[heat][-1] - run.recording[heat][0])
+    if port and f"{port}.x" in run.recording and f"{port}.y" in run.recording:
+        way = np.hypot(run.recording[f"{port}.x"], run.recording[f"{port}.y"])
+        figures["housing_stroke_um"] = 1e6 * float(way.max())
     return figures
 
 

@@ -49,6 +49,7 @@ from typing import Any, NamedTuple
 
 from ..common.errors import TouchdownError, one_of
 from .gaps import Gap, gaps
+from .requirements import Requirement, requirements
 from .run_spec import READERS, RunSpec, with_changes
 from .scene import BondSpec, ComponentSpec, Scene, Wire, bonds, checked_preset, wires
 from .tables import (
@@ -147,6 +148,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "connect",
         "bond",
         "gap",
+        "requirements",
         "run",
         "components",
         "set",
@@ -172,6 +174,7 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
         gaps=gaps(data.get("gap", []), f"scene {name}: gap"),
+        requirements=requirements(data.get("requirements", {}), f"scene {name}: [requirements]"),
     )
     return _with_shared(scene, data.get("set", ()))
 
@@ -256,6 +259,16 @@ def tables(path: Path, before: tuple[Path, ...] = ()) -> dict[str, Any]:
     exact = _exact(data)
     layers = [layer._replace(exact=layer.exact | exact) for layer in under["set"]]
     return _over(under, data) | {"set": [*layers, *data["set"]]}
+
+
+def read_settings(path: Path) -> dict[str, object]:
+    """Settings by name from the [set] of a TOML file. Raises TouchdownError."""
+    data = _toml(path, "settings")
+    refuse_unknown(data, ("title", "set"), f"settings {path}")
+    found = flat(table(data.get("set", {}), f"settings {path}: [set]"))
+    if not found:
+        raise TouchdownError(f'settings {path} set nothing; add such as [set."housing_*"]')
+    return found
 
 
 def _toml(path: Path, what: str) -> dict[str, Any]:
@@ -353,6 +366,7 @@ def restored(values: Mapping[str, Any]) -> Scene:
         "run": with_changes(RunSpec(), table(parts["run"], "run")),
         "folder": Path(parts["folder"]),
         "gaps": tuple(Gap(*gap) for gap in parts.get("gaps", ())),
+        "requirements": tuple(Requirement(*one) for one in parts.get("requirements", ())),
     }
     return Scene(**parts)
 

@@ -13,6 +13,7 @@ from typing import NamedTuple, cast
 from ..common.errors import TouchdownError, one_of, with_remedy
 from ..common.units import Scale, plain, to_si, with_unit
 from .gaps import Gap
+from .requirements import Requirement
 from .run_spec import UNITS, RunSpec, with_changes
 from .schemes import Scheme
 from .tables import component_name, entries, items, pairs, refuse_unknown, switch, texts, whole
@@ -213,6 +214,7 @@ class Scene:
     run: RunSpec = field(default_factory=RunSpec)
     folder: Path = Path()  # relative paths of FMUs start here
     gaps: tuple[Gap, ...] = ()  # around the rotor, to be watched
+    requirements: tuple[Requirement, ...] = ()  # what the drop is to keep to
     own: tuple[str, ...] = ()  # keys of `run` that the user set beside the scene
 
     def __post_init__(self) -> None:

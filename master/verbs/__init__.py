@@ -24,6 +24,7 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         sweeps.SWEEP,
         sweeps.MERGE,
         sweeps.VERDICT,
+        sweeps.CHOOSE,
         comparisons.COMPARE,
         comparisons.COMPARE_MODES,
         comparisons.ADVISE,

@@ -41,6 +41,9 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="do not draw pictures")
+    verb.add_argument(
+        "--require", action="store_true", help="fail where the scene's [requirements] are not met"
+    )
     verb.add_argument("--dark", action="store_true", help="pictures on a dark background")
     add_quiet(verb)
 
@@ -49,6 +52,7 @@ def _execute_run(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..common.errors import Ended
     from ..components.loading import foreign
+    from ..results.requirements import judged
     from ..results.run import natively, run_scene
     from ..results.summary import table
     from ..results.whirl.evidence import evidence, goes_on, hint, unbalanced
@@ -72,7 +76,8 @@ def _execute_run(options: argparse.Namespace) -> int:
         progress=not options.quiet,
     )
     print("\n".join([table(result.summary), *evidence(result.summary)]))
-    told = [*goes_on(result.summary), *_spread(result, options)]
+    wanted = judged(chosen.requirements, result.summary)
+    told = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
     hints = list(hint(options.scene, result.ending, result.summary))
     if hints and balanced(chosen, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict hangs on no phase of it"]
@@ -81,7 +86,7 @@ def _execute_run(options: argparse.Namespace) -> int:
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
         return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
-    return 0
+    return STOPPED if options.require and not all(one.met for one in wanted) else 0
 
 
 def _spread(result: Result, options: argparse.Namespace) -> list[str]:

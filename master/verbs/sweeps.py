@@ -31,6 +31,7 @@ from .arguments import (
 from .verb import Verb, broken_off, complain, warn
 
 if TYPE_CHECKING:
+    from ..scene.scene import Scene
     from ..studies.sweep.definition import Design
 
 
@@ -226,6 +227,81 @@ MERGE = Verb(
     MERGE_EXAMPLES,
     _declare_merge,
     _execute_merge,
+)
+
+
+CHOOSE_EXAMPLES = (
+    'touchdown choose my-machine/scene.toml --bearings "7014,6014,61914" --duration "0.2 s"',
+    'touchdown choose my-machine/scene.toml --bearings "7014" --mount soft.toml --mount stiff.toml',
+)
+
+
+def _declare_choose(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    verb.add_argument(
+        "--bearings", required=True, metavar="BEARING,...", help="of the catalogue, or of files of your own"
+    )
+    verb.add_argument(
+        "--mount",
+        action="append",
+        default=[],
+        type=Path,
+        metavar="FILE",
+        help="TOML file whose [set] tells of housings; all bearings are tried in it (default: the scene's)",
+    )
+    verb.add_argument("--drops", default="12", help="of each bearing in each mount (default: 12)")
+    verb.add_argument("--friction", default="0.3", help="part by which friction differs (default: 0.3)")
+    verb.add_argument("--clearance", default="0.1", help="and the clearance (default: 0.1)")
+    verb.add_argument("--duration", help='of each drop, such as "2 s"')
+    add_until(verb)
+    add_settings(verb)
+    add_output(verb, "runs/choose-SCENE", "folder for the results, in which a ranking goes on")
+    add_jobs(verb)
+    verb.add_argument("--fmus", action="store_true", help="step the FMUs, slower; the numbers are the same")
+    add_quiet(verb)
+
+
+def _execute_choose(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..api.machines import report
+    from ..common.units import to_si
+    from ..interop.scenes import find_scene
+    from ..scene.file import read_settings
+    from ..studies.machine.choose import Spread, choose, lines, write_table
+    from ..studies.sweep.definition import MAX_POINTS
+    from ..studies.sweep.sweep import Running, Sweep, sweep
+
+    chosen = timed(find_scene(options.scene).set(settings(options)), options)
+    folder = options.output or Path("runs") / f"choose-{chosen.name}"
+    spread = Spread(
+        count(options.drops, "--drops", MAX_POINTS),
+        to_si(options.friction, "1", "--friction"),
+        to_si(options.clearance, "1", "--clearance"),
+    )
+    running = Running(chosen_jobs(options), in_process=not options.fmus)
+
+    def run(scene: Scene, design: Design) -> Sweep:
+        print(f"{len(design)} drops", flush=True)
+        with bar_over(len(design), "drops", options.quiet) as bar:
+            return sweep(scene, design, folder, running, bar.update)
+
+    names = [name.strip() for name in options.bearings.split(",") if name.strip()]
+    mounts = {path.stem: read_settings(path) for path in options.mount}
+    found = choose(chosen, names, mounts, spread, run)
+    print("\n".join(lines(found)))
+    write_table(found, folder / "choose.csv")
+    page = report(folder, None)[0]
+    print(f"results in {folder}, its page is {page}")
+    return STOPPED if any(one.failed for one in found) else 0
+
+
+CHOOSE = Verb(
+    "choose",
+    "rank touchdown bearings and mounts by what a scene requires",
+    CHOOSE_EXAMPLES,
+    _declare_choose,
+    _execute_choose,
 )
 
 

@@ -21,6 +21,7 @@ from ...common.units import spoken
 from ...components.component import Variable
 from ...coupling.ledger.alarms import energy_share
 from ...results.figures.energy import energy
+from ...results.ratings import Origin, setting_origin
 from ...results.summary import energy_total
 from ...scene.file import SCENE_FILE, shipped
 from ...scene.run_spec import UNITS
@@ -28,7 +29,7 @@ from ...scene.scene import ComponentSpec, Scene
 from ..blocks import Block, Code, Download, Folded, Heading, Lacking, Picture, Points, Table, Text
 from ..charts import inline
 from ..numbers import digits, quantity, share
-from ..subject import Origin, Subject, number, run_origin, setting_origin
+from ..subject import Subject, number, run_origin
 
 FOREIGN_FMU = "an FMU of another's; its own documentation says what is in it"
 ALWAYS_LEFT_OUT = (

@@ -9,11 +9,12 @@ import numpy as np
 
 from ....bearings import rating
 from ...coupling.connections import Attachment
+from ...results.ratings import Rated, rated
 from ..blocks import Absent, Block, Lacking, Series, Table, Text
 from ..charts import series
 from ..numbers import RPM, digits, listed, quantity, share
 from ..series import Line
-from ..subject import COLOURS, Rated, Subject, rated
+from ..subject import COLOURS, Subject
 
 RING, BALL = "ring.omega", "balls.force"
 CAGE = "speed.cage", "speed.orbit"  # m/s, of the balls' middles
@@ -73,7 +74,7 @@ def balls(subject: Subject) -> list[Block]:
     ]
     chart = subject.chart("ball-load", "Load of the most loaded ball", "ball load [N]", lines)
     blocks: list[Block] = [series(chart, "Largest force between a ball and a race, at each moment.")]
-    told = {subject.name(a): rated(subject, a) for a in loaded}
+    told = {subject.name(a): rated(subject.run, a) for a in loaded}
     found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
     why = {seat: one for seat, one in told.items() if isinstance(one, str)}
     if found:
@@ -135,7 +136,7 @@ MAX_DROPS = 1e6  # more are said to be more
 
 def life(subject: Subject) -> list[Block]:
     """Static safety and fatigue."""
-    told = {subject.name(a): rated(subject, a) for a in subject.need_seats()}
+    told = {subject.name(a): rated(subject.run, a) for a in subject.need_seats()}
     found = {seat: one for seat, one in told.items() if isinstance(one, Rated)}
     if not found:
         raise Absent(f"{listed([str(why) for why in told.values()])}.")

@@ -7,12 +7,14 @@ from collections.abc import Iterator, Sequence
 from ....bearings import rating
 from ...common.errors import Ended
 from ...coupling.connections import Attachment
+from ...results.ratings import Rated, rated
+from ...results.requirements import judged
 from ...results.whirl.evidence import CONTACT, evidence, unbalanced
 from ...scene.gaps import Gap
 from ...studies.rotor.supports import balanced
 from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
 from ..numbers import RPM, digits, listed, quantity, share
-from ..subject import Rated, Subject, number, rated
+from ..subject import Subject, number
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
 NO_WHIRL_VERDICT = "not told, for no clearance is stated or no orbit recorded"
@@ -66,10 +68,16 @@ def summary(subject: Subject) -> list[Block]:
         blocks += [Text("What the verdicts rest on:"), Points(told)] if told else []
     if gaps := subject.result.scene.gaps:
         blocks.append(_gaps(subject, gaps))
+    if wanted := judged(subject.result.scene.requirements, subject.summary):
+        blocks += [Text("What the scene requires:"), Points([f"{one.words()}." for one in wanted])]
     return blocks
 
 
 def _tiles(subject: Subject) -> Iterator[Tile]:
+    if wanted := judged(subject.result.scene.requirements, subject.summary):
+        failed = sum(not one.met for one in wanted)
+        said = "all met" if failed == 0 else f"{failed} of {len(wanted)} not met"
+        yield Tile("Requirements", "pass" if failed == 0 else "fail", said)
     if subject.fall is not None:
         yield Tile("First contact", quantity(subject.fall, "s"), "after the shutdown")
     for key, unit, factor, label in (
@@ -104,7 +112,7 @@ def _tiles(subject: Subject) -> Iterator[Tile]:
 
 def _rated(subject: Subject) -> Iterator[Tile]:
     """What the largest ball load means for the races."""
-    told = [(one, a) for a in subject.seats if isinstance(one := rated(subject, a), Rated)]
+    told = [(one, a) for a in subject.seats if isinstance(one := rated(subject.run, a), Rated)]
     if subject.first_contact is None or not told:
         return
     one, a = min(told, key=lambda pair: pair[0].safety)

@@ -8,10 +8,13 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
+from statistics import median
 
 from ...common.errors import one_of
 from ...common.files import replacing
-from ...results.whirl.verdict import verdict_class
+from ...results.requirements import MARGIN, MET
+from ...results.whirl.verdict import CONFIDENCE, clopper_pearson, verdict_class
+from ...scene.requirements import KINDS
 from .definition import number_and_unit
 from .members import Member
 
@@ -53,6 +56,36 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
     return lines
 
 
+def requirement_lines(members: Sequence[Member]) -> list[str]:
+    """How many members meet all that the scene requires, and each of it; none where it requires nothing."""
+    judged = [m for m in members if isinstance(m.summary.get(MET), bool)]
+    if not judged:
+        return []
+    lines = [f"  requirements met: {_passing([bool(m.summary[MET]) for m in judged])}"]
+    for key in (key for key in keys(judged) if key.startswith(MARGIN)):
+        margins = [m.summary[key] for m in judged]
+        known = [margin for margin in margins if isinstance(margin, float)]
+        passing = _passing([isinstance(margin, float) and margin >= 0.0 for margin in margins])
+        worst = (
+            f", margin {_percent(min(known))} at worst, {_percent(median(known))} in the median"
+            if known
+            else ""
+        )
+        lines.append(f"    {KINDS[key.removeprefix(MARGIN)].meaning}: {passing}{worst}")
+    return lines
+
+
+def _passing(met: Sequence[bool]) -> str:
+    """How many of independent drops, with the interval of their share."""
+    one = clopper_pearson(sum(met), len(met))
+    interval = f"{_percent(one.low)} to {_percent(one.high)} with {CONFIDENCE:.0%} confidence"
+    return f"{sum(met)} of {len(met)} ({_percent(one.value)}; {interval})"
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.3g} %"
+
+
 def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
     """Figures that match `picks` (names, * for anything), or a few that tell most, and complaints."""
     known = keys(members)
@@ -70,7 +103,7 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
 def report_lines(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
     """What the command shows of a sweep, and complaints about `picks`."""
     figures, complaints = picked(members, picks)
-    lines = [table(members, figures), *verdict_lines(members)]
+    lines = [table(members, figures), *verdict_lines(members), *requirement_lines(members)]
     if why := failures(members):
         lines += ["failed:", *why]
     if said := warned(members):

@@ -1,0 +1,207 @@
+"""What a run's loads are to its bearings: pressure, safety, fatigue; and where their ratings are from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache, cached_property
+
+import numpy as np
+
+from ...bearings import rating
+from ...bearings.catalogue import Bearing, CatalogueError, bearing
+from ..coupling.connections import Attachment
+from ..scene.scene import ComponentSpec
+from .ending import Finished
+
+
+class Origin(StrEnum):
+    """As tables word it."""
+
+    SET = "set for this run"
+    SCENE = "scene"
+    TAKEN_OVER = "scene, taken over in the swap"
+    CATALOGUE = "catalogue"
+    DEFAULT = "default"
+
+
+def setting_origin(spec: ComponentSpec, variable: str) -> Origin:
+    """Of a component's parameter: the last that had a say, as a run applies them."""
+    if variable in spec.set:
+        return Origin.SET if variable in spec.own else Origin.SCENE
+    if variable in spec.inherited:
+        return Origin.TAKEN_OVER
+    entry = catalogued(spec.preset)
+    if entry is not None and variable in entry.settings():
+        return Origin.CATALOGUE
+    return Origin.DEFAULT
+
+
+@cache
+def catalogued(preset: str | None) -> Bearing | None:
+    """The entry of a component's preset; None without one, or where it is gone since."""
+    try:
+        return bearing(preset) if preset is not None else None
+    except CatalogueError:
+        return None
+
+
+LOAD, RING = "balls.force", "ring.omega"
+STATIC = "rolling.static_rating"
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Loads:
+    """On a bearing over the recorded times; each of shape (rows,)."""
+
+    time: np.ndarray  # s
+    ball: np.ndarray  # N, of the most loaded ball
+    ring: np.ndarray  # rad/s, speed of the inner ring; the outer one does not turn
+    peak: float  # N, of `ball`, also between recorded values
+
+
+@dataclass(frozen=True)
+class Stated:
+    """Load ratings of a row as scene or catalogue have them, and where each is from, in words."""
+
+    row: rating.Capacity  # N; 0: there is none, and the standard's formula stands for it
+    static: str
+    dynamic: str
+
+
+@dataclass(frozen=True)
+class Rated:
+    """A bearing, its ratings, and its loads. The model's ball force is taken as the normal one."""
+
+    bearing: rating.RatedBearing
+    loads: Loads
+    stated: Stated
+
+    @cached_property
+    def capacity(self) -> rating.Capacity:
+        """Static and dynamic load rating of the whole bearing (N)."""
+        return rating.capacity(self.bearing, self.stated.row.static, self.stated.row.dynamic)
+
+    def pressure(self, race: str) -> np.ndarray:
+        """The largest on a race, `rating.INNER` or OUTER, over the recorded times (Pa, (rows,))."""
+        return rating.point_contact(self.bearing, race).pressure(self.loads.ball)
+
+    def peak_pressure(self, race: str) -> float:
+        """The largest of the run on a race (Pa)."""
+        return float(rating.point_contact(self.bearing, race).pressure(self.loads.peak))
+
+    @property
+    def half_axes(self) -> tuple[float, float]:
+        """Of the largest contact on the inner race (m): across the groove, and along it."""
+        across, along = rating.point_contact(self.bearing, rating.INNER).semi_axes(self.loads.peak)
+        return float(across), float(along)
+
+    @property
+    def pressure_safety(self) -> float:
+        """Load at which a race is pressed to its limit (4200 MPa; hybrid 4600) over the run's largest."""
+        hardest = max(self.peak_pressure(race) for race in (rating.INNER, rating.OUTER))
+        limit = self.bearing.pressure_limit
+        return float(rating.pressure_safety(hardest, limit)) if hardest > 0.0 else math.inf
+
+    @property
+    def equivalent_load(self) -> float:
+        """Static radial load (N) under which the most loaded ball carries the run's peak (ISO 76)."""
+        b = self.bearing
+        return self.loads.peak * b.rows * b.count * math.cos(b.contact_angle) / rating.BALL_SHARE
+
+    @property
+    def static_safety(self) -> float:
+        """s_0 = C_0 / P_0."""
+        return float(rating.static_safety(self.capacity.static, self.equivalent_load))
+
+    @property
+    def safety(self) -> float:
+        """The lowest of both."""
+        return min(self.static_safety, self.pressure_safety)
+
+    @property
+    def safety_by(self) -> str:
+        """Which of both the lowest is, in words."""
+        limit = f"against {1e-9 * self.bearing.pressure_limit:g} GPa on a race"
+        return limit if self.pressure_safety <= self.static_safety else "by the rating C₀"
+
+    @property
+    def turns(self) -> float:
+        """Of the inner ring in the run."""
+        return float(np.sum(self._turns))
+
+    @property
+    def _turns(self) -> np.ndarray:
+        """Of the inner ring about each recorded time, (rows,)."""
+        return np.abs(self.loads.ring) * np.gradient(self.loads.time) / TURN
+
+    @cached_property
+    def damage(self) -> float:
+        """Share of the rating life (ISO/TS 16281) that the run takes."""
+        return rating.drop_damage(self.bearing, self.capacity.dynamic, self.loads.ball, self._turns)
+
+    @property
+    def drops(self) -> float:
+        """Such runs until 10 % of such bearings have failed by fatigue; inf: this run takes nothing."""
+        return rating.drops(self.damage)
+
+
+def rated(run: Finished, a: Attachment) -> Rated | str:
+    """A seat's bearing with its loads, or why it cannot be rated."""
+    component, recording = run.system.components[a.bearing], run.recording
+    lacking = [name for name in (LOAD, RING) if f"{a.bearing}.{name}" not in recording]
+    if lacking:
+        return f"{a.bearing} has no {' and no '.join(lacking)}, or it was not recorded"
+    names = [n for n in component.variables if n.startswith(("balls.", "ring."))]
+    entry = catalogued(run.scene.components[a.bearing].preset)
+    try:
+        values = dict(zip(names, component.read(names), strict=True))
+        bearing = rating.RatedBearing.of(values, entry.contact_angle if entry else 0.0)
+    except KeyError as error:
+        return f"{a.bearing} does not state {error.args[0]}"
+    except ValueError as error:
+        return str(error)
+    ball, peak = recording[f"{a.bearing}.{LOAD}"], values.get("balls.peak_force", 0.0)
+    loads = Loads(recording.time, ball, recording[f"{a.bearing}.{RING}"], max(float(np.max(ball)), peak))
+    return Rated(bearing, loads, _stated(run, a))
+
+
+def _stated(run: Finished, a: Attachment) -> Stated:
+    """What the scene or the catalogue has; a model's default is not taken for a rating."""
+    spec = run.scene.components[a.bearing]
+    entry = catalogued(spec.preset)
+    own = setting_origin(spec, STATIC) in (Origin.SET, Origin.SCENE, Origin.TAKEN_OVER)
+    static = run.system.value(f"{a.bearing}.{STATIC}") if own else None
+    known, from_entry = rating.Capacity(0.0, 0.0), {}
+    if entry:
+        known, from_entry = rating.Capacity(entry.static_rating, entry.dynamic_rating), entry.origins
+    return Stated(
+        rating.Capacity(static or known.static, known.dynamic),
+        "the scene" if static else _origin(from_entry.get("static_rating", ""), "ISO 76", known.static),
+        _origin(from_entry.get("dynamic_rating", ""), "ISO 281", known.dynamic),
+    )
+
+
+def _origin(of_entry: str, standard: str, known: float) -> str:
+    """Where a rating is from: the catalogue, which may have it by the standard, or the geometry at hand."""
+    if not known:
+        return f"{standard}, from the geometry"
+    return f"the catalogue: {of_entry}" if of_entry else "the catalogue"
+
+
+MAX_DROPS = 1e15  # more are not told apart
+
+
+def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
+    """Largest pressure, lowest static safety and drops until fatigue of a bearing; none without balls."""
+    one = rated(run, a)
+    if isinstance(one, str) or one.loads.peak <= 0.0:
+        return {}
+    pressure = max(one.peak_pressure(race) for race in rating.RACES)
+    return {
+        "largest_ball_pressure_GPa": 1e-9 * pressure,
+        "lowest_static_safety": one.safety,
+        "drops_until_fatigue": min(one.drops, MAX_DROPS),
+    }

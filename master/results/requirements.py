@@ -1,0 +1,81 @@
+"""Whether a run keeps to what its scene requires, and with which margin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from ..scene.requirements import KINDS, Requirement
+from .whirl.verdict import TURNS
+
+MET, MARGIN = "requirements_met", "requirement_margin_"  # figures of a summary
+
+
+class Judged(NamedTuple):
+    """A requirement beside what a run found. `margin` is 0 at the limit, below 0 beyond it."""
+
+    requirement: Requirement
+    found: float | None  # SI; None: the run does not tell, and nothing is met by that
+    margin: float | None
+
+    @property
+    def met(self) -> bool:
+        """Whether the run keeps to it."""
+        return self.margin is not None and self.margin >= 0.0
+
+    def words(self) -> str:
+        """A line for people."""
+        kind = KINDS[self.requirement.kind]
+        bound = "at least" if kind.at_least else "at most"
+        limit = _shown(self.requirement.limit, kind.unit)
+        if self.found is None or self.margin is None:
+            return f"{kind.meaning}: {bound} {limit}, but this run does not tell it"
+        found = _shown(self.found, kind.unit)
+        how = "met" if self.met else "not met"
+        return f"{kind.meaning}: {found}, {bound} {limit}: {how}, margin {100.0 * self.margin:.3g} %"
+
+
+HANDY = {"m": (1e6, "um"), "Pa": (1e-9, "GPa"), "1": (1.0, "")}  # units that figures are shown in
+
+
+def _shown(value: float, unit: str) -> str:
+    factor, name = HANDY.get(unit, (1.0, unit))
+    return f"{factor * value:.4g} {name}".rstrip()
+
+
+def judged(wanted: Iterable[Requirement], summary: Mapping[str, object]) -> list[Judged]:
+    """All requirements beside the figures of a `summary`; of several bearings the worst counts."""
+    return [_judged(one, summary) for one in wanted]
+
+
+def _judged(wanted: Requirement, summary: Mapping[str, object]) -> Judged:
+    kind = KINDS[wanted.kind]
+    if wanted.kind == "settling_time":  # one for all bearings
+        figures = [summary.get(kind.figure)]
+    elif wanted.kind == "whirl_turns":
+        figures = [v for key, v in summary.items() if key.startswith(kind.figure) and key.endswith(TURNS)]
+    else:
+        figures = [v for key, v in summary.items() if key.startswith(kind.figure)]
+    numbers = [float(v) for v in figures if isinstance(v, (int, float)) and not isinstance(v, bool)]
+    if not numbers or len(numbers) < len(figures):
+        return Judged(wanted, None, None)
+    found = kind.factor * (min(numbers) if kind.at_least else max(numbers))
+    return Judged(wanted, found, _margin(found, wanted.limit, kind.at_least))
+
+
+def _margin(found: float, limit: float, at_least: bool) -> float:
+    """(found - limit)/limit, with the sign that is above 0 where it is met."""
+    way = found - limit if at_least else limit - found
+    if limit == 0.0:
+        return 0.0 if way == 0.0 else math.copysign(1.0, way)
+    return way / limit
+
+
+def requirement_figures(wanted: Sequence[Requirement], summary: Mapping[str, object]) -> dict[str, object]:
+    """Figures of a run: whether all are met, and the margin of each; none where nothing is required."""
+    found = judged(wanted, summary)
+    if not found:
+        return {}
+    figures: dict[str, object] = {MET: all(one.met for one in found)}
+    return figures | {f"{MARGIN}{one.requirement.kind}": one.margin for one in found}

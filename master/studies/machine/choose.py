@@ -1,0 +1,249 @@
+"""Which touchdown bearing is best: those of the catalogue in one scene, ranked by what the scene requires.
+
+Every bearing, and every mount, takes the same drops: drawn by a Latin hypercube over the phase of the
+unbalance, friction and clearance. Ranked first by the share of drops that keep to all requirements, then by
+the worst margin of each drop, in the median. A drop that fails keeps to none.
+
+The journal and its clearance stay; where a bearing's bore is wider, a sleeve is taken to fill the rest.
+What `touchdown new` derives from the bearing and the landing is derived anew for each.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from operator import mul
+from pathlib import Path
+from statistics import median
+
+from ....bearings.catalogue import Bearing
+from ....bearings.catalogue.landing import landing
+from ....bearings.catalogue.load_sharing import harmonics_worth
+from ...common.errors import TouchdownError, one_of
+from ...common.files import replacing
+from ...coupling.simulation import opened
+from ...results.requirements import MARGIN, MET
+from ...results.whirl.verdict import Share, clopper_pearson
+from ...scene.requirements import KINDS
+from ...scene.scene import Scene
+from ..sweep.definition import Design
+from ..sweep.members import Member
+from .bearings import find_bearing
+from .design import GRAVITY, rounded
+
+PHASES = (0.0, 2.0 * math.pi)  # rad
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How drops differ: parts of the scene's values to either side."""
+
+    drops: int = 12
+    friction: float = 0.3
+    clearance: float = 0.1
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Seat:
+    """A touchdown bearing of the scene, as it is set."""
+
+    component: str
+    journal_radius: float  # m
+    clearance: float  # m
+    friction: float
+    is_line: bool  # contact of journal and bore by geometry
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A bearing in a mount."""
+
+    bearing: str
+    mount: str  # "" for the scene's own
+    settings: Mapping[str, object]
+
+    @property
+    def title(self) -> str:
+        """For people."""
+        return f"{self.bearing} in {self.mount}" if self.mount else self.bearing
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A candidate and what its drops were worth."""
+
+    candidate: Candidate
+    members: tuple[Member, ...]
+
+    @property
+    def passing(self) -> Share:
+        """Share of drops that keep to all requirements, with its interval."""
+        return clopper_pearson(sum(m.summary.get(MET) is True for m in self.members), len(self.members))
+
+    @property
+    def failed(self) -> int:
+        """Drops that did not come to an end."""
+        return sum(bool(m.failed) for m in self.members)
+
+    @property
+    def worst(self) -> tuple[float, str]:
+        """Median over drops of their worst margin, and which requirement that mostly is of."""
+        found = [min(margins(m), default=(-math.inf, "")) for m in self.members]
+        names = [name for _, name in found if name]
+        most = max(set(names), key=names.count) if names else ""
+        return median(margin for margin, _ in found), most
+
+
+def margins(member: Member) -> list[tuple[float, str]]:
+    """Margin and name of each requirement; -inf where the drop does not tell it."""
+    return [
+        (float(value) if isinstance(value, float) else -math.inf, key.removeprefix(MARGIN))
+        for key, value in member.summary.items()
+        if key.startswith(MARGIN)
+    ]
+
+
+def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
+    """Touchdown bearings that take a preset, and the rotor's setting of its phase, where it has one.
+
+    Raises TouchdownError where there is no such bearing.
+    """
+    with opened(scene, in_process=True) as system:
+        seats = [
+            Seat(
+                name,
+                system.value(f"{name}.journal_radius"),
+                system.value(f"{name}.clearance"),
+                system.value(f"{name}.friction.dynamic"),
+                f"{name}.contact.law" in system and system.value(f"{name}.contact.law") == 1.0,
+            )
+            for name in scene.components
+            if f"{name}.balls.count" in system and f"{name}.journal_radius" in system
+        ]
+        angles = [f"{name}.unbalance_angle" for name in scene.components]
+        angle = next((name for name in angles if name in system), None)
+    if not seats:
+        raise TouchdownError(f"scene {scene.name} has no ball bearing to choose")
+    return seats, angle
+
+
+def candidates(
+    scene: Scene, seats: Sequence[Seat], names: Sequence[str], mounts: Mapping[str, Mapping[str, object]]
+) -> list[Candidate]:
+    """Every bearing in every mount. Raises TouchdownError where the journal does not go into one."""
+    weight = _landed_weight(scene, len(seats))
+    found: list[Candidate] = []
+    tried = dict(mounts) or {"": dict[str, object]()}
+    for name in names:
+        bearing = find_bearing(name, scene.folder)
+        settings: dict[str, object] = {}
+        for seat in seats:
+            bore = 2.0 * (seat.journal_radius + seat.clearance)
+            if bearing.bore < bore * (1.0 - 1e-9):
+                raise TouchdownError(
+                    f"{name} has a bore of {1e3 * bearing.bore:g} mm; journal and clearance at "
+                    f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
+                )
+            settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
+        found += [Candidate(name, mount, {**settings, **changes}) for mount, changes in tried.items()]
+    return found
+
+
+def _landed_weight(scene: Scene, seats: int) -> float:
+    """On each touchdown bearing (N), in equal parts: of the masses that scale the scene's energy."""
+    with opened(scene, in_process=True) as system:
+        named = [name for name in scene.energy_scale if name.endswith(".mass")]
+        masses = [system.value(name) for name in named if name in system]
+    return sum(masses) * GRAVITY / seats
+
+
+def _fitted(bearing: Bearing, seat: Seat, weight: float) -> dict[str, object]:
+    """What hangs on the bearing where its contacts follow from geometry."""
+    if not seat.is_line or weight <= 0.0:
+        return {}
+    sleeved = replace(bearing, bore=2.0 * (seat.journal_radius + seat.clearance))
+    hit = landing(sleeved, seat.clearance, weight * seat.clearance)
+    return {
+        f"{seat.component}.contact.load": rounded(hit.load, down=True),
+        f"{seat.component}.balls.expected_indentation": hit.indentation,
+        f"{seat.component}.ring.harmonics": harmonics_worth(sleeved, hit.load)[0],
+    }
+
+
+def design(seats: Sequence[Seat], angle: str | None, chosen: Sequence[Candidate], spread: Spread) -> Design:
+    """All drops of all candidates. Raises TouchdownError for a spread that cannot be."""
+    for name in ("friction", "clearance"):
+        if not 0.0 <= getattr(spread, name) < 1.0:
+            raise TouchdownError(f"{name} = {getattr(spread, name):g}; give a part from 0 to below 1")
+    ranges: dict[str, tuple[float, float]] = {} if angle is None else {angle: PHASES}
+    for seat in seats:
+        for name, value, part in (
+            ("friction.dynamic", seat.friction, spread.friction),
+            ("clearance", seat.clearance, spread.clearance),
+        ):
+            if part > 0.0:
+                ranges[f"{seat.component}.{name}"] = ((1.0 - part) * value, (1.0 + part) * value)
+    drops = Design.latin(ranges, spread.drops, spread.seed)
+    return mul(Design.table([one.settings for one in chosen]), drops)
+
+
+def ranked(chosen: Sequence[Candidate], members: Sequence[Member]) -> list[Ranked]:
+    """The candidates, the best first; members: in the order of `design`."""
+    each = len(members) // len(chosen)
+    found = [Ranked(one, tuple(members[k * each : (k + 1) * each])) for k, one in enumerate(chosen)]
+    return sorted(found, key=lambda one: (one.passing.value, one.worst[0]), reverse=True)
+
+
+def lines(found: Sequence[Ranked]) -> Iterator[str]:
+    """A table for people."""
+    width = max(len("bearing"), *(len(one.candidate.title) for one in found))
+    yield f"{'':>4}  {'bearing':<{width}}  keeps to all          worst requirement, median margin"
+    for place, one in enumerate(found, start=1):
+        share, (margin, name) = one.passing, one.worst
+        part = f"{100 * share.value:.0f} % ({100 * share.low:.0f} to {100 * share.high:.0f} %)"
+        worst = f"{KINDS[name].meaning}, {100.0 * margin:.3g} %" if name else "-"
+        failed = f"; {one.failed} of {len(one.members)} drops failed" if one.failed else ""
+        yield f"{place:>4}  {one.candidate.title:<{width}}  {part:<20}  {worst}{failed}"
+
+
+def write_table(found: Sequence[Ranked], path: Path) -> None:
+    """The ranking as CSV."""
+    head = ("place", "bearing", "mount", "drops", "failed", "share", "share_low", "share_high")
+    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow((*head, "worst_requirement", "worst_margin_median"))
+        for place, one in enumerate(found, start=1):
+            margin, name = one.worst
+            counts = len(one.members), one.failed
+            rows.writerow(
+                (place, one.candidate.bearing, one.candidate.mount, *counts, *one.passing, name, margin)
+            )
+
+
+Runner = Callable[[Scene, Design], Sequence[Member]]
+
+
+def choose(
+    scene: Scene,
+    names: Sequence[str],
+    mounts: Mapping[str, Mapping[str, object]],
+    spread: Spread,
+    run: Runner,
+) -> list[Ranked]:
+    """Rank bearings of these `names`, each in all `mounts` (settings by name), by what the scene requires.
+
+    run(scene, design) runs a sweep. Raises TouchdownError where nothing is required, or to choose.
+    """
+    if not scene.requirements:
+        raise TouchdownError(
+            f"scene {scene.name} requires nothing to rank by; add [requirements], such as ball_pressure = "
+            f'"2.5 GPa"; {one_of("", KINDS)}'
+        )
+    if not names:
+        raise TouchdownError("--bearings is missing; `touchdown catalogue` lists what there is")
+    seats, angle = seats_of(scene)
+    chosen = candidates(scene, seats, names, mounts)
+    return ranked(chosen, run(scene, design(seats, angle, chosen, spread)))

@@ -1,0 +1,107 @@
+"""What a scene requires of its drop: margins by hand, what is not told, what is refused; over a sweep."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import touchdown
+from touchdown.master.cli import main
+from touchdown.master.common.errors import STOPPED, TouchdownError
+from touchdown.master.results.requirements import judged, requirement_figures
+from touchdown.master.scene.file import read_resolved
+from touchdown.master.scene.requirements import Requirement, requirements
+from touchdown.master.studies.sweep.members import Member
+from touchdown.master.studies.sweep.report import requirement_lines
+
+SCENE = """
+extends = "disk-caged-simplified"
+[requirements]
+contact_force = "400 N"
+stroke = "1 um"
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "limit", "summary", "found", "margin"),
+    [
+        ("least_gap", 1e-4, {"least_gap_um": 150.0}, 1.5e-4, 0.5),
+        ("least_gap", 1e-4, {"least_gap_um": -50.0}, -5e-5, -1.5),
+        ("ball_pressure", 2e9, {"largest_ball_pressure_GPa": 1.5}, 1.5e9, 0.25),
+        ("ball_force", 1e3, {"peak_ball_force_N_A": 8.0, "peak_ball_force_N_B": 1100.0}, 1100.0, -0.1),
+        ("static_safety", 2.0, {"lowest_static_safety_A": 5.0, "lowest_static_safety_B": 3.0}, 3.0, 0.5),
+        ("whirl_turns", 0.0, {"whirl_A": "no whirl", "whirl_A_revolutions": 0.0}, 0.0, 0.0),
+        ("whirl_turns", 0.0, {"whirl_A": "whirl", "whirl_A_revolutions": 2.0}, 2.0, -1.0),
+    ],
+)  # fmt: skip
+def test_margins(kind: str, limit: float, summary: dict[str, object], found: float, margin: float) -> None:
+    """Over the limit; of several bearings the worst counts."""
+    (one,) = judged([Requirement(kind, limit)], summary)
+    assert one.found == pytest.approx(found, abs=1e-12)
+    assert one.margin == pytest.approx(margin, abs=1e-12)
+    assert one.met is (margin >= 0.0)
+
+
+@pytest.mark.parametrize("summary", [{}, {"settling_time_s": None}])
+def test_what_a_run_does_not_tell_is_not_met(summary: dict[str, object]) -> None:
+    wanted = (Requirement("settling_time", 0.5),)
+    assert requirement_figures(wanted, summary)["requirements_met"] is False
+    assert "this run does not tell it" in judged(wanted, summary)[0].words()
+    assert requirement_figures((), summary) == {}
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"gap": 1.0}, "unknown key gap; .*least_gap"),
+        ({"heat": "5 mm"}, "heat = '5 mm' has the unit mm"),
+        ({"heat": -1.0}, "must not be below 0"),
+    ],
+)
+def test_mistakes_are_one_line(entry: dict[str, object], message: str) -> None:
+    with pytest.raises(TouchdownError, match=message):
+        requirements(entry, "[requirements]")
+
+
+def test_a_run_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """In the summary, on the console, by the status where asked; and found again in its scene."""
+    (tmp_path / "own.toml").write_text(SCENE, encoding="utf-8")
+    run = [
+        "run",
+        str(tmp_path / "own.toml"),
+        "--in-process",
+        "--duration",
+        "12 ms",
+        "-o",
+        str(tmp_path / "r"),
+    ]
+    assert main([*run, "--no-pictures", "--quiet"]) == 0
+    said = capsys.readouterr().out
+    assert "N, at most 400 N: met, margin" in said
+    assert "largest stroke of a housing: 2.206 um, at most 1 um: not met, margin -121 %" in said
+    assert main([*run, "--no-pictures", "--quiet", "--require"]) == STOPPED
+    summary = touchdown.open_result(tmp_path / "r").summary
+    assert summary["requirements_met"] is False
+    assert summary["requirement_margin_contact_force"] == pytest.approx(
+        1.0 - float(str(summary["peak_contact_force_N"])) / 400.0
+    )
+    assert read_resolved(tmp_path / "r" / "scene.json").requirements == (
+        Requirement("contact_force", 400.0),
+        Requirement("stroke", 1e-6),
+    )
+
+
+def test_over_a_sweep() -> None:
+    """Shares with their exact interval; margins at worst and in the median."""
+    figures = [
+        {"requirements_met": met, "requirement_margin_heat": margin}
+        for met, margin in ((True, 0.5), (True, 0.25), (False, -0.5), (True, 0.75))
+    ]
+    members = [Member(k, {}, dict(one)) for k, one in enumerate(figures)]
+    assert requirement_lines(members) == [
+        "  requirements met: 3 of 4 (75 %; 19.4 % to 99.4 % with 95% confidence)",
+        "    heat in a bearing: 3 of 4 (75 %; 19.4 % to 99.4 % with 95% confidence), margin -50 % at "
+        "worst, 37.5 % in the median",
+    ]
+    assert requirement_lines([Member(0, {}, {})]) == []

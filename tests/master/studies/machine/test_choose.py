@@ -1,0 +1,136 @@
+"""Which bearing is best: what is run, how it is ranked, what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import touchdown
+from touchdown.master.cli import main
+from touchdown.master.common.errors import Ended, TouchdownError
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.machine.choose import Candidate, Spread, choose, lines, ranked
+from touchdown.master.studies.sweep.definition import Design
+from touchdown.master.studies.sweep.members import Member
+
+SCENE = """
+extends = "disk-caged-simplified"
+[requirements]
+ball_pressure = "2.4 GPa"
+[set.bearing]
+contact.law = "line"
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Scene:
+    (tmp_path / "own.toml").write_text(SCENE, encoding="utf-8")
+    return touchdown.load(tmp_path / "own.toml")
+
+
+def member(number: int, *margins: float | None, failed: str = "") -> Member:
+    """A drop with margins of heat and stroke; None: it does not tell."""
+    figures = dict(zip(("requirement_margin_heat", "requirement_margin_stroke"), margins, strict=False))
+    met = bool(margins) and all(margin is not None and margin >= 0.0 for margin in margins)
+    return Member(number, {}, {"requirements_met": met, **figures} if margins else {}, failed)
+
+
+def test_the_share_comes_first_then_the_worst_margin() -> None:
+    """Two bearings that keep to all in one drop of two, and one that fails once."""
+    chosen = [Candidate(name, "", {}) for name in ("a", "b", "c")]
+    drops = [(0.1, 0.2), (-0.3, 0.5)], [(0.1, 0.2), (-0.2, 0.5)], [(0.9, 0.9), ()]
+    members = [
+        member(k, *margins, failed="" if margins else "stopped")
+        for k, margins in enumerate(one for bearing in drops for one in bearing)
+    ]
+    found = ranked(chosen, members)
+    assert [one.candidate.title for one in found] == ["b", "a", "c"]
+    assert found[0].worst == (pytest.approx(-0.05), "heat")
+    assert [one.failed for one in found] == [0, 0, 1]
+    assert found[0].passing.value == 0.5
+    table = list(lines(found))
+    assert "heat in a bearing, -5 %" in table[1]
+    assert "1 of 2 drops failed" in table[3]
+
+
+def test_all_take_the_same_drops(scene: Scene) -> None:
+    """Each bearing in each mount; what follows from the bearing goes with it, the journal stays."""
+    asked: list[Design] = []
+
+    def run(_: Scene, design: Design) -> list[Member]:
+        asked.append(design)
+        return [Member(k, {}, {}, "", Ended.COMPLETED) for k in range(len(design))]
+
+    mounts = {"soft": {"housing.stiffness": 1e6}, "stiff": {"housing.stiffness": 1e9}}
+    found = choose(scene, ["6004", "6304"], mounts, Spread(drops=3), run)
+    assert len(found) == 4
+    (design,) = asked
+    points = [dict(zip(design.names, point, strict=True)) for point in design.points]
+    assert len(points) == 12
+    drawn = [{k: v for k, v in p.items() if k.endswith(("friction.dynamic", ".clearance"))} for p in points]
+    assert drawn[:3] == drawn[3:6] == drawn[9:]
+    assert [p["bearing.preset"] for p in points[::3]] == ["6004", "6004", "6304", "6304"]
+    assert points[0]["housing.stiffness"] == 1e6
+    assert points[0]["bearing.contact.load"] != points[6]["bearing.contact.load"]
+    assert "bearing.journal_radius" not in points[0]
+
+
+def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """By the command; a second time nothing is run again, and the answer is the same."""
+    asked = [
+        "choose",
+        str(tmp_path / "own.toml"),
+        "--bearings",
+        "6004, 6304",
+        "--drops",
+        "2",
+        "--jobs",
+        "1",
+    ]
+    asked += ["--duration", "9 ms", "-o", str(tmp_path / "runs"), "--quiet"]
+    said: list[str] = []
+    for _ in range(2):
+        assert main(asked) == 0
+        said.append(capsys.readouterr().out)
+    assert said[0] == said[1]
+    assert "largest pressure on a race" in said[0]
+    rows = (tmp_path / "runs" / "choose.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 3
+    assert (tmp_path / "runs" / "report.html").is_file()
+    assert scene.requirements[0].kind == "ball_pressure"
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (["6001"], "6001 has a bore of 12 mm; journal and clearance at bearing take 20 mm"),
+        (["9999"], "there is no bearing 9999"),
+        ([], "--bearings is missing"),
+    ],
+)
+def test_what_cannot_be_chosen_is_refused(scene: Scene, names: list[str], message: str) -> None:
+    with pytest.raises(TouchdownError, match=message):
+        choose(scene, names, {}, Spread(), lambda _, __: [])
+
+
+def test_a_scene_that_requires_nothing_is_refused() -> None:
+    with pytest.raises(TouchdownError, match="requires nothing to rank by; add"):
+        choose(touchdown.load("disk-caged-simplified"), ["6004"], {}, Spread(), lambda _, __: [])
+
+
+def test_a_preset_beside_a_scene_says_what_stays(tmp_path: Path) -> None:
+    """Of what the scene has for another bearing; not what is set along with it."""
+    text = 'extends = "disk-caged-simplified"\n[set.bearing]\ncontact.stiffness = 2.4e9\ndamping = 300\n'
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "1 ms"})
+
+    def said(settings: dict[str, object]) -> str:
+        return "\n".join(touchdown.run(scene.set(settings), in_process=True).warnings)
+
+    assert "preset" not in said({})
+    assert (
+        "bearing.preset = 6304 is set beside the scene, which has contact.stiffness, damping for"
+        in said({"bearing.preset": "6304"})
+    )
+    assert "which has damping for" in said({"bearing.preset": "6304", "bearing.contact.stiffness": 3e9})
