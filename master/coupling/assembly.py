@@ -28,7 +28,14 @@ from .connections import (
 )
 from .system import System
 
-UNSCALED_UNITS = (None, "", "1", "m", "rad/s")  # units of what is looked at; an FMU of others' may have rpm
+UNSCALED_UNITS = (
+    None,
+    "",
+    "1",
+    "m",
+    "rad/s",
+    "m/s2",
+)  # units of what is looked at; an FMU of others' may have rpm
 FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
@@ -144,6 +151,7 @@ def _seat(
         body=a.body,
         speed=values(a.body).get("speed"),
         bare_speed=is_bare(scene.components[a.body].set.get("speed")),
+        gravity=values(a.body).get("gravity"),
     )
 
 

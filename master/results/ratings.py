@@ -196,6 +196,8 @@ MAX_DROPS = 1e15  # more are not told apart
 
 def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
     """Largest pressure, lowest static safety and drops until fatigue of a bearing; none without balls."""
+    if len(run.recording.time) < 2:  # broken off before its first step
+        return {}
     one = rated(run, a)
     if isinstance(one, str) or one.loads.peak <= 0.0:
         return {}

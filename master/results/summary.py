@@ -432,9 +432,18 @@ def _run_figures(
     }
 
 
-def table(summary: dict[str, object]) -> str:
-    """The figures as text, one a line."""
+# Of how it was computed; shown where all is
+NUMERICS = (
+    *("energy_", "scheme", "exchange", "macro_step", "wall_time", "start_up", "simulated", "time_at_"),
+    *("not_", "proposed_", "requirement_margin_"),
+)
+
+
+def table(summary: dict[str, object], everything: bool = True) -> str:
+    """The figures as text, one a line; without `everything` those of the drop that there are."""
     summary = {key: value for key, value in summary.items() if key != SPREAD}  # told beside them
+    if not everything:
+        summary = {k: v for k, v in summary.items() if v is not None and not k.startswith(NUMERICS)}
     width = max(len(key) for key in summary)
 
     def shown(value: object) -> str:

@@ -34,6 +34,7 @@ class Seat:
     body: str  # component that the journal is of
     speed: float | None  # rad/s, at the start
     bare_speed: bool = False  # whether it was given as a number without a unit
+    gravity: float | None = None  # m/s2, of that body
 
     @property
     def width(self) -> float | None:
@@ -51,7 +52,7 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
 
 
 def _of_seat(seat: Seat) -> Iterator[str]:
-    for look in (_fit, _clearance, _friction, _speed):
+    for look in (_fit, _clearance, _friction, _speed, _weight):
         yield from look(seat)
 
 
@@ -108,6 +109,15 @@ def _speed(seat: Seat) -> Iterator[str]:
             f"{seat.body}.speed = {seat.speed / RPM:.0f} rpm is more than a bearing of {_mm(seat.width)} "
             f"bore runs ({usual / RPM:.0f} rpm by the rule of {1e3 * MAX_BORE_SPEED:,.0f} mm rpm)"
             f"{'; a number without a unit is in rad/s' if seat.bare_speed else ''}"
+        )
+
+
+def _weight(seat: Seat) -> Iterator[str]:
+    if seat.gravity == 0.0:
+        yield (
+            f"{seat.body}.gravity = 0 m/s2: nothing presses {seat.body} into its bearings, and it drops "
+            "nowhere. Motion is in the plane across the shaft; the landing of a vertical machine along its "
+            "axis is not modelled"
         )
 
 

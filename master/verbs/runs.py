@@ -42,6 +42,9 @@ def _declare_run(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--csv", action="store_true", help="also write result.csv")
     verb.add_argument("--no-pictures", action="store_true", help="do not draw pictures")
     verb.add_argument(
+        "--all", action="store_true", help="show all figures, also energies, steps and what did not happen"
+    )
+    verb.add_argument(
         "--require", action="store_true", help="fail where the scene's [requirements] are not met"
     )
     verb.add_argument("--dark", action="store_true", help="pictures on a dark background")
@@ -75,18 +78,28 @@ def _execute_run(options: argparse.Namespace) -> int:
         pictures=False if options.no_pictures else "dark" if options.dark else True,
         progress=not options.quiet,
     )
-    print("\n".join([table(result.summary), *evidence(result.summary)]))
+    print("\n".join([table(result.summary, options.all), *evidence(result.summary)]))
     wanted = judged(chosen.requirements, result.summary)
     told = [*goes_on(result.summary), *_spread(result, options), *(one.words() for one in wanted)]
     hints = list(hint(options.scene, result.ending, result.summary))
     if hints and balanced(chosen, unbalanced(result.ending)):
         hints = ["the rotor has no unbalance, so the verdict hangs on no phase of it"]
-    print("\n".join([*told, *hints, f"results in {result.folder}"]))
+    print("\n".join([*told, *hints, _way(options, files), f"results in {result.folder}"]))
     warn(result.warnings)
     if result.ended is not Ended.COMPLETED:
         complain(f"stopped: {result.stopped_because}; what was recorded is in {result.folder}")
         return BROKEN_OFF if result.ended is Ended.INTERRUPTED else STOPPED
     return STOPPED if options.require and not all(one.met for one in wanted) else 0
+
+
+def _way(options: argparse.Namespace, files: list[str]) -> str:
+    """How components were stepped, and what would be quicker."""
+    if options.in_process:
+        others = f"; FMUs: {', '.join(files)}" if files else ""
+        return f"stepped in process, without FMUs{others}"
+    if options.native:
+        return "stepped as FMUs that need no Python"
+    return "stepped as FMUs in Python; --in-process gives the same rows several times faster"
 
 
 def _spread(result: Result, options: argparse.Namespace) -> list[str]:

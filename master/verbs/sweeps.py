@@ -231,8 +231,8 @@ MERGE = Verb(
 
 
 CHOOSE_EXAMPLES = (
-    'touchdown choose my-machine/scene.toml --bearings "7014,6014,61914" --duration "0.2 s"',
-    'touchdown choose my-machine/scene.toml --bearings "7014" --mount soft.toml --mount stiff.toml',
+    'touchdown choose my-machine/required.toml --bearings "7014,6014,61914" --duration "0.2 s"',
+    'touchdown choose my-machine/required.toml --bearings "7014" --mount soft.toml --mount stiff.toml',
 )
 
 

@@ -99,11 +99,16 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
     )
 
 
+def _option(step: float) -> str:
+    """The option that sets a macro step (s)."""
+    return f'--macro-step "{1e6 * step:g} us"'
+
+
 def too_long(run: RunSpec, share: float, either: str = "try") -> str:
     """That the macro step is to blame for a share of residual, and which one to try."""
     return (
         f"the macro step of {run.macro_step:g} s is too long for scheme {run.scheme.name}, "
-        f"{either} --macro-step {shorter_step(run, share, max(run.scheme.error_order, 1)):g}"
+        f"{either} {_option(shorter_step(run, share, max(run.scheme.error_order, 1)))}"
     )
 
 
@@ -117,7 +122,7 @@ def _shorter_for_bond(run: RunSpec, share: float) -> str:
     other = "try --set run.bonds=smooth, or" if way.held else "try"
     return (
         f"the macro step of {run.macro_step:g} s is too long for a bond that crosses by {way.name}, "
-        f"{other} --macro-step {shorter_step(run, share, way.error_order):g}"
+        f"{other} {_option(shorter_step(run, share, way.error_order))}"
     )
 
 
@@ -173,7 +178,7 @@ class MountSwing(Observer):
             self.warning = (
                 f"{attachment.body_end.title} swings {frequency * step:.2g} rad on its springs in a macro "
                 f"step of {step:g} s, which scheme {self._run.scheme.name} does not follow; take scheme "
-                f"interface, or try --macro-step {shorter:g}"
+                f"interface, or try {_option(shorter)}"
             )
             return
 
@@ -265,7 +270,7 @@ class Balance(Observer):
             settings = [setting for setting in (finer(system, one.bearing), *damping) if setting]
             if settings:
                 return f"try {' or '.join(settings)}"
-        return f"try --macro-step {tidy(0.5 * self._run.macro_step):g}"
+        return f"try {_option(tidy(0.5 * self._run.macro_step))}"
 
     @property
     def worst(self) -> Sum | None:

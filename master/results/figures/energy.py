@@ -17,6 +17,7 @@ MARKS = "osD^vP*X<"  # likewise; as many as are prime to the colours, so that pa
 STYLES = {"kinetic": "-", "potential": "--", "dissipated": ":"}
 MIN_DRAWN_CHANGE = 1e-3  # of the largest change; less is named, not drawn
 MAX_NAMES = 22  # in a column of the legend
+MAX_SMALL = 4  # of what changes little, named above the panel
 MARK_SPACING = 0.12  # of the panel's diagonal, between two marks of a curve
 
 
@@ -71,7 +72,8 @@ def _draw(axes: Axes, time: np.ndarray, changes: Mapping[tuple[str, str], np.nda
     _name(axes)
     small = [f"{name} {kind}" for name, kind in changes if 0.0 < size[name, kind] <= least]
     if small:
-        axes.set_title(f"below {least:.1g} J: {', '.join(small)}", fontsize="x-small", wrap=True)
+        more = f" and {len(small) - MAX_SMALL} more" if len(small) > MAX_SMALL else ""
+        axes.set_title(f"below {least:.1g} J: {', '.join(small[:MAX_SMALL])}{more}", fontsize="x-small")
 
 
 def _name(axes: Axes) -> None:

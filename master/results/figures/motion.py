@@ -108,8 +108,9 @@ def speeds(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
     grid = figure.subplots(len(groups), len(spans), squeeze=False, sharex="col")
     for row, (title, shown) in zip(grid, groups, strict=True):
         for axes, span in zip(row, spans, strict=True):
-            _draw_speeds(axes, time, shown, span)
-            if zoomed and _is_whole(span, time):
+            later = zoomed and _is_whole(span, time)
+            _draw_speeds(axes, time, _from(spun_up, time, shown) if later else shown, span)
+            if later:
                 _zoom(axes, [values[time >= spun_up] for _, values in shown])
         row[0].set_ylabel(f"{title} [rpm]")
         row[0].legend(*_reversed_legend(row[0]), loc="lower right")
@@ -129,6 +130,13 @@ def _turning(run: Finished, a: Attachment, turns: tuple[Turn, ...]) -> list[tupl
         if name in run.recording:
             shown.append((turn, RPM * run.recording[name] / _radius(run, a, turn)))
     return shown
+
+
+def _from(
+    begin: float, time: np.ndarray, shown: list[tuple[Turn, np.ndarray]]
+) -> list[tuple[Turn, np.ndarray]]:
+    """What is shown from `begin` (s) on; before, nothing is drawn."""
+    return [(turn, np.where(time >= begin, values, np.nan)) for turn, values in shown]
 
 
 def _radius(run: Finished, a: Attachment, turn: Turn) -> float:

@@ -99,7 +99,7 @@ def test_what_cannot_be_heard_is_said(scheme: str, monkeypatch: pytest.MonkeyPat
     result = run_scene(bounce(scheme), tmp_path, in_process=True, pictures=False)
     expected = f"bearing.journal on rotor.A, scheme {scheme} repeats or divides its steps"
     assert result.summary["not_audited"] == expected
-    assert result.warnings == [f"not audited: {expected}"]
+    assert result.warnings[-1] == f"not audited: {expected}"
 
 
 def test_what_can_be_loaded_only_once_is_not_audited(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -180,7 +180,7 @@ def test_the_coupling_is_blamed_and_its_remedy_removes_the_alarm(
     """Also where it is the balance inside the bearing that speaks, alone or beside the connection."""
     scene = load_scene(name).set(LANDED | settings)
     said = simulated(scene).warning
-    steps = [float(step) for step in re.findall(r"--macro-step ([^ ;]+)", said)]
+    steps = [1e-6 * float(step) for step in re.findall(r'--macro-step "([^ ]+) us"', said)]
     assert len(steps) == said.count("; the macro step of")
     assert "--set" not in said
     for step in steps:
@@ -224,7 +224,7 @@ def test_the_remedy_names_what_is_to_blame() -> None:
         }
     assert said[1e-5].endswith("try --set bearing.micro_step=1.25e-06")
     assert "is too long" in said[5e-3]
-    assert said[5e-3].rpartition(" ")[2] == "0.002"
+    assert said[5e-3].endswith('try --macro-step "2000 us"')
 
 
 # -- whirls --------------------------------------------------------------------------------------------

@@ -342,4 +342,4 @@ def test_a_loss_that_always_has_one_sign_is_seen(body: Path) -> None:
     assert made(rows) < -0.4
     assert outcome.share == pytest.approx(abs(made(rows)), rel=0.5)
     assert "% of what crossed" in outcome.warning
-    assert "--macro-step 0.005" in outcome.warning  # by what was lost up to the end
+    assert '--macro-step "5000 us"' in outcome.warning  # by what was lost up to the end
