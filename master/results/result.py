@@ -54,7 +54,7 @@ class Result:
     >>> list(result.to_pandas(["rotor.A.x", "rotor.A.y"]))
     ['rotor.A.x', 'rotor.A.y']
     >>> result.plot.orbit().get_xlabel()
-    'x [µm]'
+    'x in space [µm]'
     """
 
     scene: Scene

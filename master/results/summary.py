@@ -434,7 +434,7 @@ def _run_figures(
 
 # Of how it was computed; shown where all is
 NUMERICS = (
-    *("energy_", "scheme", "exchange", "macro_step", "wall_time", "start_up", "simulated", "time_at_"),
+    *("energy_", "exchange", "macro_step", "wall_time", "start_up", "simulated", "time_at_"),
     *("not_", "proposed_", "requirement_margin_"),
 )
 

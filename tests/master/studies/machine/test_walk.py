@@ -36,7 +36,7 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
             assert main(words[1:]) == 0
         elif words[1] == "run":
             assert find_scene(options.scene).set(dict(s.split("=") for s in options.set)).attach
-    assert done == ["rotor", "catalogue", "new", "run", "report", "run"]
+    assert done == ["rotor", "catalogue", "new", "run", "report", *["run"] * 2, "report", "run", "choose"]
     assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
