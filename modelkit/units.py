@@ -77,9 +77,12 @@ def per_display(unit: str, written: str) -> float:
 
 def is_bare(value: object) -> bool:
     """Whether `value` is a number, or text of one, that says no unit."""
-    return value is not None and not re.search(
-        r"[^\W\d_]", re.sub(r"(?i)(?<=[\d.])e(?=[-+\d])", "", str(value))
-    )
+    if value is None or not isinstance(value, str):
+        return value is not None
+    try:
+        return not _split(value, "")[1]
+    except UnitError:  # no number at all, of which others complain
+        return False
 
 
 def to_si(value: object, unit: str | None, name: str) -> float:

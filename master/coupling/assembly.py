@@ -28,14 +28,8 @@ from .connections import (
 )
 from .system import System
 
-UNSCALED_UNITS = (
-    None,
-    "",
-    "1",
-    "m",
-    "rad/s",
-    "m/s2",
-)  # units of what is looked at; an FMU of others' may have rpm
+# Units of what is looked at; an FMU of others' may have rpm
+UNSCALED_UNITS = (None, "", "1", "m", "rad/s", "m/s2")
 FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme

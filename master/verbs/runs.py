@@ -99,6 +99,8 @@ def _way(options: argparse.Namespace, files: list[str]) -> str:
         return f"stepped in process, without FMUs{others}"
     if options.native:
         return "stepped as FMUs that need no Python"
+    if files:
+        return "stepped as FMUs in Python, and those of others; --in-process steps the own ones faster"
     return "stepped as FMUs in Python; --in-process gives the same rows several times faster"
 
 

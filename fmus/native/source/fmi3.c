@@ -55,8 +55,9 @@ API void fmi3FreeInstance(Fmu *f)
 
 API Status fmi3SetDebugLogging(Fmu *f, bool on, size_t count, const char *const categories[])
 {
-    f->host.logging = on; /* errors are told in any case: a host cannot ask for their reasons afterwards */
-    return known_categories(f, count, categories);
+    Status status = known_categories(f, count, categories);
+    if (status == OK) f->host.logging = on; /* errors are told in any case: nobody can ask for them later */
+    return status;
 }
 
 API Status fmi3EnterInitializationMode(Fmu *f, bool tolerance_given, double tolerance, double start_time,
