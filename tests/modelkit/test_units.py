@@ -60,6 +60,7 @@ def test_what_is_none_is_refused_by_name(written: object, says: str) -> None:
         (None, False),
         ("9000 rpm", False),
         ("9e3rad/s", False),
+        ("50 %", False),
     ],
 )
 def test_a_number_without_a_unit_is_known(value: object, bare: bool):
