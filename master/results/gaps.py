@@ -13,7 +13,7 @@ import numpy as np
 
 from ..scene.gaps import Gap
 from ..scene.scene import Scene
-from .recording import Recording
+from .recording import NotRecordedError, Recording
 
 PARTS = 8  # of an interval between recorded times, in which the way is looked at
 RPM = 60.0 / (2.0 * math.pi)
@@ -24,7 +24,7 @@ class Left:
     """What is left of a gap over time."""
 
     gap: Gap
-    time: np.ndarray  # s, (n,)
+    time: np.ndarray  # s from the scene's zero, as recorded, (n,)
     left: np.ndarray  # m, (n,); below 0 the rotor would be in the stator
 
     def since(self, time: float) -> Left:
@@ -76,20 +76,28 @@ def _cubic(time: np.ndarray, place: np.ndarray, speed: np.ndarray, between: np.n
     return np.append(way.ravel(), place[-1])
 
 
-def gap_figures(scene: Scene, recording: Recording, zero: float) -> dict[str, object]:
-    """Figures of a run from `zero` (s) on for each gap, and the least of all; without gaps, none.
+def gap_figures(scene: Scene, recording: Recording) -> dict[str, object]:
+    """Figures of a run from the scene's zero on for each gap, and the least of all; without gaps, none.
 
-    Times count from there. Raises NotRecordedError where a place was not recorded.
+    Recorded times count from there already. A place that was not recorded leaves None, also of the least.
     """
     figures: dict[str, object] = {}
-    found = [left_of(gap, recording).since(zero) for gap in scene.gaps]
-    for one in found:
+    found: list[Left] = []
+    for gap in scene.gaps:
+        try:
+            one = left_of(gap, recording).since(0.0)
+        except NotRecordedError:
+            figures[f"{gap.key}_least_um"] = None
+            continue
+        found.append(one)
         key, at = one.gap.key, one.least
         figures[f"{key}_least_um"] = 1e6 * float(one.left[at])
-        figures[f"{key}_least_time_s"] = float(one.time[at]) - zero
+        figures[f"{key}_least_time_s"] = float(one.time[at])
         figures[f"{key}_least_rotor_speed_rpm"] = _rotor_speed(one, recording)
         figures[f"{key}_touches"] = one.touches
-    if found:
+    if len(found) < len(scene.gaps):
+        figures["least_gap_um"] = None
+    elif found:
         least = min(found, key=lambda one: float(one.left.min()))
         figures |= {"least_gap_um": 1e6 * float(least.left.min()), "least_gap_at": least.gap.name}
     return figures
@@ -107,6 +115,8 @@ def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
     """What is to be said of gaps that the rotor closed, a line each."""
     said: list[str] = []
     for gap in scene.gaps:
+        if summary.get(f"{gap.key}_least_um", 0.0) is None:
+            said.append(f"gap {gap.name}: {gap.at} was not recorded; see run.record")
         touches, least = summary.get(f"{gap.key}_touches"), summary.get(f"{gap.key}_least_um")
         if isinstance(touches, int) and isinstance(least, float) and touches > 0:
             times = "once" if touches == 1 else f"{touches} times"

@@ -123,8 +123,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
     if by_master := [a.bearing for a in seats if is_heard(system, a)]:
         figures["contact_heard_by_master"] = ", ".join(by_master)
-    with suppress(NotRecordedError):
-        figures |= gap_figures(scene, recording, outcome.zero)
+    figures |= gap_figures(scene, recording)
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
         own = _strain_figures(Finished(scene, system, recording), a)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 import touchdown
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.results.gaps import left_of
+from touchdown.master.results.gaps import gap_figures, left_of
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.gaps import Gap, gaps
 
@@ -58,6 +59,30 @@ def test_a_stator_that_moves_counts(dropped: touchdown.Result) -> None:
     assert (dropped.folder / "gaps.png").is_file()
 
 
+def test_times_count_from_the_shutdown_once(dropped: touchdown.Result) -> None:
+    """Recorded times begin 5 ms before 0; the landing comes after the first contact."""
+    summary, recording = dropped.summary, dropped.recording
+    assert recording.time[0] == pytest.approx(-0.005)
+    far = np.hypot(recording["rotor.amb.x"], recording["rotor.amb.y"])
+    step = float(np.diff(recording.time).max())
+    assert summary["gap_AMB_A_least_time_s"] == pytest.approx(recording.time[far.argmax()], abs=step)
+    assert recording.time[far.argmax()] > float(str(summary["first_contact_time_s"]))
+
+
+def test_the_first_of_the_drop_counts() -> None:
+    """A gap that closes sooner after the shutdown than that came after the start."""
+
+    class Way(dict):  # type: ignore[type-arg]
+        time = np.linspace(-5e-3, 10e-3, 16)
+
+    way = Way({"r.A.x": np.where(np.isclose(Way.time, 2e-3), 1.5e-3, 0.0), "r.A.y": np.zeros(16)})
+    scene = replace(touchdown.load("disk-caged-simplified"), gaps=(Gap("one", "r.A", 1e-3),))
+    figures = gap_figures(scene, way)  # type: ignore[arg-type]
+    assert figures["gap_one_touches"] == 1
+    assert figures["gap_one_least_um"] == pytest.approx(-500.0)
+    assert figures["gap_one_least_time_s"] == pytest.approx(2e-3)
+
+
 def test_a_circle_between_few_points_is_followed() -> None:
     """Radius 1 mm, 8 recorded points a turn: the cubic's radius is off by 1e-3 of it at most."""
 
@@ -102,3 +127,12 @@ def test_a_place_that_is_none_is_refused(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(SCENE.replace("rotor.amb", "rotor.B"), encoding="utf-8")
     with pytest.raises(TouchdownError, match=r"gap AMB A: rotor tells no place B; .*A, .*amb"):
         touchdown.run(touchdown.load(tmp_path / "own.toml"), in_process=True)
+
+
+def test_a_gap_that_was_not_recorded_is_said(tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(SCENE, encoding="utf-8")
+    scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "9 ms", "run.record": "rotor.A"})
+    result = touchdown.run(scene, in_process=True)
+    assert result.summary["gap_AMB_A_least_um"] is None
+    assert result.summary["least_gap_um"] is None
+    assert "gap AMB A: rotor.amb was not recorded; see run.record" in result.warnings
