@@ -52,7 +52,7 @@ CONTENTS = {  # pages in the order of the site
     ),
     "Use": (
         *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere"),
-        *("native", "rotors", "coupling", "bonds", "api"),
+        *("native", "rotors", "rotor-file", "friction", "coupling", "bonds", "api"),
     ),
     "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
