@@ -194,16 +194,20 @@ def _origin(of_entry: str, standard: str, known: float) -> str:
 MAX_DROPS = 1e15  # more are not told apart
 
 
+RATINGS = "largest_ball_pressure_GPa", "lowest_static_safety", "drops_until_fatigue"
+
+
 def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
-    """Largest pressure, lowest static safety and drops until fatigue of a bearing; none without balls."""
+    """Largest pressure, lowest static safety and drops until fatigue of a bearing.
+
+    None without balls, or where they carried nothing; balls that cannot be rated have None for each.
+    """
     if len(run.recording.time) < 2:  # broken off before its first step
         return {}
     one = rated(run, a)
-    if isinstance(one, str) or one.loads.peak <= 0.0:
+    if isinstance(one, str):
+        return {key: None for key in RATINGS if f"{a.bearing}.balls.count" in run.system}
+    if one.loads.peak <= 0.0:
         return {}
     pressure = max(one.peak_pressure(race) for race in rating.RACES)
-    return {
-        "largest_ball_pressure_GPa": 1e-9 * pressure,
-        "lowest_static_safety": one.safety,
-        "drops_until_fatigue": min(one.drops, MAX_DROPS),
-    }
+    return dict(zip(RATINGS, (1e-9 * pressure, one.safety, min(one.drops, MAX_DROPS)), strict=True))

@@ -158,14 +158,21 @@ def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[
 
 
 def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
-    """What the run is to a bearing and its housing: pressure, safety, fatigue, heat, stroke."""
+    """What the run is to a bearing and its housing: pressure, safety, fatigue, heat, stroke.
+
+    What there is, but was not recorded, is None, so that no requirement is met by another bearing alone.
+    """
     figures = rating_figures(run, a)
     port, heat = housing_port(run.system, a), f"{a.bearing}.energy.dissipated"
     if heat in run.recording:
         figures["bearing_heat_J"] = float(run.recording[heat][-1] - run.recording[heat][0])
+    elif heat in run.system:
+        figures["bearing_heat_J"] = None
     if port and f"{port}.x" in run.recording and f"{port}.y" in run.recording:
         way = np.hypot(run.recording[f"{port}.x"], run.recording[f"{port}.y"])
         figures["housing_stroke_um"] = 1e6 * float(way.max())
+    elif port and f"{port}.x" in run.system:
+        figures["housing_stroke_um"] = None
     return figures
 
 

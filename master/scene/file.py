@@ -176,6 +176,11 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         gaps=gaps(data.get("gap", []), f"scene {name}: gap"),
         requirements=requirements(data.get("requirements", {}), f"scene {name}: [requirements]"),
     )
+    if not scene.gaps and any(one.kind == "least_gap" for one in scene.requirements):
+        raise TouchdownError(
+            f"scene {name}: [requirements] least_gap has no gap to look at; add [[gap]] with name, at "
+            "and radial"
+        )
     return _with_shared(scene, data.get("set", ()))
 
 

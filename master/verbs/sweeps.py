@@ -31,6 +31,8 @@ from .arguments import (
 from .verb import Verb, broken_off, complain, warn
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ..scene.scene import Scene
     from ..studies.sweep.definition import Design
 
@@ -265,10 +267,10 @@ def _declare_choose(verb: argparse.ArgumentParser) -> None:
 def _execute_choose(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..api.machines import report
+    from ..common.errors import Ended
     from ..common.units import to_si
     from ..interop.scenes import find_scene
-    from ..scene.file import read_settings
-    from ..studies.machine.choose import Spread, choose, lines, write_table
+    from ..studies.machine.choose import Spread, choose, lines, remarks, write_table
     from ..studies.sweep.definition import MAX_POINTS
     from ..studies.sweep.sweep import Running, Sweep, sweep
 
@@ -287,13 +289,26 @@ def _execute_choose(options: argparse.Namespace) -> int:
             return sweep(scene, design, folder, running, bar.update)
 
     names = [name.strip() for name in options.bearings.split(",") if name.strip()]
-    mounts = {path.stem: read_settings(path) for path in options.mount}
-    found = choose(chosen, names, mounts, spread, run)
-    print("\n".join(lines(found)))
+    found = choose(chosen, names, _mounts(options.mount), spread, run)
+    if any(m.ended is Ended.INTERRUPTED for one in found for m in one.members):
+        return broken_off()
+    print("\n".join([*lines(found), *remarks(found)]))
     write_table(found, folder / "choose.csv")
     page = report(folder, None)[0]
     print(f"results in {folder}, its page is {page}")
     return STOPPED if any(one.failed for one in found) else 0
+
+
+def _mounts(paths: Sequence[Path]) -> dict[str, dict[str, object]]:
+    """Settings by the files' names without ending. Raises TouchdownError where two are the same."""
+    from ..scene.file import read_settings
+
+    found: dict[str, dict[str, object]] = {}
+    for path in paths:
+        if path.stem in found:
+            raise TouchdownError(f"--mount {path}: there is a mount {path.stem} already; rename one")
+        found[path.stem] = read_settings(path)
+    return found
 
 
 CHOOSE = Verb(

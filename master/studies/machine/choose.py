@@ -24,12 +24,13 @@ from ....bearings.catalogue.load_sharing import harmonics_worth
 from ...common.errors import TouchdownError, one_of
 from ...common.files import replacing
 from ...coupling.simulation import opened
-from ...results.requirements import MARGIN, MET
+from ...results.requirements import MARGIN
 from ...results.whirl.verdict import Share, clopper_pearson
 from ...scene.requirements import KINDS
 from ...scene.scene import Scene
 from ..sweep.definition import Design
 from ..sweep.members import Member
+from ..sweep.report import failures, largest, warned
 from .bearings import find_bearing
 from .design import GRAVITY, rounded
 
@@ -81,7 +82,7 @@ class Ranked:
     @property
     def passing(self) -> Share:
         """Share of drops that keep to all requirements, with its interval."""
-        return clopper_pearson(sum(m.summary.get(MET) is True for m in self.members), len(self.members))
+        return clopper_pearson(sum(m.meets for m in self.members), len(self.members))
 
     @property
     def failed(self) -> int:
@@ -91,14 +92,19 @@ class Ranked:
     @property
     def worst(self) -> tuple[float, str]:
         """Median over drops of their worst margin, and which requirement that mostly is of."""
-        found = [min(margins(m), default=(-math.inf, "")) for m in self.members]
+        found = [min(margins(m), default=NOTHING) for m in self.members]
         names = [name for _, name in found if name]
         most = max(set(names), key=names.count) if names else ""
         return median(margin for margin, _ in found), most
 
 
+NOTHING = (-math.inf, "")  # margin, and of which requirement
+
+
 def margins(member: Member) -> list[tuple[float, str]]:
-    """Margin and name of each requirement; -inf where the drop does not tell it."""
+    """Margin and name of each requirement; -inf where a drop does not tell it. None of one that failed."""
+    if member.failed:
+        return []
     return [
         (float(value) if isinstance(value, float) else -math.inf, key.removeprefix(MARGIN))
         for key, value in member.summary.items()
@@ -136,6 +142,8 @@ def candidates(
     """Every bearing in every mount. Raises TouchdownError where the journal does not go into one."""
     weight = _landed_weight(scene, len(seats))
     found: list[Candidate] = []
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise TouchdownError(f"--bearings has {twice[0]} twice; name it once")
     tried = dict(mounts) or {"": dict[str, object]()}
     for name in names:
         bearing = find_bearing(name, scene.folder)
@@ -204,9 +212,22 @@ def lines(found: Sequence[Ranked]) -> Iterator[str]:
     for place, one in enumerate(found, start=1):
         share, (margin, name) = one.passing, one.worst
         part = f"{100 * share.value:.0f} % ({100 * share.low:.0f} to {100 * share.high:.0f} %)"
-        worst = f"{KINDS[name].meaning}, {100.0 * margin:.3g} %" if name else "-"
+        shown = f"{100.0 * margin:.3g} %" if math.isfinite(margin) else "not told"
+        worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
         failed = f"; {one.failed} of {len(one.members)} drops failed" if one.failed else ""
         yield f"{place:>4}  {one.candidate.title:<{width}}  {part:<20}  {worst}{failed}"
+
+
+def remarks(found: Sequence[Ranked]) -> Iterator[str]:
+    """What is to be said beside the table: drops without a contact, why drops failed, what they warn of."""
+    members = sorted((m for one in found for m in one.members), key=lambda m: m.number)
+    ended = [m for m in members if not m.failed]
+    if untouched := sum(not largest(m.summary, "peak_contact_force_N") for m in ended):
+        part = f"{untouched} of {len(ended)} drops"
+        yield f"{part} ended before the rotor touched a bearing; give a longer --duration"
+    for what, said in (("failed:", failures(members)), ("warnings:", warned(members))):
+        if said:
+            yield from (what, *said)
 
 
 def write_table(found: Sequence[Ranked], path: Path) -> None:

@@ -16,6 +16,7 @@ from typing import Any
 
 from ...common.errors import Ended, TouchdownError
 from ...common.files import replacing, writing_to
+from ...results.requirements import MET
 
 MEMBERS_FILE = "members.jsonl"
 COSTS = ("wall_time_s", "start_up_s", "wall_time_per_simulated_s")  # figures of the machine, not the drop
@@ -33,6 +34,11 @@ class Member:
     kept: bool = False  # whether it had ended before, and was not run again
     seconds: float | None = None  # wall time of its run
     warnings: Sequence[str] = ()  # what is to be said beside its figures
+
+    @property
+    def meets(self) -> bool:
+        """Whether it came to its end and met all that its scene requires."""
+        return not self.failed and self.summary.get(MET) is True
 
 
 @dataclass(frozen=True)

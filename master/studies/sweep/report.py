@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from statistics import median
 
-from ...common.errors import one_of
+from ...common.errors import Ended, one_of
 from ...common.files import replacing
 from ...results.requirements import MARGIN, MET
 from ...results.whirl.verdict import CONFIDENCE, clopper_pearson, verdict_class
@@ -57,13 +57,16 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
 
 
 def requirement_lines(members: Sequence[Member]) -> list[str]:
-    """How many members meet all that the scene requires, and each of it; none where it requires nothing."""
-    judged = [m for m in members if isinstance(m.summary.get(MET), bool)]
-    if not judged:
+    """How many members meet all that the scene requires, and each of it; none where it requires nothing.
+
+    Drops that failed meet nothing; those that were not run, or were interrupted, do not count.
+    """
+    judged = [m for m in members if m.ended is not Ended.INTERRUPTED]
+    if not any(MET in m.summary for m in judged):
         return []
-    lines = [f"  requirements met: {_passing([bool(m.summary[MET]) for m in judged])}"]
+    lines = [f"  requirements met: {_passing([m.meets for m in judged])}"]
     for key in (key for key in keys(judged) if key.startswith(MARGIN)):
-        margins = [m.summary[key] for m in judged]
+        margins = [None if m.failed else m.summary.get(key) for m in judged]
         known = [margin for margin in margins if isinstance(margin, float)]
         passing = _passing([isinstance(margin, float) and margin >= 0.0 for margin in margins])
         worst = (

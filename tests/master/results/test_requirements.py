@@ -8,7 +8,7 @@ import pytest
 
 import touchdown
 from touchdown.master.cli import main
-from touchdown.master.common.errors import STOPPED, TouchdownError
+from touchdown.master.common.errors import STOPPED, Ended, TouchdownError
 from touchdown.master.results.requirements import judged, requirement_figures
 from touchdown.master.scene.file import read_resolved
 from touchdown.master.scene.requirements import Requirement, requirements
@@ -105,3 +105,45 @@ def test_over_a_sweep() -> None:
         "worst, 37.5 % in the median",
     ]
     assert requirement_lines([Member(0, {}, {})]) == []
+
+
+def test_a_drop_that_failed_meets_nothing() -> None:
+    """Whatever its figures say until then; one that was not run does not count."""
+    met: dict[str, object] = {"requirements_met": True, "requirement_margin_heat": 0.5}
+    members = [
+        Member(1, {}, met),
+        Member(2, {}, met | {"requirement_margin_heat": 0.9}, "stopped", Ended.STOPPED),
+        Member(3, {}, {}, "crashed", Ended.STOPPED),
+        Member(4, {}, {}, "not run", Ended.INTERRUPTED),
+    ]
+    assert requirement_lines(members) == [
+        "  requirements met: 1 of 3 (33.3 %; 0.84 % to 90.6 % with 95% confidence)",
+        "    heat in a bearing: 1 of 3 (33.3 %; 0.84 % to 90.6 % with 95% confidence), margin 50 % at "
+        "worst, 50 % in the median",
+    ]
+
+
+def test_a_least_gap_needs_a_gap(tmp_path: Path) -> None:
+    text = 'extends = "disk-caged-simplified"\n[requirements]\nleast_gap = "20 um"\n'
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(TouchdownError, match="least_gap has no gap to look at; add"):
+        touchdown.load(tmp_path / "own.toml")
+
+
+def test_a_bearing_that_was_not_recorded_is_not_passed_by_the_other(tmp_path: Path) -> None:
+    text = """
+    extends = "rotor1-9000"
+    [run]
+    duration = "10 ms"
+    record = ["rotor", "bearing_A"]
+    [requirements]
+    ball_pressure = "4 GPa"
+    heat = "100 J"
+    stroke = "1 mm"
+    """
+    (tmp_path / "own.toml").write_text(text, encoding="utf-8")
+    summary = touchdown.run(touchdown.load(tmp_path / "own.toml"), in_process=True).summary
+    assert isinstance(summary["largest_ball_pressure_GPa_bearing_A"], float)
+    for kind in ("ball_pressure", "heat", "stroke"):
+        assert summary[f"requirement_margin_{kind}"] is None
+    assert summary["requirements_met"] is False

@@ -10,7 +10,7 @@ import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.machine.choose import Candidate, Spread, choose, lines, ranked
+from touchdown.master.studies.machine.choose import Candidate, Spread, choose, lines, ranked, remarks
 from touchdown.master.studies.sweep.definition import Design
 from touchdown.master.studies.sweep.members import Member
 
@@ -52,6 +52,37 @@ def test_the_share_comes_first_then_the_worst_margin() -> None:
     table = list(lines(found))
     assert "heat in a bearing, -5 %" in table[1]
     assert "1 of 2 drops failed" in table[3]
+
+
+def test_a_drop_that_failed_keeps_to_none() -> None:
+    """Also where its figures until then do; what is not told is no number."""
+    members = [member(1, 0.9, 0.9, failed="stopped"), member(2, 0.1, 0.1), member(3, 0.1, None)]
+    found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
+    assert [one.candidate.title for one in found] == ["b", "a", "c"]
+    assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
+    assert list(lines(found))[3].endswith("largest stroke of a housing, not told")
+
+
+def test_what_is_said_beside_the_table() -> None:
+    """Drops that ended in the air, failures and warnings."""
+    touched = Member(1, {}, {"peak_contact_force_N": 9.0}, warnings=("stays",))
+    members = [touched, Member(2, {}, {"peak_contact_force_N": 0.0}), Member(3, {}, {}, "stopped")]
+    said = list(remarks(ranked([Candidate("a", "", {})], members)))
+    assert said[0].startswith("1 of 2 drops ended before the rotor touched a bearing")
+    assert said[1:] == ["failed:", "  1 x stopped (member 3)", "warnings:", "  1 x stays (member 1)"]
+    assert list(remarks(ranked([Candidate("a", "", {})], [touched]))) == said[3:]
+
+
+def test_two_mounts_of_one_name_are_refused(
+    scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [tmp_path / folder / "mount.toml" for folder in "ab"]
+    for file in files:
+        file.parent.mkdir()
+        file.write_text("[set.housing]\nstiffness = 1e7\n", encoding="utf-8")
+    mounts = [word for file in files for word in ("--mount", str(file))]
+    assert main(["choose", str(scene.folder / "own.toml"), "--bearings", "6004", *mounts]) == 2
+    assert "there is a mount mount already; rename one" in capsys.readouterr().err
 
 
 def test_all_take_the_same_drops(scene: Scene) -> None:
@@ -106,6 +137,7 @@ def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.Captu
     [
         (["6001"], "6001 has a bore of 12 mm; journal and clearance at bearing take 20 mm"),
         (["9999"], "there is no bearing 9999"),
+        (["6004", "6004"], "--bearings has 6004 twice"),
         ([], "--bearings is missing"),
     ],
 )
