@@ -53,7 +53,7 @@ class RatedBearing:
     contact_angle: float = 0.0  # rad, nominal
     balls: Elastic = STEEL_NUMBERS
     rings: Elastic = STEEL_NUMBERS
-    hybrid: bool = False  # ceramic balls in steel rings
+    hybrid: bool = False  # ceramic balls in steel rings; of ceramic rings no standard tells
 
     def __post_init__(self) -> None:
         lengths = 0.0 < self.diameter < self.pitch_diameter < math.inf
@@ -81,7 +81,8 @@ class RatedBearing:
             contact_angle=contact_angle,
             balls=_elastic("balls", values),
             rings=_elastic("ring", values),
-            hybrid=values.get("balls.material", STEEL) != values.get("ring.material", STEEL),
+            hybrid=values.get("balls.material", STEEL) != STEEL
+            and values.get("ring.material", STEEL) == STEEL,
         )
 
     @property

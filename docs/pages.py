@@ -51,8 +51,8 @@ CONTENTS = {  # pages in the order of the site
         "glossary",
     ),
     "Use": (
-        *("own-machine", "bearings", "studies", "results", "reports", "systems", "elsewhere"),
-        *("native", "rotors", "rotor-file", "friction", "coupling", "bonds", "api"),
+        *("own-machine", "bearings", "levitation", "studies", "results", "reports", "systems", "elsewhere"),
+        *("native", "rotors", "rotor-file", "mounts", "friction", "coupling", "bonds", "api"),
     ),
     "Background": ("physics", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models

@@ -13,7 +13,7 @@ from . import messages
 from .integrators import dopri
 from .integrators.control import MAX_STEPS
 from .model import Model, ModelError, Slot, StepSizeError, slots
-from .status import BAD_INPUT, BAD_LOAD, OK, TOO_MANY_STEPS
+from .status import BAD_INPUT, BAD_LOAD, OK, TOO_LONG_STEP, TOO_MANY_STEPS
 from .variables import Causality, Scalar, as_tuple, from_record, layout
 
 FIRST_STEP = 1e-6  # s; the micro-step to try first
@@ -156,6 +156,8 @@ def explanation(instance: Instance, status: int, time: float, step: float) -> st
         return messages.BAD_LOAD.format(time=time)
     if status == TOO_MANY_STEPS:
         return messages.TOO_MANY_STEPS.format(most=MAX_STEPS, step=step, time=time)
+    if status == TOO_LONG_STEP:
+        return messages.TOO_LONG_STEP.format(step=step, time=time)
     if status < 0:
         return messages.GAVE_UP.format(time=time)
     return messages.UNRESOLVED.format(time=time, step=step)

@@ -23,6 +23,10 @@ TOO_MANY_STEPS = (
     "more than {most:d} micro-steps within one macro step of {step:g} s at t = {time:.9g} s; "
     "take a smaller macro step or a larger interface.tolerance"
 )
+TOO_LONG_STEP = (
+    "the macro step of {step:g} s at t = {time:.9g} s is longer than sample_time, from sample to sample; "
+    "take a smaller one"
+)
 GAVE_UP = "the model's code gave up at t = {time:.9g} s; there may be no memory left"
 UNRESOLVED = (
     "the motion inside cannot be resolved at t = {time:.9g} s with a macro step of {step:g} s; take a "

@@ -5,3 +5,4 @@ BAD_INPUT = 1  # an input is not a finite number
 STEP_UNDERFLOW = 2  # the motion cannot be resolved
 TOO_MANY_STEPS = 3  # it would take too long
 BAD_LOAD = 4  # what it hands over is not a finite number
+TOO_LONG_STEP = 5  # it holds more than one sample

@@ -22,6 +22,9 @@ UNIT_SCALES: dict[str, tuple[float, str]] = {
     "N/mm": (1e3, "N/m"), "N/um": (1e6, "N/m"), "kN/m": (1e3, "N/m"), "MN/m": (1e6, "N/m"),
     "N.s/mm": (1e3, "N.s/m"),
     "GPa": (1e9, "Pa"), "MPa": (1e6, "Pa"), "kPa": (1e3, "Pa"),
+    "mm2": (1e-6, "m2"), "cm2": (1e-4, "m2"),
+    "mA": (1e-3, "A"), "mV": (1e-3, "V"), "kV": (1e3, "V"), "mOhm": (1e-3, "Ohm"),
+    "A/mm": (1e3, "A/m"), "A/um": (1e6, "A/m"),
     "%": (1e-2, "1"),
 }  # fmt: skip
 

@@ -34,7 +34,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "bearings": (
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
-        *("catalogue", "rating", "surroundings", "rolling", "contact", "seat"),
+        *("catalogue", "rating", "surroundings", "magnetic", "rolling", "contact", "seat"),
     ),
     "rotor": (
         *(
@@ -61,16 +61,19 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
 RATED = {
     *("touchdown.master.results.ratings", "touchdown.master.report"),
     *("touchdown.master.studies.machine", "touchdown.master.api.machines"),
+    "touchdown.master.studies.rotor.whirl",
 }
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.machines"),
         "touchdown.master.api.rotor",
-        "touchdown.master.studies.machine",
+        *("touchdown.master.studies.machine", "touchdown.master.studies.loop"),
         *("touchdown.master.report.chapters.machine", "touchdown.master.report.drawings"),
     },
+    "touchdown.bearings.magnetic": {"touchdown.master.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
+    "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl"},
     "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},
     "touchdown.bearings.contact.materials": {"touchdown.master.studies.dissertation.exhibits.disk_forces"},

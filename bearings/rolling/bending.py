@@ -58,9 +58,9 @@ class Section(NamedTuple):
 
 
 class Groove(NamedTuple):
-    """The section of an inner ring from bore to shoulder, with grooves of a circle's arc."""
+    """The section of a ring from its bore, or rim, to its shoulder, with grooves of a circle's arc."""
 
-    bore: float  # m, radius
+    bore: float  # m, radius; of an outer ring its outside
     bottom: float  # m, radius of the race
     shoulder: float  # m, radius
     width: float  # m, of the ring
@@ -110,19 +110,21 @@ class BendingMemory:
 def _moments(groove):
     """(int r^j dA) for j from -1 to 3: below the grooves, and between the races' bottoms and shoulders.
 
-    Beside a groove r = bottom + height t^2, in which its edge is smooth.
+    Beside a groove r = bottom + height t^2, in which its edge is smooth. In an outer ring all heights are
+    inwards, negative; its areas are not.
     """
     low = high = one = two = three = 0.0
     height, below = groove.shoulder - groove.bottom, groove.bottom - groove.bore
+    high_edge, solid = abs(height), abs(below)
     for i in range(INTERVALS + 1):
         factor = 1.0 if i in (0, INTERVALS) else 4.0 if i % 2 == 1 else 2.0
         factor /= 3.0 * INTERVALS
         t = i / INTERVALS
-        chord = 2.0 * t * math.sqrt(height * (2.0 * groove.arc - height * t * t))
-        above = factor * 2.0 * height * t * (groove.width - groove.rows * chord)
+        chord = 2.0 * t * math.sqrt(high_edge * (2.0 * groove.arc - high_edge * t * t))
+        above = factor * 2.0 * high_edge * t * (groove.width - groove.rows * chord)
         for part in range(2):
             r = groove.bore + below * t if part == 0 else groove.bottom + height * t * t
-            area = factor * below * groove.width if part == 0 else above
+            area = factor * solid * groove.width if part == 0 else above
             low, high = low + area / r, high + area
             one, two, three = one + area * r, two + area * r * r, three + area * r * r * r
     return low, high, one, two, three

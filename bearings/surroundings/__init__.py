@@ -1,1 +1,1 @@
-"""What stands beside a touchdown bearing: the magnetic bearing, and the housing that holds both."""
+"""What stands beside a touchdown bearing: the magnetic bearing, and what holds both: housing or mount."""

@@ -57,7 +57,7 @@ def _motif(model: Model) -> Motif:
     """What to draw, by what the model takes and tells."""
     names = {slot.variable.name for slot in slots(model)}
     if "journal.x" not in names:
-        return Motif.HOUSING if any(name.startswith("seat.") for name in names) else Motif.ROTOR
+        return Motif.HOUSING if any(name.startswith(("seat.", "mount_")) for name in names) else Motif.ROTOR
     if "balls.count" in names:
         return Motif.BALL_BEARING
     return Motif.MAGNETIC_BEARING if "shutdown_time" in names else Motif.BUSHING

@@ -5,8 +5,8 @@ for. Whoever has the FMU can run the experiment where it is to work, and hold wh
 came out where it was built; `touchdown check` does.
 
 The experiment moves what the FMU's ports take, for a millisecond. A journal is pressed from just inside
-the clearance into the bearing and out again, to and fro a little; a body is pushed up and shaken. The
-results are those of the model without the FMU around it.
+the clearance into the bearing and out again, to and fro a little; a body is pushed up and shaken; a
+controller sees an axis go to and fro. The results are those of the model without the FMU around it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from xml.etree.ElementTree import Element, SubElement, indent
 
 from ...modelkit.model import Model, Slot, slots
 from ...modelkit.variables import Causality, Scalar
-from ..description.variables import causality, scalars
+from ..description.variables import ARRAY_GROUPS, causality, scalars
 from .terminals import document, ports
 
 NAME, VERSION = "org.fmi-standard.fmi-ls-ref", "1.0.0-alpha.1"
@@ -32,6 +32,7 @@ TOLERANCE = 1e-6  # of the largest value in a result's unit
 START, DEPTH, AROUND = 1e-6, 4e-6, 1e-6  # m; how far inside the clearance, pressed in, and sideways
 SPIN = 500.0  # rad/s
 INVERSE_MASS = 0.5  # 1/kg, of what a bearing holds
+SEEN = ".sensed"  # what a controller is told of an axis
 PUSH, SHAKE = 20.0, 10.0  # N
 DIGITS = 12
 
@@ -95,6 +96,8 @@ def _stimuli(model: Model) -> list[Row]:
     def row(time: float) -> Row:
         given = _pressed(clearance, time) | _pushed(time)
         held = {f"{port}.{member}": value for port in moved for member, value in given.items()}
+        if not moved:
+            held = _sampled(settable, time)
         values = {"time": time} | {name: value for name, value in held.items() if name in settable}
         return {name: float(_written(value)) for name, value in values.items()}
 
@@ -118,6 +121,12 @@ def _pushed(time: float) -> dict[str, float]:
     return {"fx": SHAKE * math.sin(2.0 * RATE * time), "fy": PUSH * math.sin(RATE * time) ** 2}
 
 
+def _sampled(settable: Iterable[str], time: float) -> dict[str, float]:
+    """What a controller is told: a new sample with each step (`tick`), positions (m) that go to and fro."""
+    seen = [name for name in sorted(settable) if name.endswith(SEEN)]
+    return {"tick": time / STEP} | dict.fromkeys(seen, DEPTH * math.sin(RATE * time) ** 2)
+
+
 def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> list[Row]:
     """Time (s) and outputs at the start and after each step; those of single modes, and zeros, left out.
 
@@ -127,7 +136,7 @@ def _results(trial: Trial, exposed: tuple[Slot, ...], stimuli: list[Row]) -> lis
     own = {s.variable.name: s for s in instance.slots}
     inputs = {s.variable.name: s.index for s in exposed if s.causality is Causality.INPUT}
     told = [s.variable.name for s in exposed if causality(s)[0] is Causality.OUTPUT]
-    outputs = [own[name] for name in told if "[" not in name]
+    outputs = [own[name] for name in told if not any(f"{group}[" in name for group in ARRAY_GROUPS)]
     found: list[Row] = []
     try:
         for number, row in enumerate(stimuli):

@@ -51,6 +51,14 @@ def _xml(found: Mapping[str, list[str]]) -> bytes:
     picture = SubElement(root, "GraphicalRepresentation")
     SubElement(picture, "CoordinateSystem", {**_corners(0.0, SIZE), "suggestedScalingFactorTo_mm": "0.1"})
     SubElement(picture, "Icon", _corners(0.0, SIZE))
+    if found:
+        _add_terminals(root, found)
+    indent(root)
+    return document(root)
+
+
+def _add_terminals(root: Element, found: Mapping[str, list[str]]) -> None:
+    """The ports, one below the other."""
     terminals = SubElement(root, "Terminals")
     for (port, members), height in zip(found.items(), _heights(len(found)), strict=True):
         terminal = SubElement(terminals, "Terminal", {"name": port, "matchingRule": "bus"})
@@ -62,8 +70,6 @@ def _xml(found: Mapping[str, list[str]]) -> bytes:
             )
         place = {**_corners(height, PORT), "iconBaseName": PORT_ICON}
         SubElement(terminal, "TerminalGraphicalRepresentation", place)
-    indent(root)
-    return document(root)
 
 
 def _heights(count: int) -> Iterator[float]:

@@ -32,6 +32,7 @@ class MachineOptions(TypedDict, total=False):
     mass: float | str  # of a rigid rotor, without `rotor`
     inertia: float | str
     balls: str  # material of the bearings' balls
+    mount: PathLike  # soft, stiff, or the path of a mount's .toml
 
 
 def catalogue(folder: PathLike = ".") -> dict[str, Bearing]:
@@ -62,7 +63,8 @@ def new(
     of a rotor's .toml, or a Rotor; without, a rigid one of `mass`. options: `at` and `amb`, stations of the
     rotor for touchdown and magnetic bearings (by default those not in levitated_at, and those in it),
     `speed` (rad/s; by default below its first bending frequency), `clearance` (m, radial; 0.25 mm), `mass`
-    (kg), `inertia` (kg m2), `balls` ("steel" or "Si3N4"). What is to be known of the machine is warned of.
+    (kg), `inertia` (kg m2), `balls` ("steel" or "Si3N4"), `mount` ("soft", "stiff" or a mount's .toml; by
+    default a linear housing). What is to be known of the machine is warned of.
     Raises TouchdownError for what cannot be, and where files are there already, unless `force` replaces
     them.
 
@@ -82,6 +84,7 @@ def new(
         at=_stations(options.get("at")),
         amb=_stations(options.get("amb")),
         balls=options.get("balls", "steel"),
+        mount=None if (mount := options.get("mount")) is None else os.fspath(mount),
         **{"clearance": CLEARANCE, **given},
     )
     path = Path(os.fspath(folder))

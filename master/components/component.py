@@ -54,8 +54,13 @@ UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.S
 
 REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
     *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage", "speed"),
-    *("energy", "stress"),
+    *("energy", "stress", "axis", "limits", "heat"),
 )
+LOOP = (  # what actuators and controllers say of themselves beside those
+    *("link", "link_energy", "peak_current", "least_gap"),
+    *("commanded_time", "captured_time", "samples", "missed"),
+)
+STROKE = ("stroke", "stop_force")  # what a mount says of itself, alone or for each seat of a foundation
 SUPPLIED = "supplied"  # J, energy that a component brings in
 
 MOUNTED = "housing"  # a bearing's port on what it is mounted in
@@ -70,8 +75,8 @@ NEEDED = POSITION + FORCE  # no port works without them
 
 def reported(variable: str) -> bool:
     """Whether a variable is an account at a port, or of those that figures and pictures read."""
-    group, last = variable.partition(".")[0], variable.rpartition(".")[2]
-    return group in REPORTS or variable == SUPPLIED or last in (WORK, JUMP)
+    group, last = variable.partition(".")[0].partition("[")[0], variable.rpartition(".")[2]
+    return group in REPORTS or variable in (SUPPLIED, *LOOP) or last in (WORK, JUMP, *STROKE)
 
 
 class Kind(StrEnum):

@@ -21,6 +21,7 @@ from .connections import (
     attachment,
     check_connections,
     connection,
+    control_connections,
     port_connections,
     recognised,
     require_real,
@@ -75,7 +76,8 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     bonds = found(scene.bond, connections, attachments, components)
     if scheme.lead:
         _require_lead(attachments, components)
-    every = {name: spec.every for name, spec in scene.components.items()}
+    step = scene.run.macro_step
+    every = {name: spec.steps_in_one(step, name) for name, spec in scene.components.items()}
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     told = [*left_out, *declared_steps(scene, components), *plausibility_warnings(seats)]
     components = hear(components, attachments)
@@ -102,7 +104,8 @@ def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
 def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterator[str]:
     """What FMUs declare of their steps that does not go with the macro step, a line each."""
     for name, component in components.items():
-        step = scene.run.macro_step * scene.components[name].every
+        step = scene.run.macro_step
+        step *= scene.components[name].steps_in_one(step, name)
         inner, proposed = component.inner_step, component.made_for_step
         if inner and (
             step < inner * (1.0 - STEP_MATCH) or abs(step / inner - round(step / inner)) > STEP_MATCH
@@ -167,6 +170,7 @@ def _connections(scene: Scene, scheme: Scheme, components: Mapping[str, Componen
     attached = [attachment(pair, components) for pair in scene.attach]
     ports = [c for a in attached for c in port_connections(a, components, scheme)]
     ports += [c for pair in scene.sense for c in sensor_connections(pair, components)]
+    ports += control_connections(scene.control, components)
     require_real(ports, components, "what crosses at a port")
     declared = [wire for bond in scene.bond for wire in bond.wires]
     require_real((connection(wire, components) for wire in declared), components, "a bond")

@@ -6,10 +6,10 @@ have. A rotor's elastic modes cross with them where the scheme asks for it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import count
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 from ...modelkit.variables import Causality
 from ..common.errors import TouchdownError, one_of
@@ -238,6 +238,77 @@ def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component
     way = Way(a.body_end, a.bearing_end, components)
     for variable in SENSED:
         yield way.needed(variable, f"sense {a.title}")
+
+
+AXIS = "axis[{}].{}"  # a variable of an axis, counted from 1
+TOLD = ("sensed", "hold")  # of an axis, to the controller
+TOLD_OF_ALL = ("tick", "period")  # to the controller: samples, and the time between them
+ASKED = ("set", "force_set", "enable")  # of an axis, by the controller
+SET_POINTS = ASKED[:2]
+
+
+def control_connections(
+    pairs: Iterable[tuple[str, str]], components: Mapping[str, Component]
+) -> Iterator[Connection]:
+    """What crosses between controllers and the actuators that they control.
+
+    The first actuator of a controller has its first axes, the next one those that follow. Raises
+    TouchdownError where a component is missing, or has no position or no set point of an axis.
+    """
+    used: dict[str, int] = {}
+    for controller, actuator in pairs:
+        for name in (controller, actuator):
+            if name not in components:
+                raise TouchdownError(f"control: there is no component {name}; {one_of(name, components)}")
+        loop = _Loop(components[controller], components[actuator], used.get(controller, 0))
+        yield from loop.connections()
+        used[controller] = loop.first + loop.axes
+
+
+@dataclass(frozen=True)
+class _Loop:
+    """A controller and an actuator, whose axes are the controller's after its first ones."""
+
+    controller: Component
+    actuator: Component
+    first: int
+
+    @property
+    def axes(self) -> int:
+        """How many axes the actuator has."""
+        return next(k for k in count() if AXIS.format(k + 1, "sensed") not in self.actuator.variables)
+
+    def connections(self) -> Iterator[Connection]:
+        """All of both, the needed ones included."""
+        if not self.axes:
+            self._refuse(self.actuator, AXIS.format(1, "sensed"))
+        for here in range(1, self.axes + 1):
+            there = here + self.first
+            if AXIS.format(there, "sensed") not in self.controller.variables:
+                self._refuse(self.controller, AXIS.format(there, "sensed"))
+            for variable in TOLD:
+                yield from self._told(AXIS.format(here, variable), AXIS.format(there, variable))
+            asked = [v for v in ASKED if AXIS.format(there, v) in self.controller.variables]
+            if not set(asked) & set(SET_POINTS):
+                self._refuse(self.controller, AXIS.format(there, SET_POINTS[0]))
+            for variable in asked:
+                ends = AXIS.format(there, variable), AXIS.format(here, variable)
+                if ends[1] in self.actuator.variables:
+                    yield Connection(self.controller.name, ends[0], self.actuator.name, ends[1])
+        if not self.first:  # a controller has one clock
+            for variable in TOLD_OF_ALL:
+                yield from self._told(variable, variable)
+
+    def _told(self, output: str, given: str) -> Iterator[Connection]:
+        """What the actuator tells, where both have it."""
+        if output in self.actuator.variables and given in self.controller.variables:
+            yield Connection(self.actuator.name, output, self.controller.name, given)
+
+    def _refuse(self, lacking: Component, variable: str) -> NoReturn:
+        raise TouchdownError(
+            f"control {self.controller.name}, {self.actuator.name}: {lacking.origin} has no variable "
+            f"{variable}; name what it calls it in names of [components.{lacking.name}]"
+        )
 
 
 def used_modes(connections: Iterable[Connection], components: Mapping[str, Component]) -> list[Connection]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import time as clock
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -40,17 +42,37 @@ def choose(run: RunSpec, system: System) -> dict[str, Chosen]:
     found: dict[str, Chosen] = {}
     for name, component in components.items():
         given = [v for v in component.variables.values() if v.causality in REPORTED and v.kind in READABLE]
-        chosen = [v.name for v in given if _chosen(full(name, v.name), v, run, connected)]
+        long = _long_arrays(component.variables)
+        chosen = [
+            v.name
+            for v in given
+            if _chosen(full(name, v.name), v, run, connected, _all_members(v.name) in long)
+        ]
         known = set(chosen)
         found[name] = Chosen(chosen, [v.name for v in given if v.name not in known])
     return found
 
 
-def _chosen(name: str, variable: Variable, run: RunSpec, connected: Collection[str]) -> bool:
-    """Whether COMPONENT.VARIABLE is recorded."""
+MAX_MEMBERS = 4  # of what is recorded without being asked for, as the axes of a magnetic bearing are
+_INDEX = re.compile(r"\[[\d,]+\]")
+
+
+def _all_members(name: str) -> str:
+    """What a variable and the others of its array have in common: axis[].set of axis[2].set."""
+    return _INDEX.sub("[]", name)
+
+
+def _long_arrays(names: Iterable[str]) -> set[str]:
+    """What the members of arrays with more than `MAX_MEMBERS` have in common."""
+    members = Counter(_all_members(name) for name in names)
+    return {name for name, number in members.items() if number > MAX_MEMBERS}
+
+
+def _chosen(name: str, variable: Variable, run: RunSpec, connected: Collection[str], long: bool) -> bool:
+    """Whether COMPONENT.VARIABLE is recorded; long: it is one of a long array."""
     if _begins(name, run.record_also):
         return True
-    if "[" in name and not run.record_arrays:
+    if long and not run.record_arrays:
         return False
     if run.record:
         return _begins(name, run.record)

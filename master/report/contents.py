@@ -17,6 +17,7 @@ from .chapters.bearings import balls, life, run_up
 from .chapters.contact import forces, spectra, stresses
 from .chapters.drop import drop, test_figures
 from .chapters.machine import machine
+from .chapters.mounts import mounts
 from .chapters.summary import summary
 from .subject import Subject
 
@@ -62,6 +63,7 @@ CHAPTERS = (
     Chapter("spectra", "Spectra", spectra, "f"),
     Chapter("balls", "Ball loads and Hertz pressure", balls, "g"),
     Chapter("life", "Static safety, and drops until a limit", life, "g"),
+    Chapter("mounts", "What the bearings sit in: stroke, stop, heat", mounts, "g"),
     Chapter("stresses", "Shaft stresses", stresses, "g"),
     Chapter("accuracy", "Energy, and what it says about accuracy", accuracy, "g"),
     Chapter("test", "What a drop test would show", test_figures, "h"),

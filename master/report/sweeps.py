@@ -18,10 +18,13 @@ from ..results.figures.style import sized
 from ..results.whirl.evidence import first_contact
 from ..results.whirl.verdict import clopper_pearson, has_verdict, whirling
 from ..scene.scene import amended
+from ..studies.machine.choose import HEAD, Row, cells, read_table
 from ..studies.sweep.definition import Column
 from ..studies.sweep.members import Member
 from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
+from ..studies.sweep.survival import DEFAULT, drivers, lines, survival
+from ..studies.sweep.survival_figure import draw_survival
 from .blocks import (
     Absent,
     Block,
@@ -47,6 +50,7 @@ RANDOM_SAMPLE = "random"  # drops that stand for all that may be; those of other
 MAX_ROWS = 300  # of the table of drops
 WORST_DROPS = 10  # drops that are listed by their force
 MAX_DIGITS = 8
+DROPS = (1, 2, 5, 10, 20)  # after which survival is told
 MAPS = {
     "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
     "force": "Largest contact force of the drops at each place.",
@@ -58,14 +62,44 @@ def report_on_sweep(sweep: Sweep) -> Page:
     """The report of a sweep, whole or as far as it went."""
     scene = sweep.definition.scene
     title = amended(str(scene["title"]), sweep.definition.changes)
+    over, said = ", ".join(c.name for c in sweep.definition.columns), headline(sweep)
+    chapters = [_section(*chapter, sweep) for chapter in CHAPTERS]
+    if ranking := read_table(sweep.folder):
+        first = ranking[0]
+        over = "bearing and mount" if first.mount else "bearing"
+        said = f"{' '.join(_place(first))} {said}"
+        chapters.insert(0, Section("ranking", "Ranking", _ranking(ranking)))
     return Page(
         kind="Report on many drops",
-        title=f"{title}, over {', '.join(c.name for c in sweep.definition.columns)}",
-        headline=headline(sweep),
+        title=f"{title}, over {over}",
+        headline=said,
         made=made_now(f"Sweep of scene {scene['name']}"),
-        sections=[_section(*chapter, sweep) for chapter in CHAPTERS],
+        sections=chapters,
         about="",
     )
+
+
+def _place(first: Row) -> Iterator[str]:
+    """Which bearing ranks first, and by what."""
+    title, share, worst, *_ = cells(first)
+    yield f"{title} ranks first: {share} of its drops keep to all requirements"
+    yield f"(worst requirement, median margin: {worst})."
+
+
+def _ranking(ranking: Sequence[Row]) -> list[Block]:
+    """The table of `touchdown choose`, the best first."""
+    return [
+        Table("Bearings by what the scene requires", HEAD, [list(cells(row)) for row in ranking]),
+        Text(
+            "Ranked by the share of drops that keep to all requirements, then by the worst margin of each "
+            "drop, in the median. All take the same drops; a share's 95 % interval is of a bearing's own "
+            "drops alone. A drop that failed keeps to no requirement."
+        ),
+        Text(
+            "d n: bore times the rotor's speed. Cages are those that makers run so fast for long, "
+            "lubricated; a landing lasts seconds."
+        ),
+    ]
 
 
 def headline(sweep: Sweep) -> str:
@@ -304,6 +338,27 @@ def _shown(value: object) -> str:
     return str(value) if known is None else digits(known, 5)
 
 
+def _survival(sweep: Sweep) -> list[Block]:
+    """How many such drops the machine survives, and what drives that."""
+    try:
+        found = survival(sweep.members)
+    except TouchdownError:
+        raise Absent("no drop has a static safety of its bearings.") from None
+    by = drivers(sweep.definition, sweep.members, DEFAULT)
+    svg = inline(
+        partial(draw_survival, found=found, drops=DROPS), "survival", "Probability over drops", themed=False
+    )
+    return [
+        Points([line.strip() for line in lines(found, DROPS, by)]),
+        Picture(svg, "Probability that the machine survives so many drops like these."),
+        Text(
+            "A drop that dents a race of a bearing ends the machine; others take their share of its "
+            "bearings' rating lives. That stands for the machine as far as the settings are drawn as they "
+            "occur. `touchdown survive` takes another limit."
+        ),
+    ]
+
+
 def _failed(sweep: Sweep) -> list[Block]:
     why = [line.strip() for line in failures(sweep.members)]
     if not why:
@@ -322,6 +377,7 @@ CHAPTERS: tuple[tuple[str, str, Callable[[Sweep], list[Block]]], ...] = (
     ("summary", "Summary", _summary),
     ("varied", "What varies", _varied),
     ("maps", "Maps", _maps),
+    ("survival", "How many drops it survives", _survival),
     ("spread", "How figures spread", _spread),
     ("drops", "Drop by drop", _drops),
     ("failed", "What failed", _failed),

@@ -122,7 +122,13 @@ def closed(scene: Scene, summary: Mapping[str, object]) -> list[str]:
             times = "once" if touches == 1 else f"{touches} times"
             said.append(
                 f"gap {gap.name} ({1e3 * gap.radial:g} mm at {gap.at}) is closed {times}: the rotor goes "
-                f"{-least:.3g} um beyond it. Nothing acts there in this run; a bushing of that clearance "
-                f"attached to {gap.at} would"
+                f"{-least:.3g} um beyond it. {_acts(gap)}"
             )
     return said
+
+
+def _acts(gap: Gap) -> str:
+    """What a gap does that is closed, in words."""
+    if gap.acts:
+        return f"It acts as the bushing {gap.key}, which has its forces and its heat"
+    return f"Nothing acts there in this run; a bushing of that clearance attached to {gap.at} would"

@@ -47,6 +47,7 @@ def catalogued(preset: str | None) -> Bearing | None:
         return None
 
 
+FEW_DROPS = 1000.0  # more than a bearing ever sees: fatigue beyond them ends none
 LOAD, RING = "balls.force", "ring.omega"
 STATIC = "rolling.static_rating"
 TURN = 2.0 * math.pi
@@ -147,6 +148,21 @@ class Rated:
         """Such runs until 10 % of such bearings have failed by fatigue; inf: this run takes nothing."""
         return rating.drops(self.damage)
 
+    @property
+    def ends_by(self) -> tuple[str, str]:
+        """What ends the bearing first, should drops be like this one, and how near that is; in words.
+
+        Fatigue is named where it comes within `FEW_DROPS`; beyond, a slightly harder drop dents it before.
+        """
+        if self.safety < 1.0:
+            return (
+                "a dent",
+                f"in this drop: it bears {self.safety:.2g} of the largest ball load without one",
+            )
+        if self.drops < FEW_DROPS:
+            return "fatigue", f"in one bearing of ten after {self.drops:.2g} such drops"
+        return "a dent", f"by {self.safety:.3g} times the largest ball load; fatigue is further off"
+
 
 def rated(run: Finished, a: Attachment) -> Rated | str:
     """A seat's bearing with its loads, or why it cannot be rated."""
@@ -194,11 +210,11 @@ def _origin(of_entry: str, standard: str, known: float) -> str:
 MAX_DROPS = 1e15  # more are not told apart
 
 
-RATINGS = "largest_ball_pressure_GPa", "lowest_static_safety", "drops_until_fatigue"
+RATINGS = "largest_ball_pressure_GPa", "lowest_static_safety", "drops_until_fatigue", "bearing_ends_by"
 
 
 def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
-    """Largest pressure, lowest static safety and drops until fatigue of a bearing.
+    """Largest pressure, lowest static safety, drops until fatigue and what ends a bearing first.
 
     None without balls, or where they carried nothing; balls that cannot be rated have None for each.
     """
@@ -210,4 +226,5 @@ def rating_figures(run: Finished, a: Attachment) -> dict[str, object]:
     if one.loads.peak <= 0.0:
         return {}
     pressure = max(one.peak_pressure(race) for race in rating.RACES)
-    return dict(zip(RATINGS, (1e-9 * pressure, one.safety, min(one.drops, MAX_DROPS)), strict=True))
+    figures = 1e-9 * pressure, one.safety, min(one.drops, MAX_DROPS), ", ".join(one.ends_by)
+    return dict(zip(RATINGS, figures, strict=True))

@@ -10,6 +10,8 @@ from ..scene.requirements import KINDS, Requirement
 from .whirl.verdict import TURNS
 
 MET, MARGIN = "requirements_met", "requirement_margin_"  # figures of a summary
+FORCES = "contact_force", "ball_force"  # requirements by figures that a bearing has once it is touched
+FIRST_CONTACT = "first_contact_time_s"  # of such a bearing, too, its name behind
 
 
 class Judged(NamedTuple):
@@ -55,6 +57,8 @@ def _judged(wanted: Requirement, summary: Mapping[str, object]) -> Judged:
         figures = [summary.get(kind.figure)]
     elif wanted.kind == "whirl_turns":
         figures = [v for key, v in summary.items() if key.startswith(kind.figure) and key.endswith(TURNS)]
+    elif wanted.kind in FORCES:
+        figures = _forces(kind.figure, summary)
     else:
         figures = [v for key, v in summary.items() if key.startswith(kind.figure)]
     numbers = [float(v) for v in figures if isinstance(v, (int, float)) and not isinstance(v, bool)]
@@ -62,6 +66,13 @@ def _judged(wanted: Requirement, summary: Mapping[str, object]) -> Judged:
         return Judged(wanted, None, None)
     found = kind.factor * (min(numbers) if kind.at_least else max(numbers))
     return Judged(wanted, found, _margin(found, wanted.limit, kind.at_least))
+
+
+def _forces(figure: str, summary: Mapping[str, object]) -> list[object]:
+    """Figures of the bearings that were touched, as no force is on the others; where none was, of all."""
+    told = {key.removeprefix(figure): value for key, value in summary.items() if key.startswith(figure)}
+    touched = [v for tail, v in told.items() if summary.get(f"{FIRST_CONTACT}{tail}", v) is not None]
+    return touched or list(told.values())
 
 
 def _margin(found: float, limit: float, at_least: bool) -> float:

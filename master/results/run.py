@@ -56,7 +56,7 @@ def run_scene(
         system = open_system(scene, in_process)
         try:
             path = folder.absolute() / RECORDING
-            watching = [UntilSettled(system, path)] if scene.run.until == SETTLED else []
+            watching = [UntilSettled(scene, system, path)] if scene.run.until == SETTLED else []
             with _Bar(scene, progress) as show:
                 begin = partial(_begin, results, scene)
                 outcome = simulate(scene, system, path, show, watching, begin)

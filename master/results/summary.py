@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -15,9 +15,11 @@ from ..coupling.connections import Attachment
 from ..coupling.ledger.auditor import estimated_by_master
 from ..coupling.simulation import Outcome, energy_scale
 from ..scene.scene import Scene
+from .capture import capture_figures
 from .ending import Finished, Readable, housing_port
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
+from .mounts import mount_figures
 from .ratings import rating_figures
 from .recording import NotRecordedError, Recording
 from .requirements import requirement_figures
@@ -101,7 +103,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         figures["stopped_because"] = outcome.reason
     seats = touchdown_seats(system)
     overs = [over_at(system, a.bearing, outcome.zero, recording) for a in seats]
-    courses: list[Course] = []
+    courses: dict[str, Course] = {}  # by the bearing's name
     for a, over in zip(seats, overs, strict=True):
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
         own = _bearing_figures(system, a, outcome)
@@ -109,13 +111,16 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         figures |= {f"{key}{tail}": value for key, value in own.items()}
         with suppress(NotRecordedError):
             here = course_at(system, a, recording, outcome.zero)
-            courses += [] if here is None else [here]
+            courses |= {} if here is None else {a.bearing: here}
             orbit = _orbit_figures(system, a, outcome, recording) | _settling_figures(here)
             if here is None or here.whirl.verdict is not Verdict.PENDULUM:
                 orbit |= {"pendulum_frequency_Hz": None}
             figures |= {f"{key}{tail}": value for key, value in orbit.items()}
             figures |= _whirl_figures(system, a, seat_name(a, seats), recording, here)
-    figures |= _course_figures(courses, len(seats), recording)
+    figures |= _course_figures(scene, courses, len(seats), recording)
+    with suppress(NotRecordedError):
+        named = {seat_name(a, seats): a for a in seats}
+        figures |= capture_figures(system, recording, outcome.zero, named, figures)
     for name in dict.fromkeys(a.body for a in seats):
         tail = f"_{name}" if len({a.body for a in seats}) > 1 else ""
         seat = next(a for a in seats if a.body == name)
@@ -126,7 +131,9 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     figures |= gap_figures(scene, recording)
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
-        own = _strain_figures(Finished(scene, system, recording), a)
+        own = _strain_figures(Finished(scene, system, recording), a) | mount_figures(
+            system, a, outcome.zero
+        )
         figures |= {f"{key}{tail}": value for key, value in own.items()}
     figures |= requirement_figures(scene.requirements, figures)
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
@@ -169,8 +176,10 @@ def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
     elif heat in run.system:
         figures["bearing_heat_J"] = None
     if port and f"{port}.x" in run.recording and f"{port}.y" in run.recording:
-        way = np.hypot(run.recording[f"{port}.x"], run.recording[f"{port}.y"])
-        figures["housing_stroke_um"] = 1e6 * float(way.max())
+        x, y = (
+            run.recording[f"{port}.{axis}"] for axis in "xy"
+        )  # from where it started: it may be out of line
+        figures["housing_stroke_um"] = 1e6 * float(np.hypot(x - x[0], y - y[0]).max())
     elif port and f"{port}.x" in run.system:
         figures["housing_stroke_um"] = None
     return figures
@@ -225,13 +234,21 @@ def _settling_figures(here: Course | None) -> dict[str, object]:
     return {"settling_time_s": settled.time, "settled": settled.words}
 
 
-def _course_figures(courses: Sequence[Course], seats: int, recording: Recording) -> dict[str, object]:
+def awaited(scene: Scene, courses: Mapping[str, Course]) -> list[Course]:
+    """Of the seats that have to settle: all but the bushings of gaps that stayed open; by bearing."""
+    gaps = {gap.key for gap in scene.gaps if gap.acts}
+    return [one for bearing, one in courses.items() if one.settling is not None or bearing not in gaps]
+
+
+def _course_figures(
+    scene: Scene, courses: Mapping[str, Course], seats: int, recording: Recording
+) -> dict[str, object]:
     """When the run ends, when all seats have settled, and how long it should be for that."""
     whole = len(courses) == seats
     figures: dict[str, object] = {"end_time_s": float(recording.time[-1])}
     if seats > 1:
-        figures["settling_time_s"] = settled_at(courses) if whole else None
-    return figures | {"proposed_duration_s": proposed(courses)}
+        figures["settling_time_s"] = settled_at(awaited(scene, courses)) if whole else None
+    return figures | {"proposed_duration_s": proposed(list(courses.values()))}
 
 
 def relative_orbit(system: Readable, a: Attachment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
@@ -438,10 +455,10 @@ def _run_figures(
     }
 
 
-# Of how it was computed; shown where all is
+# Of how it was computed, and what other figures say in words; shown where all is
 NUMERICS = (
     *("energy_", "exchange", "macro_step", "wall_time", "start_up", "simulated", "time_at_"),
-    *("not_", "proposed_", "requirement_margin_"),
+    *("not_", "proposed_", "requirement_margin_", "drops_until_fatigue"),
 )
 
 

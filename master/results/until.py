@@ -13,7 +13,7 @@ from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
 from .recording import NotRecordedError, Recording
 from .settling import settled_at
-from .summary import course_at, touchdown_seats
+from .summary import awaited, course_at, touchdown_seats
 
 LOOK_INTERVAL_S = 0.05  # s from one look to the next, at least: a swing or two
 LOOK_SHARE = 0.05  # of the time that has passed, so that looks at long recordings stay rare
@@ -26,9 +26,9 @@ class UntilSettled(Observer):
     It looks after macro steps that hang on nothing but the run, so that it ends where it ended before.
     """
 
-    def __init__(self, system: System, path: Path) -> None:
+    def __init__(self, scene: Scene, system: System, path: Path) -> None:
         """path: of the recording. Raises TouchdownError where no seat could be told to settle."""
-        self._system, self._path = system, path
+        self._scene, self._system, self._path = scene, system, path
         self._seats = touchdown_seats(system)
         self._next = 1
         if not any("clearance" in system.components[a.bearing].variables for a in self._seats):
@@ -54,13 +54,13 @@ class UntilSettled(Observer):
         now.flush()
         recording = Recording(self._path)
         try:
-            courses = [course_at(self._system, a, recording, now.zero) for a in self._seats]
+            courses = {a.bearing: course_at(self._system, a, recording, now.zero) for a in self._seats}
         except NotRecordedError as error:
             raise TouchdownError(f"{UNTIL_SETTLED}: {error}") from None
         finally:
             recording.close()
-        known = [one for one in courses if one is not None]
-        return settled_at(known) is not None
+        known = {bearing: one for bearing, one in courses.items() if one is not None}
+        return settled_at(awaited(self._scene, known)) is not None
 
 
 def unsettled(scene: Scene, summary: Mapping[str, object]) -> Iterator[str]:

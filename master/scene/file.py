@@ -2,16 +2,22 @@
 
 title = "..."
 about = "..."
-zero = "amb.shutdown_time"                     # times and the duration count from here
+zero = "amb.shutdown_time"                     # times and the duration count from here; or a time, "5 ms"
 energy_scale = ["rotor.mass", "rotor.gravity", "bearing.clearance"]   # product, J
 attach = [["bearing.journal", "rotor.A"]]      # bearing's port, body's port
 sense = [["amb.sensor", "rotor.sensor"]]       # motion of a body's port only, sensor first
+control = [["controller", "amb"]]              # a controller, and the actuator that it controls; of two
+                                               # actuators the first has the controller's first axes
 connect = [["rotor.A.x", "probe.x"]]           # single variables, source and target; where the target is
                                                # to be scaled, then factor and offset; also integers,
                                                # Booleans and choices, each to its own kind, not scaled
 bond = [["s1.f", "s2.f"], ["s2.x", "s1.x2"]]   # a force and the motion it acts along: wires of a bond, or a
                                                # list of bonds; {force = [...], position = [...],
                                                # velocity = [...]} where units do not tell which is which
+
+[[event]]                                      # before [run], or at the end; see `events`
+time = "5 ms"         # on the simulation's clock
+what = "amb: coil_off 2"  # COMPONENT: WORD, and which one, where there are several
 
 [run]
 duration = 5.0        # s, from zero, or from the start of a scene without one
@@ -23,6 +29,7 @@ fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
 preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them; your own by its
                       # name in bearings.toml beside the scene, or by FILE.toml:NAME
 every = 2             # macro steps of the run that it takes in one (default: 1)
+sampled = "100 us"    # or how long its steps are, a multiple of macro_step: those of a controller
 isolate = true        # step its FMU in a process of its own (default: false)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
 [components.rotor.set]
@@ -48,11 +55,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..common.errors import TouchdownError, one_of
-from .gaps import Gap, gaps
+from ..common.units import to_si
+from .events import GROUP, Event, events, settings_of
+from .gaps import Gap, contacts, gaps, laid_over, of_rotor
 from .requirements import Requirement, requirements
 from .run_spec import READERS, RunSpec, with_changes
 from .scene import BondSpec, ComponentSpec, Scene, Wire, bonds, checked_preset, wires
 from .tables import (
+    above_zero,
     component_name,
     entries,
     flat,
@@ -67,7 +77,9 @@ from .tables import (
     table,
     unquoted,
     whole,
+    zero,
 )
+from .tables import components as controls
 
 SCENE_FILE = "scene.toml"  # of a folder that is a machine
 RECORDED_SCENE = "scene.json"  # what a run leaves
@@ -145,6 +157,8 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "energy_scale",
         "attach",
         "sense",
+        "control",
+        "event",
         "connect",
         "bond",
         "gap",
@@ -154,26 +168,31 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
         "set",
     )
     refuse_unknown(data, known, f"scene {name}")
+    given = table(data.get("components"), f"scene {name}: [components]")
+    around = gaps(laid_over(_around_rotors(given, folder), data.get("gap", [])), f"scene {name}: gap")
+    touching, touched = contacts(around)
     components = {
         component_name(key, f"scene {name}"): _component(part, f"scene {name}: [components.{key}]", folder)
-        for key, part in table(data.get("components"), f"scene {name}: [components]").items()
+        for key, part in {**touching, **given}.items()
     }
-    if not components:
+    if not given:
         raise TouchdownError(f'scene {name} has no components; add [components.NAME] with fmu = "..."')
+    components = _with_events(components, events(data.get("event", []), f"scene {name}: event"), name)
     scene = Scene(
         name=name,
         title=str(data.get("title", name)),
         about=str(data.get("about", "")),
         components=components,
-        attach=pairs(data.get("attach", []), f"scene {name}: attach"),
+        attach=(*pairs(data.get("attach", []), f"scene {name}: attach"), *touched),
         sense=pairs(data.get("sense", []), f"scene {name}: sense"),
+        control=controls(data.get("control", []), f"scene {name}: control"),
         connect=wires(data.get("connect", []), f"scene {name}: connect"),
         bond=bonds(data.get("bond", []), f"scene {name}: bond"),
-        zero=reference(data["zero"], f"scene {name}: zero") if "zero" in data else None,
+        zero=zero(data["zero"], f"scene {name}: zero") if "zero" in data else None,
         energy_scale=references(data.get("energy_scale", []), f"scene {name}: energy_scale"),
         run=with_changes(RunSpec(), table(data.get("run", {}), f"scene {name}: [run]")),
         folder=folder,
-        gaps=gaps(data.get("gap", []), f"scene {name}: gap"),
+        gaps=around,
         requirements=requirements(data.get("requirements", {}), f"scene {name}: [requirements]"),
     )
     if not scene.gaps and any(one.kind == "least_gap" for one in scene.requirements):
@@ -182,6 +201,37 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
             "and radial"
         )
     return _with_shared(scene, data.get("set", ()))
+
+
+def _around_rotors(components: Mapping[str, Any], folder: Path) -> list[object]:
+    """The gaps that rotors' files have."""
+    found: list[object] = []
+    for name, part in components.items():
+        fmu = (entries(part) or {}).get("fmu")
+        path = folder / fmu if isinstance(fmu, str) and fmu.endswith(".toml") else None
+        if path is not None and os.path.isfile(path):
+            found += of_rotor(name, _toml(path, "rotor").get("gap"))
+    return found
+
+
+def _with_events(
+    components: Mapping[str, ComponentSpec], found: tuple[Event, ...], name: str
+) -> dict[str, ComponentSpec]:
+    """`components` with the events as their settings. Raises TouchdownError where one has its own."""
+    for number, event in enumerate(found, start=1):
+        here = f"scene {name}: event {number}"
+        if event.component not in components:
+            raise TouchdownError(
+                f"{here}: there is no component {event.component}; {one_of(event.component, components)}"
+            )
+        own = [key for key in components[event.component].set if key.startswith(f"{GROUP}[")]
+        if own:
+            raise TouchdownError(
+                f"{here}: {event.component} is set {own[0]}, too; give all its events as [[event]]"
+            )
+    return {
+        key: replace(spec, set={**spec.set, **settings_of(found, key)}) for key, spec in components.items()
+    }
 
 
 class _Shared(NamedTuple):
@@ -220,16 +270,21 @@ def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
 def _component(value: object, where: str, folder: Path) -> ComponentSpec:
     """A table of [components]."""
     given = table(value, where)
-    refuse_unknown(given, ("fmu", "preset", "every", "isolate", "native", "set", "names"), where)
+    refuse_unknown(given, ("fmu", "preset", "every", "sampled", "isolate", "native", "set", "names"), where)
     if not isinstance(given.get("fmu"), str):
         raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
     settings = flat(table(given.get("set", {}), where))
     preset = checked_preset(given.get("preset"), where, folder)
     every = whole(given.get("every", 1), f"{where} every")
+    sampled = above_zero(given["sampled"], "s", f"{where} sampled") if "sampled" in given else 0.0
+    if sampled and "every" in given:
+        raise TouchdownError(f"{where} has every and sampled; give one of them")
     names = _names(given.get("names", {}), where, folder)
     isolate = switch(given.get("isolate", False), f"{where} isolate")
     native = switch(given.get("native", False), f"{where} native")
-    return ComponentSpec(given["fmu"], settings, preset, every, names, isolate=isolate, native=native)
+    return ComponentSpec(
+        given["fmu"], settings, preset, every, names, isolate=isolate, native=native, sampled=sampled
+    )
 
 
 def read_names(path: Path) -> dict[str, str]:
@@ -309,7 +364,9 @@ def _over(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
     merged = dict(base)
     for key, value in changes.items():
         there, given = entries(merged.get(key)), entries(value)
-        if there is None or given is None or "fmu" in given:
+        if key == "gap" and key in merged:
+            merged[key] = laid_over(merged[key], value)
+        elif there is None or given is None or "fmu" in given:
             merged[key] = value
         else:
             merged[key] = _over(there, given)
@@ -363,9 +420,10 @@ def restored(values: Mapping[str, Any]) -> Scene:
         },
         "attach": pairs(parts["attach"], "attach"),
         "sense": pairs(parts["sense"], "sense"),
+        "control": controls(parts.get("control", ()), "control"),
         "connect": tuple(_wire(wire) for wire in parts["connect"]),
         "bond": tuple(_bond(*bond) for bond in parts["bond"]),
-        "zero": None if parts["zero"] is None else reference(parts["zero"], "zero"),
+        "zero": None if parts["zero"] is None else zero(parts["zero"], "zero"),
         "energy_scale": references(parts["energy_scale"], "energy_scale"),
         "own": own,
         "run": with_changes(RunSpec(), table(parts["run"], "run")),
@@ -386,6 +444,7 @@ def _restored_component(values: object, where: str) -> ComponentSpec:
         "set": settings,
         "preset": None if parts["preset"] is None else _text(parts["preset"], f"{where}.preset"),
         "every": whole(parts["every"], f"{where}.every"),
+        "sampled": to_si(parts.get("sampled", 0.0), "s", f"{where}.sampled"),
         "names": {name: _text(own_name, f"{where}.names.{name}") for name, own_name in names.items()},
         "inherited": table(parts["inherited"], f"{where}.inherited"),
         **{key: switch(parts[key], f"{where}.{key}") for key in ("isolate", "native")},

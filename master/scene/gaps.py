@@ -1,16 +1,21 @@
-"""Gaps that a rotor must not close: a place on it, and how far it may go there."""
+"""Gaps that a rotor must not close: a place on it, and how far it may go there.
+
+A gap is watched only. One that knows the rotor's radius there, `journal_radius`, acts as well: the scene
+gets a `bushing` of that clearance at the same places, by the gap's key.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ..common.errors import TouchdownError
-from .tables import above_zero, items, reference, refuse_unknown, table
+from .tables import above_zero, entries, items, reference, refuse_unknown, table
 
 EXAMPLE = '[[gap]] with name = "AMB A", at = "rotor.amb_A" and radial = "0.4 mm"'
-KEYS = ("name", "at", "radial", "stator")
+KEYS = ("name", "at", "radial", "stator", "journal_radius")
+ACTS_AS = "bushing"
 WORD = re.compile(r"\w[\w -]*")
 
 
@@ -21,11 +26,17 @@ class Gap(NamedTuple):
     at: str  # COMPONENT.PORT of the rotor
     radial: float  # m
     stator: str | None = None  # COMPONENT.PORT that it moves with; None: it stands in space
+    journal_radius: float | None = None  # m, of the rotor there; None: the gap is watched only
 
     @property
     def key(self) -> str:
         """Its name as figures of a run have it."""
         return "gap_" + re.sub(r"[ -]", "_", self.name)
+
+    @property
+    def acts(self) -> bool:
+        """Whether the scene has a bushing there; else the gap is watched only."""
+        return self.journal_radius is not None
 
 
 def gaps(value: object, where: str) -> tuple[Gap, ...]:
@@ -57,4 +68,41 @@ def _gaps(listed: list[object], where: str) -> Iterator[Gap]:
             reference(given["at"], f"{here}: at"),
             above_zero(given["radial"], "m", f"{here}: radial"),
             None if stator is None else reference(stator, f"{here}: stator"),
+            above_zero(given["journal_radius"], "m", f"{here}: journal_radius")
+            if "journal_radius" in given
+            else None,
         )
+
+
+def of_rotor(component: str, value: object) -> list[object]:
+    """The [[gap]] tables of a rotor's file as a scene has them, at stations of the `component`."""
+    found: list[object] = []
+    for one in items(value) or []:
+        given = entries(one) or {}
+        if "station" in given:  # what is wrong the rotor's reader says
+            rest = {key: item for key, item in given.items() if key != "station"}
+            found.append(rest | {"at": f"{component}.{given['station']}"})
+    return found
+
+
+def laid_over(before: object, over: object) -> object:
+    """The [[gap]] tables `before`, of the file that is extended, and those `over` them, by their names."""
+    there, given = items(before), items(over)
+    if there is None or given is None:
+        return over
+    names = [(entries(one) or {}).get("name") for one in given]
+    return [one for one in there if (entries(one) or {}).get("name") not in names] + given
+
+
+def contacts(found: Sequence[Gap]) -> tuple[dict[str, Mapping[str, object]], list[tuple[str, str]]]:
+    """Components of the gaps that act, as [components] has them, and what they are attached to."""
+    acting = [gap for gap in found if gap.acts]
+    components: dict[str, Mapping[str, object]] = {
+        gap.key: {
+            "fmu": ACTS_AS,
+            "set": {"clearance": gap.radial, "journal_radius": gap.journal_radius},
+        }
+        for gap in acting
+    }
+    attached = [(f"{gap.key}.journal", gap.at) for gap in acting]
+    return components, attached + [(f"{g.key}.housing", g.stator) for g in acting if g.stator]

@@ -52,7 +52,7 @@ class RunSpec:
     record_every: int = 5  # macro steps
     record: tuple[str, ...] = ()  # beginnings of COMPONENT.VARIABLE that alone are recorded
     record_also: tuple[str, ...] = ()  # the same, beside what is recorded anyway: also locals and elements
-    record_arrays: bool = False  # also elements of arrays, such as single balls; else only at the end
+    record_arrays: bool = False  # also elements of long arrays, such as balls; else only at the end
     warn_residual: float = 0.02  # ledger's residual over the turnover of a connection: say so
     stop_residual: float = 0.2  # the same: stop
     call_timeout: float = CALL_TIMEOUT  # s of wall time that a call of an isolated FMU may take

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,7 +17,7 @@ from .gaps import Gap
 from .requirements import Requirement
 from .run_spec import UNITS, RunSpec, with_changes
 from .schemes import Scheme
-from .tables import component_name, entries, items, pairs, refuse_unknown, switch, texts, whole
+from .tables import above_zero, component_name, entries, items, pairs, refuse_unknown, switch, texts, whole
 
 
 class Wire(NamedTuple):
@@ -102,6 +103,7 @@ def _listed(listed: Sequence[object], where: str) -> BondSpec:
     return BondSpec(found[0], motion=found[1:])
 
 
+STEP_MATCH = 1e-6  # of a number of steps; what differs by less is the same
 MAX_TITLE_CHANGES = 3  # changes that a title names
 _DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
 
@@ -163,11 +165,25 @@ class ComponentSpec:
     native: bool = False  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
+    sampled: float = 0.0  # s, the length of its steps; 0: `every` counts
 
     @property
     def set_beside(self) -> dict[str, object]:
         """What the user set in it beside the scene, by name."""
         return {name: self.preset if name == "preset" else self.set[name] for name in self.own}
+
+    def steps_in_one(self, macro_step: float, where: str) -> int:
+        """How many of the run's macro steps (s) it takes in one. Raises TouchdownError where none fit."""
+        if not self.sampled:
+            return self.every
+        ratio = self.sampled / macro_step
+        number = round(ratio)
+        if number < 1 or abs(ratio - number) > STEP_MATCH * number:
+            raise TouchdownError(
+                f"{where}.sampled = {self.sampled:g} s is no multiple of the macro step {macro_step:g} s; "
+                f"take one of {self.sampled / max(math.ceil(ratio), 1):g} s"
+            )
+        return number
 
     def swapped(self, fmu: str) -> ComponentSpec:
         """What another FMU in its place starts from."""
@@ -177,6 +193,7 @@ class ComponentSpec:
             set={name: value for name, value in self.set.items() if name in self.own},
             preset=self.preset if "preset" in self.own else None,
             every=self.every,
+            sampled=self.sampled,
             isolate=self.isolate,
             native=self.native,
             inherited={**self.inherited, **theirs},
@@ -207,6 +224,7 @@ class Scene:
     about: str = ""
     attach: tuple[tuple[str, str], ...] = ()
     sense: tuple[tuple[str, str], ...] = ()
+    control: tuple[tuple[str, str], ...] = ()  # a controller, and the actuator that it controls
     connect: tuple[Wire, ...] = ()
     bond: tuple[BondSpec, ...] = ()
     zero: str | None = None
@@ -227,11 +245,11 @@ class Scene:
 
         Numbers are SI; text may carry a unit, such as "9000 rpm". COMPONENT.preset names a bearing of the
         catalogue or of a file (FILE.toml:NAME, from the scene's folder or the current one), COMPONENT.every
-        how many macro steps a component takes in one, COMPONENT.isolate whether its FMU is stepped in a
-        process of its own, COMPONENT.native whether one of the project's own is taken as its native FMU. A
-        COMPONENT with * or ? is all whose names match: "bearing_*.friction.dynamic". Raises TouchdownError
-        where there is no such component, key or preset; a component's variables are looked up when a run
-        begins.
+        how many macro steps a component takes in one, COMPONENT.sampled how long its steps are,
+        COMPONENT.isolate whether its FMU is stepped in a process of its own, COMPONENT.native whether one
+        of the project's own is taken as its native FMU. A COMPONENT with * or ? is all whose names match:
+        "bearing_*.friction.dynamic". Raises TouchdownError where there is no such component, key or preset;
+        a component's variables are looked up when a run begins.
         """
         scene = self
         for name, value in settings.items():
@@ -271,7 +289,9 @@ class Scene:
             preset = checked_preset(value, head, self.folder, Path())
             changed = replace(spec, preset=preset, own=_with(spec.own, tail))
         elif tail == "every":
-            changed = replace(spec, every=whole(value, name))
+            changed = replace(spec, every=whole(value, name), sampled=0.0)
+        elif tail == "sampled":
+            changed = replace(spec, sampled=above_zero(value, "s", name), every=1)
         elif tail == "isolate":
             changed = replace(spec, isolate=switch(value, name))
         elif tail == "native":

@@ -140,6 +140,16 @@ def pairs(value: object, where: str) -> tuple[tuple[str, str], ...]:
     return tuple(pair for pair in parsed if pair is not None)
 
 
+def components(value: object, where: str) -> tuple[tuple[str, str], ...]:
+    """A list of pairs of components, such as a controller and what it controls."""
+    listed = items(value)
+    parsed = [] if listed is None else [texts(item) for item in listed]
+    found = [(names[0], names[1]) for names in parsed if names is not None and len(names) == 2]
+    if listed is None or len(found) < len(parsed):
+        raise TouchdownError(f'{where} must be a list of pairs such as ["controller", "amb"]')
+    return tuple(found)
+
+
 def _pair(value: object) -> tuple[str, str] | None:
     names = texts(value)
     if names is None or len(names) != 2 or not all("." in name for name in names):
@@ -163,6 +173,18 @@ def reference(value: object, where: str) -> str:
     if not isinstance(value, str) or not all(value.partition(".")):
         raise TouchdownError(f'{where} = {value!r} must name a variable, such as "amb.shutdown_time"')
     return value
+
+
+def time_of(zero: str) -> float | None:
+    """The time (s) that a scene's zero is, where it names no variable."""
+    return to_si(zero, "s", "zero") if _is_value(zero) else None
+
+
+def zero(value: object, where: str) -> str:
+    """What times count from: a time, such as "5 ms", or COMPONENT.VARIABLE. A time is told as "0.005 s"."""
+    if _is_value(value):
+        return f"{to_si(value, 's', where)!r} s"
+    return reference(value, where)
 
 
 def references(value: object, where: str) -> tuple[str, ...]:

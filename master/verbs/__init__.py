@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from . import comparisons, fmus, machines, runs, source, sweeps
+from . import comparisons, fmus, loops, machines, runs, source, sweeps
 from .verb import Verb
 
 GROUPS: Mapping[str, tuple[Verb, ...]] = {
@@ -14,6 +14,7 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         machines.CATALOGUE,
         machines.ROTOR,
         machines.IMPORT_ROTOR,
+        machines.IMPORT_MOUNT,
     ),
     "run and look": (
         runs.RUN,
@@ -24,7 +25,10 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         sweeps.SWEEP,
         sweeps.MERGE,
         sweeps.VERDICT,
+        sweeps.WHIRL,
+        sweeps.SURVIVE,
         sweeps.CHOOSE,
+        loops.LOOP,
         comparisons.COMPARE,
         comparisons.COMPARE_MODES,
         comparisons.ADVISE,

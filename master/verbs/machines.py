@@ -1,4 +1,4 @@
-"""Verbs for a machine: scenes, catalogue, new, rotor, import-rotor."""
+"""Verbs for a machine: scenes, catalogue, new, rotor, import-rotor, import-mount."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from .arguments import (
     add_settings,
     add_swaps,
     assignment,
+    count,
     settings,
     swapped,
 )
@@ -133,17 +134,36 @@ def _declare_catalogue(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--bore", metavar="LENGTH", help='list those of this bore, such as "70 mm"')
     verb.add_argument("--toml", action="store_true", help="show it as it stands in a file of one's own")
+    verb.add_argument(
+        "--load", metavar="FORCE", help='show its most loaded ball by rings and seat, such as "350 N"'
+    )
+    verb.add_argument("--speed", help='show which cages run it for long, such as "45000 rpm"')
 
 
 def _execute_catalogue(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ..studies.machine.bearings import as_file, described, find_bearing, known, listed
+    from ..studies.machine.bearings import (
+        as_file,
+        described,
+        fast_enough,
+        find_bearing,
+        known,
+        listed,
+        shared,
+    )
 
     here = Path()
+    load = above_zero(options.load, "N", "--load")
+    speed = above_zero(options.speed, "rad/s", "--speed")
     if options.bearing is None:
+        if load or speed:
+            raise TouchdownError("--load and --speed are of one bearing; name it, such as 6904")
         print(listed(known(here), above_zero(options.bore, "m", "--bore")))
         return 0
     bearing = find_bearing(options.bearing, here)
+    if load or speed:
+        print(*(f(bearing, x) for f, x in ((shared, load), (fast_enough, speed)) if x), sep="\n")
+        return 0
     print(as_file(bearing) if options.toml else described(bearing), end="" if options.toml else "\n")
     return 0
 
@@ -161,6 +181,7 @@ NEW_EXAMPLES = (
     "touchdown new my-machine --rotor rotor_II --bearings 7014",
     'touchdown new my-machine --rotor rotor.toml --bearings 7014 --at A,B --amb A,B --speed "9000 rpm"',
     'touchdown new my-disk --mass "60 kg" --bearings 6014 --dry-run',
+    'touchdown new my-soft-disk --mass "60 kg" --bearings 6014 --mount soft',
 )
 
 
@@ -194,6 +215,12 @@ def _declare_new(verb: argparse.ArgumentParser) -> None:
         metavar="MATERIAL",
         help="of their balls: steel (the default) or Si3N4, ceramic ones of hybrid bearings",
     )
+    verb.add_argument(
+        "--mount",
+        metavar="soft|stiff|FILE",
+        help="what they sit in: a mount by rules, or of a TOML file such as `import-mount` writes "
+        "(default: a linear housing)",
+    )
     verb.add_argument("--mass", help="of a rigid rotor, instead of --rotor")
     verb.add_argument(
         "--inertia", help="its polar moment of inertia (default: mass times journal radius^2)"
@@ -215,6 +242,7 @@ def _execute_new(options: argparse.Namespace) -> int:
         speed=above_zero(options.speed, "rad/s", "--speed"),
         clearance=above_zero(options.clearance, "m", "--clearance") or 0.0,
         balls=options.balls,
+        mount=options.mount,
         mass=above_zero(options.mass, "kg", "--mass"),
         inertia=above_zero(options.inertia, "kg.m2", "--inertia"),
     )
@@ -378,7 +406,7 @@ def _declare_import_rotor(verb: argparse.ArgumentParser) -> None:
         "file",
         type=Path,
         help="saved by ROSS (.toml, .json), a table of sections (.csv), matrices or modal data (.npz), "
-        "or a folder of matrices (.mtx)",
+        "or a folder of matrices (.mtx, .hb)",
     )
     add_output(verb, "FILE-rotor.toml in this folder", "rotor file")
     for option, meaning in (
@@ -438,4 +466,52 @@ IMPORT_ROTOR = Verb(
     IMPORT_ROTOR_EXAMPLES,
     _declare_import_rotor,
     _execute_import_rotor,
+)
+
+
+IMPORT_MOUNT_EXAMPLES = (
+    "touchdown import-mount examples/mount_loop.csv",
+    "touchdown import-mount examples/mount_loop.csv --slides 1 -o runs/mount.toml",
+)
+
+
+def _declare_import_mount(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument(
+        "file", type=Path, help='table (.csv) with columns such as "displacement [mm]" and "force [N]"'
+    )
+    add_output(verb, "FILE-mount.toml in this folder", "mount file")
+    verb.add_argument("--slides", default="4", help="that may be used, 1 to 4 (default: 4)")
+    verb.add_argument("--force", action="store_true", help="replace a file that is there")
+
+
+def _execute_import_mount(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..common.files import keep_other, writing_to
+    from ..results.run import make_writable
+    from ..studies.machine.hysteresis import MOST_SLIDES, fit, read_loop
+    from ..studies.machine.mount_file import draw, mount_text, notes, told
+
+    loop = read_loop(options.file)
+    found = fit(loop, count(options.slides, "--slides", MOST_SLIDES))
+    path = options.output or Path(f"{options.file.stem}-mount.toml")
+    make_writable(path.parent)
+    text = mount_text(found, options.file.name)
+    if not options.force:
+        keep_other(path, text, "file with -o")
+    picture = path.with_suffix(".png")
+    with writing_to(path.parent):
+        path.write_text(text, encoding="utf-8")
+        draw(found, loop, options.file.name, picture)
+    print("\n".join([*told(found), *(f"note: {note}" for note in notes(found))]))
+    print(f"written to {path}, loop and fit are in {picture}; now: touchdown new --mount {path}")
+    return 0
+
+
+IMPORT_MOUNT = Verb(
+    "import-mount",
+    "fit a mount to its measured loop of force over displacement",
+    IMPORT_MOUNT_EXAMPLES,
+    _declare_import_mount,
+    _execute_import_mount,
 )

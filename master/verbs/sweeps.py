@@ -19,6 +19,7 @@ from .arguments import (
     add_quiet,
     add_scene_name,
     add_settings,
+    add_swaps,
     add_until,
     angle,
     chosen_jobs,
@@ -26,6 +27,7 @@ from .arguments import (
     settings,
     several_above_zero,
     show_sweep,
+    swapped,
     timed,
 )
 from .verb import Verb, broken_off, complain, warn
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..scene.scene import Scene
+    from ..studies.rotor.whirl import Machine
     from ..studies.sweep.definition import Design
 
 
@@ -77,8 +80,8 @@ def _add_points(verb: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=VALUES",
-        help='a list such as "0.2,0.25,0.3 mm", or START:STOP:COUNT such as "0:315:8 deg"; '
-        "repeat it for every combination",
+        help='a list such as "0.2,0.25,0.3 mm", or START:STOP:COUNT such as "0:315:8 deg", with :log for '
+        "even ratios; repeat it for every combination",
     )
     points.add_argument(
         "--tie",
@@ -232,6 +235,63 @@ MERGE = Verb(
 )
 
 
+SURVIVE_EXAMPLES = (
+    "touchdown survive runs/sweep-rotor1-9000",
+    'touchdown survive runs/sweep-rotor1-9000 --limit "peak_ball_force_N=1695 N" --drops 1:20',
+)
+
+
+def _declare_survive(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument("folder", type=Path, help="of a sweep, finished or under way")
+    verb.add_argument(
+        "--limit",
+        metavar="COLUMN=VALUE",
+        help="of sweep.csv, that a drop must keep to (default: lowest_static_safety=1, a dent)",
+    )
+    verb.add_argument(
+        "--drops", default="1,2,5,10,20", help='how many, such as "1:20" (default: 1,2,5,10,20)'
+    )
+
+
+def _execute_survive(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..studies.sweep.results import read
+    from ..studies.sweep.survival import DEFAULT, drivers, lines, read_limit, survival
+    from ..studies.sweep.survival_figure import PICTURE, write_survival
+
+    found = read(options.folder)
+    limit = read_limit(options.limit, found.members) if options.limit else DEFAULT
+    survived, drops = survival(found.members, limit), _counts(options.drops)
+    print("\n".join(lines(survived, drops, drivers(found.definition, found.members, limit))))
+    write_survival(survived, range(1, max(drops) + 1), options.folder / PICTURE)
+    print(f"{PICTURE} in {options.folder}")
+    return 0
+
+
+MOST_DROPS = 10_000
+
+
+def _counts(text: str) -> list[int]:
+    """Numbers of drops, as a list or FIRST:LAST. Raises TouchdownError."""
+    first, colon, last = text.partition(":")
+    if colon:
+        start, end = count(first, "--drops", MOST_DROPS), count(last, "--drops", MOST_DROPS)
+        if start > end:
+            raise TouchdownError(f"--drops {text} must go up, such as 1:20")
+        return list(range(start, end + 1))
+    return sorted({count(one, "--drops", MOST_DROPS) for one in text.split(",")})
+
+
+SURVIVE = Verb(
+    "survive",
+    "how many drops a machine survives, from a sweep",
+    SURVIVE_EXAMPLES,
+    _declare_survive,
+    _execute_survive,
+)
+
+
 CHOOSE_EXAMPLES = (
     'touchdown choose my-machine/required.toml --bearings "7014,6014,61914" --duration "0.2 s"',
     'touchdown choose my-machine/required.toml --bearings "7014" --mount soft.toml --mount stiff.toml',
@@ -293,7 +353,7 @@ def _execute_choose(options: argparse.Namespace) -> int:
     if any(m.ended is Ended.INTERRUPTED for one in found for m in one.members):
         return broken_off()
     print("\n".join([*lines(found), *remarks(found)]))
-    write_table(found, folder / "choose.csv")
+    write_table(found, folder)
     page = report(folder, None)[0]
     print(f"results in {folder}, its page is {page}")
     return STOPPED if any(one.failed for one in found) else 0
@@ -317,6 +377,76 @@ CHOOSE = Verb(
     CHOOSE_EXAMPLES,
     _declare_choose,
     _execute_choose,
+)
+
+
+WHIRL_EXAMPLES = (
+    "touchdown whirl rotor1-18000-225um",
+    'touchdown whirl rotor1-18000-225um --speed "12000 rpm" --set "housing_*.damping=10000 N.s/m"',
+    'touchdown whirl rotor1-18000-225um --vary "housing_*.stiffness=2:250:12:log MN/m" '
+    '--vary "housing_*.damping=100:10000:10:log N.s/m"',
+)
+
+
+def _declare_whirl(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    add_scene_name(verb)
+    verb.add_argument("--speed", help="of the rotor (default: the scene's, at the start)")
+    verb.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="NAME=VALUES",
+        help='as for sweep, such as "housing_*.stiffness=2:250:20:log MN/m"; two make a map',
+    )
+    add_settings(verb)
+    add_swaps(verb)
+    add_output(verb, "runs/whirl-SCENE", "folder for the table and the map of --vary")
+    add_quiet(verb)
+
+
+def _execute_whirl(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..interop.scenes import find_scene
+    from ..studies.rotor.whirl import ASSUMPTIONS, FORWARD, lines, machine
+
+    scene = swapped(find_scene(options.scene), options).set(settings(options))
+    known = machine(scene, above_zero(options.speed, "rad/s", "--speed"))
+    print("\n".join([*lines(known.foretold()), *lines(known.foretold(FORWARD)), *ASSUMPTIONS]))
+    if options.vary:
+        _map_whirl(known, scene, options)
+    return 0
+
+
+def _map_whirl(known: Machine, scene: Scene, options: argparse.Namespace) -> None:
+    from ..results.run import make_writable
+    from ..studies.rotor.whirl import TABLE, over, write_table
+    from ..studies.rotor.whirl_figure import PICTURE, axis, write_map
+    from ..studies.sweep.definition import Design, parse_all
+
+    design = Design.grid(parse_all(options.vary))
+    folder = options.output or Path("runs") / f"whirl-{scene.name}"
+    make_writable(folder)
+    with bar_over(len(design), "mounts", options.quiet) as bar:
+        found = over(
+            known,
+            scene,
+            [dict(zip(design.names, point, strict=True)) for point in design.points],
+            bar.update,
+        )
+    write_table(design, found, folder)
+    if len(design.names) == 2:
+        x, y = (axis(name, [point[k] for point in design.points]) for k, name in enumerate(design.names))
+        write_map(x, y, found, folder / PICTURE, f"Backward whirl foretold: {scene.name}")
+    print(f"{TABLE}{f' and {PICTURE}' if len(design.names) == 2 else ''} in {folder}")
+
+
+WHIRL = Verb(
+    "whirl",
+    "foretell a whirl without a drop: how fast, how hard, and over which mounts",
+    WHIRL_EXAMPLES,
+    _declare_whirl,
+    _execute_whirl,
 )
 
 

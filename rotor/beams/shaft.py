@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from scipy import linalg
@@ -63,6 +63,15 @@ class Station:
     node: int
 
 
+class Gap(NamedTuple):
+    """What stands around the rotor and which it must not touch."""
+
+    name: str
+    station: str  # or sensor
+    radial: float  # m
+    journal_radius: float | None = None  # m, of the rotor there, where touching acts
+
+
 @dataclass(frozen=True)
 class Shaft:
     """The rotor. Inertias are those of the undeformed rotor."""
@@ -77,6 +86,7 @@ class Shaft:
     damping_ratio: float = 0.003  # of the bending modes
     about: str = ""
     supports: tuple[Support, ...] = ()
+    gaps: tuple[Gap, ...] = ()
     superelement: Superelement | None = None  # in place of elements and points
     called: tuple[str, ...] = field(default=(), compare=False)  # nodes, where it is from; not in its file
 

@@ -43,7 +43,8 @@ cone (over all of its count), and layers, cylinders or cones around it that are 
     layers = [{ outer_diameter = "50 mm", outer_diameter_end = "60 mm", material = "bronze" }]
 
 [[point_mass]] with node, mass, polar_inertia, diametral_inertia; in an unbalance angle; [[support]] with
-node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a scene has bearings).
+node, stiffness, stiffness_y, damping, damping_y, for frequencies on supports (a scene has bearings);
+[[gap]] with name, station (or sensor), radial and, where touching acts, journal_radius.
 Every physical quantity is text with a unit.
 
 In place of materials, elements, discs and point masses a rotor may have [superelement], the matrices of the

@@ -34,7 +34,7 @@ from ...modelkit.model import ModelError
 from ...modelkit.units import UnitError, to_si, units_of
 from ..beams.body import PointMass, disc
 from ..beams.element import Element, split
-from ..beams.shaft import MAX_NODES, MAX_STATIONS, Shaft, Station, Support, Unbalance
+from ..beams.shaft import MAX_NODES, MAX_STATIONS, Gap, Shaft, Station, Support, Unbalance
 from ..beams.superelement import MAX_COORDINATES, Superelement, checked
 
 EXAMPLES = {
@@ -422,7 +422,7 @@ def parse(text: str, file: str) -> Shaft:
     except ValueError as error:  # of TOML's syntax, or of an integer with thousands of digits
         raise RotorFileError(f"{file}: is not valid TOML: {error}") from None
     top.only("title", "about", "damping_ratio", *BEAMS, "superelement", "unbalance", "support",
-             "stations", "sensors", "levitated_at")  # fmt: skip
+             "stations", "sensors", "levitated_at", "gap")  # fmt: skip
     made = _made(top)
     nodes = made.nodes
     return replace(
@@ -439,6 +439,7 @@ def parse(text: str, file: str) -> Shaft:
         sensors=_stations(top, "sensors", nodes),
         levitated_at=_levitated(top),
         supports=tuple(_support(t, nodes) for t in top.tables("support", *SUPPORT)),
+        gaps=tuple(_gap(t, top) for t in top.tables("gap", "name", "station", "radial", "journal_radius")),
     )
 
 
@@ -486,6 +487,18 @@ def _support(t: Table, nodes: int) -> Support:
         damping=t.quantity("damping", "N.s/m", default=0.0, zero=True),
         damping_y=t.quantity("damping_y", "N.s/m", zero=True) if "damping_y" in t.values else None,
     )
+
+
+def _gap(t: Table, top: Table) -> Gap:
+    """What stands around a station, or around a sensor where it is only watched."""
+    acts = "journal_radius" in t.values
+    there = [*top.values.get("stations", {}), *([] if acts else top.values.get("sensors", {}))]
+    station = t.text("station")
+    if station not in there:
+        kind = "station" if acts else "station or sensor"
+        raise t.error("station", f"is no {kind}; there are: {', '.join(there) or 'none'}")
+    own = t.quantity("journal_radius", "m") if acts else None
+    return Gap(t.text("name"), station, t.quantity("radial", "m"), own)
 
 
 def _stations(top: Table, kind: str, nodes: int) -> tuple[Station, ...]:

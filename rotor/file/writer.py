@@ -15,7 +15,7 @@ from itertools import groupby
 from ...modelkit.units import UNIT_SCALES, to_si
 from ..beams.body import PointMass
 from ..beams.element import Element
-from ..beams.shaft import Shaft, Station, Support, Unbalance
+from ..beams.shaft import Gap, Shaft, Station, Support, Unbalance
 from .reader import RotorFileError, parse, superelement_lines
 
 PREFERRED_UNITS = ("mm", "GPa", "g", "kg.mm2", "g.mm", "deg", "MN/m")  # units beside those of SI
@@ -63,6 +63,8 @@ def _lines(shaft: Shaft) -> Iterator[str]:
         yield from _support(support)
     yield from _stations("stations", shaft.stations)
     yield from _stations("sensors", shaft.sensors)
+    for gap in shaft.gaps:
+        yield from _gap(gap)
 
 
 Names = dict[tuple[float, ...], str]
@@ -139,6 +141,13 @@ def _support(support: Support) -> Iterator[str]:
         value = getattr(support, name)
         if value is not None:
             yield f"{name} = {_quantity(value, unit)}"
+
+
+def _gap(gap: Gap) -> Iterator[str]:
+    yield f"\n[[gap]]\nname = {_text(gap.name)}\nstation = {_text(gap.station)}"
+    yield f"radial = {_quantity(gap.radial, 'm')}"
+    if gap.journal_radius is not None:
+        yield f"journal_radius = {_quantity(gap.journal_radius, 'm')}"
 
 
 def _stations(kind: str, stations: tuple[Station, ...]) -> Iterator[str]:

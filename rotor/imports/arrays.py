@@ -1,6 +1,7 @@
-"""Rotors as arrays: in a NumPy archive (.npz), in a folder of Matrix Market files, or a mapping in Python.
+"""Rotors as arrays: in a NumPy archive (.npz), in a folder of matrices, or a mapping in Python.
 
-A folder holds M.mtx, K.mtx, G.mtx, if there is one C.mtx, and nodes.csv, whose header is
+A folder holds M.mtx, K.mtx, G.mtx, if there is one C.mtx (Matrix Market), or any of them as .hb
+(Harwell-Boeing, as HBMAT of ANSYS writes it), and nodes.csv, whose header is
 
     node, x [mm], y [mm], z [mm]
 
@@ -14,6 +15,7 @@ import csv
 import math
 import zipfile
 from collections.abc import Mapping
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -63,11 +65,14 @@ def from_folder(folder: Path) -> Shaft:
     """The rotor in a folder of Matrix Market files. Raises ImportedRotorError."""
     data: dict[str, Any] = {}
     for name in MATRICES:
-        path = folder / f"{name}.mtx"
-        if path.is_file():
-            data[name] = _market(path)
+        read = {".mtx": _market, ".hb": _harwell_boeing}
+        there = [folder / f"{name}{suffix}" for suffix in read if (folder / f"{name}{suffix}").is_file()]
+        if there:
+            data[name] = read[there[0].suffix](there[0])
         elif name != "C":
-            raise ImportedRotorError(f"{folder}: has no {name}.mtx; there must be M.mtx, K.mtx and G.mtx")
+            raise ImportedRotorError(
+                f"{folder}: has no {name}.mtx, nor {name}.hb; there must be M, K and G"
+            )
     data["nodes"], data["coordinates"] = _nodes(folder / "nodes.csv")
     data["dofs"] = _dofs(folder / "dofs.csv")
     return of_matrices(data, str(folder), folder.name)
@@ -84,6 +89,24 @@ def _market(path: Path) -> np.ndarray:
             f"{path}: cannot be read: {error}; it must be Matrix Market text"
         ) from None
     return found.toarray() if sparse.issparse(found) else np.asarray(found)
+
+
+def _harwell_boeing(path: Path) -> np.ndarray:
+    """A matrix, full (n, n). Of a symmetric one there is the lower triangle, which SciPy does not read."""
+    from scipy import io
+
+    try:
+        lines = path.read_text(encoding="latin-1").splitlines(keepends=True)
+        kind = lines[2][:3].upper()
+        lines[2] = f"{kind[0]}U{kind[2:]}{lines[2][3:]}"
+        found = np.asarray(io.hb_read(StringIO("".join(lines))).toarray())
+    except (OSError, ValueError, IndexError, OverflowError, MemoryError) as error:
+        raise ImportedRotorError(
+            f"{path}: cannot be read: {error}; it must be real, assembled Harwell-Boeing text"
+        ) from None
+    if kind[1] != "S":
+        return found
+    return found + np.tril(found, -1).T
 
 
 def _nodes(path: Path) -> tuple[np.ndarray, np.ndarray]:

@@ -26,7 +26,12 @@ def test_they_are_known():
     assert {name for fmu, name in tunable if fmu == "amb"} == {
         *("stiffness", "damping", "force_limit", "shutdown_time")
     }
-    assert {name for _, name in tunable} <= {
+    gains = ("proportional", "integral", "derivative")
+    axes = ("gain", *(f"channel[{number}]" for number in range(1, 5)))
+    assert {name for fmu, name in tunable if fmu == "amb_controller"} == {
+        f"{axis}.{gain}" for axis in axes for gain in gains
+    }
+    assert {name for fmu, name in tunable if fmu != "amb_controller"} <= {
         *("stiffness", "damping", "force_limit", "shutdown_time", "drag", "viscous_drag")
     }
 

@@ -376,6 +376,8 @@ static Status explain_step(Fmu *f, int64_t status, double time, double step)
     if (status == RAISED) return explain(f, SAY_GAVE_UP, time);
     if (status == TOO_MANY_STEPS)
         explain(f, SAY_TOO_MANY_STEPS, MAX_STEPS, step, time);
+    else if (status == TOO_LONG_STEP)
+        explain(f, SAY_TOO_LONG_STEP, step, time);
     else
         explain(f, SAY_UNRESOLVED, time, step);
     return DISCARD;

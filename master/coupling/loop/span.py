@@ -14,6 +14,7 @@ from ...common.errors import TouchdownError
 from ...components.component import LOAD, SLOPE, Component, Kind
 from ...scene.run_spec import RunSpec
 from ...scene.scene import Scene
+from ...scene.tables import time_of
 from ..observer import Moment, Observer
 from ..steppers.stepper import Stepper
 
@@ -83,6 +84,9 @@ def named_zero(scene: Scene, system: Values) -> float | None:
     """The scene's zero (s, simulation's clock); None where it has none, or one that went in a swap."""
     if scene.zero is None or swapped_away(scene, scene.zero, system):
         return None
+    given = time_of(scene.zero)
+    if given is not None:
+        return given
     zero = system.value(scene.zero)
     if not math.isfinite(zero):
         raise TouchdownError(f"zero = {scene.zero} is {zero:g}; it must be a time")

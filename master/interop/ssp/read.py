@@ -25,6 +25,7 @@ from ...components.description import interface
 from ...components.unpack import Format, unpack
 from ...coupling.simulation import MAX_MACRO_STEPS
 from ...scene.scene import BondSpec, ComponentSpec, Scene, Wire
+from ...scene.tables import time_of
 from . import structure
 from .structure import Node, Part, Structure, Value
 from .xml import SSD_FILE
@@ -255,6 +256,8 @@ def read(path: Path) -> Scene:
         bond=tuple(_bond(package, told, wires) for told in said.bonds),
         zero=said.scene.get("zero"),
         energy_scale=tuple(said.scene.get("energy_scale", "").split()),
+        gaps=tuple(said.gaps),
+        requirements=tuple(said.requirements),
     )
     return _with_run(scene, package)
 
@@ -300,7 +303,10 @@ def _with_run(scene: Scene, package: Package) -> Scene:
         settings["run.start_time"] = said.start
     if said.stop is not None:
         zero = said.start
-        if scene.zero:
+        given = time_of(scene.zero) if scene.zero else None
+        if given is not None:
+            zero = given
+        elif scene.zero:
             head, _, tail = scene.zero.partition(".")
             if head not in sides:
                 raise TouchdownError(f"{package.where}: zero = {scene.zero}: there is no component {head}")

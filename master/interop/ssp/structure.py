@@ -9,6 +9,8 @@ from xml.etree.ElementTree import Element
 
 from ...common.errors import TouchdownError, one_of
 from ...common.units import Scale, Unit
+from ...scene.gaps import Gap, gaps
+from ...scene.requirements import Requirement, requirements
 from . import xml
 from .xml import INTEGERS, MASTER_ANNOTATION, REALS, SCENE_ANNOTATION, SSD_FILE, STEP_ANNOTATION
 
@@ -179,6 +181,8 @@ class Structure:
     names: Mapping[str, Mapping[str, str]]  # by component: variables of the contract, and its own
     changed: Mapping[str, Sequence[str]]  # by component: what the user set beside the scene
     bonds: Sequence[Mapping[str, str]]  # that are declared: the inputs that take force, position, velocity
+    gaps: Sequence[Gap]
+    requirements: Sequence[Requirement]
 
 
 def read_structure(folder: Path, where: str) -> Structure:
@@ -206,6 +210,8 @@ def read_structure(folder: Path, where: str) -> Structure:
         names=_names(note, where),
         changed=_changed(note, where),
         bonds=_bonds(note, where),
+        gaps=_gaps(note, where),
+        requirements=_requirements(note, where),
     )
 
 
@@ -383,3 +389,22 @@ def _bonds(note: Element, where: str) -> list[dict[str, str]]:
         if not motion:
             raise TouchdownError(f"{where}: the Bond of {bonds[-1]['force']} has no position or velocity")
     return bonds
+
+
+def _gaps(note: Element, where: str) -> tuple[Gap, ...]:
+    told = [_told(element, ("radial",), where) for element in xml.children(note, "touchdown:Gap")]
+    return gaps(told, f"{where}: Gap")
+
+
+def _requirements(note: Element, where: str) -> tuple[Requirement, ...]:
+    there = xml.children(note, "touchdown:Requirement")
+    told = {
+        xml.required(one, "kind", where): xml.number(one, "limit", f"{where}: Requirement") for one in there
+    }
+    return requirements(told, f"{where}: Requirement")
+
+
+def _told(element: Element, numbers: Sequence[str], where: str) -> dict[str, object]:
+    """The attributes of an element, some of them numbers."""
+    told: dict[str, object] = dict(element.attrib)
+    return told | {key: xml.number(element, key, where) for key in numbers if key in told}

@@ -89,6 +89,12 @@ def write_scene(
             SubElement(note, "touchdown:Name", {"component": there(name), "name": here, "own": own})
         for changed in spec.own:
             SubElement(note, "touchdown:Changed", {"component": there(name), "name": changed})
+    for gap in scene.gaps:
+        told = {"name": gap.name, "at": there(gap.at), "radial": repr(gap.radial)}
+        stator = {"stator": there(gap.stator)} if gap.stator else {}
+        SubElement(note, "touchdown:Gap", told | stator)
+    for one in scene.requirements:
+        SubElement(note, "touchdown:Requirement", {"kind": one.kind, "limit": repr(one.limit)})
     for bond in declared:
         wires = {"force": bond.force, "position": bond.position, "velocity": bond.velocity}
         inputs = {kind: there(c.target_name) for kind, c in wires.items() if c}  # each has one source

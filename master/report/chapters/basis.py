@@ -49,6 +49,7 @@ LEFT_OUT = {  # model: what it has not
     "simplified_cageless": ("Inertia and weight of the balls of {name} across the race.",),
     "bushing": ("Anything that rolls in {name}: the bore is fixed in the housing.",),
 }
+TAMES = "tames rare large ball loads, above all on a soft mount"
 SCHEME = "How the parts were coupled: {title}; macro step {step}."
 
 
@@ -63,9 +64,32 @@ def model(subject: Subject) -> list[Block]:
         *blocks,
         Table("What each part is modelled as", ["Part", "Model", "What is in it"], rows),
         Text(SCHEME.format(title=run.scheme.title, step=quantity(run.macro_step, "s"))),
+        *_to_ask_for(subject),
         Heading("Left out"),
         Points(list(_left_out(subject))),
     ]
+
+
+TO_ASK_FOR = {  # variables of a bearing that few know: what they are, and what they decide
+    "rolling.resistance": ("the drag of its balls", "sustains a whirl, which grows with it"),
+    "balls.damping_ratio": ("damping of its balls on races, a ratio", TAMES),
+    "balls.dissipation": ("the same by restitution, s/m", TAMES),
+    "balls.damping": ("the same by indentation, N s/m\N{SUPERSCRIPT TWO}", TAMES),
+}
+
+
+def _to_ask_for(subject: Subject) -> list[Block]:
+    """Numbers of the bearings that decide and are assumed, unless somebody measured them."""
+    scene, system = subject.result.scene, subject.run.system
+    rows = [
+        [f"{name}.{variable}", what, f"{value:g}" if value else "0: none", str(origin), decides]
+        for name, spec in scene.components.items()
+        for variable, (what, decides) in TO_ASK_FOR.items()
+        if f"{name}.{variable}" in system
+        for value, origin in [(system.value(f"{name}.{variable}"), setting_origin(spec, variable))]
+    ]
+    head = ["Setting", "What it is", "Value", "from", "What it does"]
+    return [Table("Assumed, and worth asking for", head, rows)] if rows else []
 
 
 def _about(subject: Subject, spec: ComponentSpec) -> str:

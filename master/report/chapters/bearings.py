@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from ....bearings import rating
 from ...coupling.connections import Attachment
-from ...results.ratings import Rated, rated
+from ...results.ratings import FEW_DROPS, Rated, rated
 from ..blocks import Absent, Block, Lacking, Series, Table, Text
 from ..charts import series
 from ..numbers import RPM, digits, listed, quantity, share
@@ -131,7 +130,7 @@ def _rolling(subject: Subject, variable: str, what: str) -> Sequence[Attachment]
 
 
 USUAL_STATIC_SAFETY = 2.0  # s_0 that makers ask for under shocks
-MAX_DROPS = 1e6  # more are said to be more
+NO_DAMAGE = 1e-6  # of a life, below which a run takes none
 
 
 def life(subject: Subject) -> list[Block]:
@@ -183,14 +182,19 @@ def _fatigue(found: dict[str, Rated]) -> Table:
             one.stated.dynamic,
             digits(one.turns, 3),
             share(one.damage),
-            f"more than {MAX_DROPS:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
-            if one.drops > MAX_DROPS
-            else digits(one.drops, 2),
+            _drops(one),
         ]
         for seat, one in found.items()
     ]
     head = ["Seat", "Dynamic rating C", "C from", "Turns of the ring", "Life taken (ISO/TS 16281)", "Drops"]
     return Table("Fatigue: such drops until one in ten bearings has failed", head, rows, 1)
+
+
+def _drops(one: Rated) -> str:
+    """How many such drops until fatigue, where nothing else is nearer."""
+    if one.safety < 1.0:
+        return "dented before"
+    return digits(one.drops, 2) if one.drops < FEW_DROPS else f"more than {FEW_DROPS:g}; a dent is nearer"
 
 
 def _words(found: dict[str, Rated]) -> list[Block]:
@@ -211,7 +215,7 @@ def _words(found: dict[str, Rated]) -> list[Block]:
                 "usual under shocks."
             )
         )
-    if all(math.isinf(one.drops) or one.drops > MAX_DROPS for one in found.values()):
+    if all(one.damage < NO_DAMAGE for one in found.values()):
         said.append(Text("Fatigue: this run takes less than a millionth of a life."))
     said.append(
         Text(

@@ -7,12 +7,15 @@ from functools import partial
 
 import numpy as np
 
+from ...common.errors import TouchdownError
 from ...coupling.connections import Attachment
 from ...results.ending import housing_port
 from ...results.figures.style import within
 from ...results.recording import NotRecordedError
 from ...results.summary import relative_orbit
 from ...results.whirl.evidence import CONTACT
+from ...results.whirl.verdict import STILL
+from ...studies.rotor.whirl import machine
 from ..animation import motions
 from ..blocks import Absent, Block, Lacking, Motion, Picture, Series, Table, Text
 from ..charts import inline, series
@@ -28,7 +31,7 @@ MOVED = "Where the journal goes"
 def drop(subject: Subject) -> list[Block]:
     """Conditions and events, orbits, displacement over time."""
     subject.need_seats()
-    blocks: list[Block] = [_conditions(subject), _events(subject)]
+    blocks: list[Block] = [_conditions(subject), _events(subject), *_foretold(subject)]
     try:
         blocks += [*_moving(subject), _orbits(subject)]
         blocks += [_displacement(subject, a) for a in subject.seats]
@@ -94,6 +97,42 @@ def _events(subject: Subject) -> Table:
         "Pendulum frequency",
     ]
     return Table("What happened, seat by seat", head, rows, numbers=1)
+
+
+FORCE = "contact.force"
+LAST = 0.1  # of the run, over which its whirl is read
+
+
+def _foretold(subject: Subject) -> Iterator[Block]:
+    """A whirl that goes on at the end beside what is foretold of it at the rotor's speed there."""
+    there = [a for a in subject.seats if STILL in str(subject.whirl(a)) and subject.has(a, FORCE)]
+    recording = subject.run.recording
+    spins = [float(recording[a.motion("omega")][-1]) for a in there if a.motion("omega") in recording]
+    if not spins:
+        return
+    title = "Its whirl at the end, and as foretold from receptances"
+    try:
+        found = machine(subject.run.scene, abs(spins[0])).foretold()
+    except TouchdownError as error:
+        yield Lacking(title, f"{error}.")
+        return
+    if found.settled is None:
+        yield Lacking(title, f"none is foretold: {found.why_none}.")
+        return
+    names, rows = [journal.name for journal in found.machine.journals], list[list[str]]()
+    for a in there:
+        k, force = names.index(a.bearing), subject.values(a, FORCE)
+        rows.append(
+            [
+                subject.name(a),
+                quantity(number(subject.whirl(a, "_frequency_Hz")), "Hz", 3),
+                quantity(found.frequency, "Hz", 3),
+                quantity(float(np.mean(force[-max(1, int(LAST * len(force))) :])), "N", 3),
+                quantity(float(found.settled.force[k]), "N", 3),
+            ]
+        )
+    head = ["Seat", "Frequency found", "foretold", "Mean force found", "foretold"]
+    yield Table(title, head, rows, 1)
 
 
 def _moving(subject: Subject) -> Iterator[Block]:

@@ -121,6 +121,8 @@ def _rated(subject: Subject) -> Iterator[Tile]:
     yield Tile(
         "Lowest static safety, estimate", digits(one.safety, 3), f"{_at(subject, a)}, {one.safety_by}"
     )
+    what, how_near = one.ends_by
+    yield Tile("What ends a bearing first", what, f"{_at(subject, a)}, {how_near}")
 
 
 def _at(subject: Subject, a: Attachment) -> str:

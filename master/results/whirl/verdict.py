@@ -124,8 +124,9 @@ def clopper_pearson(hits: float, count: float) -> Share:
 TURNS = "_revolutions"  # behind the key of a seat's verdict: turns of its decisive whirl
 TREND = "_trend"  # behind it: how a whirl goes on at the end
 AT_THE_END = ", still so at the end"
+STILL = "still whirling"
 TOO_COARSE = "cannot tell: sampled too coarsely"
-STILL_WORDS, OVER_WORDS = re.compile(r", at \S+ s still whirling.*"), re.compile(r", \S+ to \S+ s$")
+STILL_WORDS, OVER_WORDS = re.compile(rf", at \S+ s {STILL}.*"), re.compile(r", \S+ to \S+ s$")
 
 
 class Kind(StrEnum):
@@ -142,7 +143,7 @@ def still(verdict: str, end: float, trend: str) -> str:
     >>> still("backward whirl", 0.5, "decaying")
     'backward whirl, at 0.5 s still whirling, decaying'
     """
-    return f"{verdict}, at {end:.4g} s still whirling, {trend}"
+    return f"{verdict}, at {end:.4g} s {STILL}, {trend}"
 
 
 def over(verdict: str, start: float, end: float) -> str:

@@ -7,21 +7,19 @@ from __future__ import annotations
 
 import math
 import statistics
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...coupling.loop.span import brief
-from ...coupling.simulation import Outcome, opened, refuse_endless, simulate
+from ...coupling.simulation import Outcome, opened, refuse_endless
 from ...coupling.system import System
-from ...results.summary import seat_name, touchdown_seats
+from ...results.summary import touchdown_seats
 from ...scene.scene import ComponentSpec, Scene
-from ..drop.first_impact import MIN_PEAK, Peaks, Stop, Trace, run_watched
+from ..drop.first_impact import MIN_PEAK, Peaks, Stop, Trace, watched_drop
 from ..drop.measured import finest_inside
+from ..drop.running import wall_time, warm_up
 from .modes import BASIS_PARAMETERS, RIGID_MODES
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
@@ -310,19 +308,13 @@ def _row(variant: Variant, exact: Drop, stopwatch: _Stopwatch) -> Row:
 
 def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
     """The drop, and how its run ended."""
-    with opened(scene, in_process=True) as system:
-        seats = touchdown_seats(system)
-        if not seats:
-            raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
-        outcome, traces = run_watched(scene, system, seats, stop)
-        touched = {seat_name(a, seats): system.value(f"{a.bearing}.contact.first_time") for a in seats}
-    impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
-    if not impacts:
-        raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
-    ends = {seat: end for seat, (_, end) in impacts.items()}
-    peaks = {seat: traces[seat].peaks(end) for seat, end in ends.items()}
-    first = min(touched[seat] for seat in impacts) - outcome.zero
-    return Drop(first, ends, peaks, traces), outcome
+    with watched_drop(scene, stop) as drop:
+        contacts = [drop.system.value(f"{a.bearing}.contact.first_time") for a in drop.seats]
+    touched = dict(zip(drop.traces, contacts, strict=True))
+    ends = {seat: end for seat, (_, end) in drop.impacts().items()}
+    peaks = {seat: drop.traces[seat].peaks(end) for seat, end in ends.items()}
+    first = min(touched[seat] for seat in ends) - drop.outcome.zero
+    return Drop(first, ends, peaks, drop.traces), drop.outcome
 
 
 def _price(drop: Drop, exact: Drop) -> Price:
@@ -394,15 +386,7 @@ class _Stopwatch:
         return statistics.median(self._spent or [self._once(self._scene)])
 
     def _warm_up(self, variant: Variant) -> None:
-        """Compile what is to be timed."""
-        self._once(variant, 2)
+        warm_up(variant.scene, self._in_process, variant.recorded)
 
-    def _once(self, variant: Variant, steps: int | None = None) -> float:
-        """Wall time per simulated second, of the whole run or of its first macro steps."""
-        scene = variant.scene
-        with tempfile.TemporaryDirectory() as folder, opened(scene, self._in_process) as system:
-            record_to = Path(folder) / "result.h5" if variant.recorded else None
-            run = scene if steps is None else brief(scene, system, steps)
-            outcome = simulate(run, system, record_to)
-        outcome.raise_if_stopped()
-        return outcome.wall_time / outcome.simulated
+    def _once(self, variant: Variant) -> float:
+        return wall_time(variant.scene, self._in_process, variant.recorded)

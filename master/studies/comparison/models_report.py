@@ -142,8 +142,6 @@ def _inside(price: Price) -> str:
 
 def write_report(comparison: Comparison, folder: Path) -> None:
     """models.csv and models.png into `folder`."""
-    # matplotlib is slow to import
-
     with writing_to(folder):
         write_table(comparison, folder / "models.csv")
         error_against_time(comparison).savefig(folder / "models.png", dpi=110)

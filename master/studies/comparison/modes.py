@@ -15,11 +15,9 @@ import numpy as np
 
 from ...common.errors import TouchdownError
 from ...components.component import Component
-from ...coupling.simulation import open_system, opened, refuse_endless
-from ...coupling.system import System
-from ...results.summary import touchdown_seats
+from ...coupling.simulation import opened, refuse_endless
 from ...scene.scene import Scene
-from ..drop.first_impact import Peaks, Stop, Trace, run_watched
+from ..drop.first_impact import Peaks, Stop, Trace, WatchedDrop, watched_drop
 
 MODES = (3, 5, 8, 12, 20)  # per plane, the two rigid ones included
 STEP = 2e-6  # s; coupling errors stay a tenth of those of the modes
@@ -84,13 +82,9 @@ class Comparison:
 class Run:
     """What one run showed."""
 
-    end: float  # s from zero
-    duration: float  # s, what run.duration ends a run there
-    traces: Mapping[str, Trace]
+    drop: WatchedDrop
     stresses: Stresses
     frequency: float | None
-    wall: float  # s per simulated s
-    energy: float
 
 
 def parse_modes(text: str) -> tuple[int, ...]:
@@ -147,13 +141,11 @@ def compare_modes(
     whole = _basis(scene, rotor, 0, 0, 0)
     stop = Stop(MAX_SPAN if duration is None else duration, early=duration is None, every=2)
     exact = _run(whole.set({"run.macro_step": 0.5 * macro_step}), rotor, stop)
-    impacts = {seat: impact for seat, t in exact.traces.items() if (impact := t.first_impact())}
-    if not impacts:
-        raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
+    impacts = exact.drop.impacts()
     done()
-    judge = _Judge(exact, impacts)
+    judge = _Judge(exact.drop, impacts)
     reference = judge.row(0, False, 0.5 * macro_step, exact, exact)
-    ended = {"run.duration": exact.duration}
+    ended = {"run.duration": exact.drop.outcome.duration}
     again = _run(whole.set(ended), rotor)
     done()
     rows = []
@@ -166,7 +158,7 @@ def compare_modes(
                 done()
             rows.append(judge.row(count, bool(residual), macro_step, *ways))
     coupling = judge.row(0, False, macro_step, again, again)
-    return Comparison(scene, exact.end, impacts, reference, coupling, rows)
+    return Comparison(scene, exact.drop.end, impacts, reference, coupling, rows)
 
 
 def runs(modes: Sequence[int]) -> int:
@@ -205,32 +197,25 @@ def _check_modes(scene: Scene) -> None:
 
 
 def _run(scene: Scene, rotor: str, stop: Stop | None = None) -> Run:
-    system = open_system(scene, in_process=True)
     try:
-        seats = [a for a in touchdown_seats(system) if a.body == rotor]
-        if not seats:
-            raise TouchdownError(f"scene {scene.name} has no touchdown bearing on {rotor}")
-        outcome, traces = run_watched(scene, system, seats, stop)
-        peaks = [system.value(f"{rotor}.stress.peak_{kind}") for kind in ("bending", "shear")]
-        frequency = _highest(scene, system, rotor, [a.body_port for a in seats])
+        with watched_drop(scene, stop, rotor) as drop:
+            peaks = [drop.system.value(f"{rotor}.stress.peak_{kind}") for kind in ("bending", "shear")]
+            frequency = _highest(drop, rotor)
     except TouchdownError as error:
         given = scene.components[rotor].set
         which = f"{given['modes']} modes" if given["modes"] else "all modes"
         raise TouchdownError(f"with {which}: {error}") from None
-    finally:
-        system.close()
-    wall, end = outcome.wall_time / outcome.simulated, outcome.end - outcome.zero
-    return Run(end, outcome.duration, traces, Stresses(*peaks), frequency, wall, outcome.residual)
+    return Run(drop, Stresses(*peaks), frequency)
 
 
-def _highest(scene: Scene, system: System, rotor: str, ports: Sequence[str]) -> float | None:
+def _highest(drop: WatchedDrop, rotor: str) -> float | None:
     """Highest frequency of the basis (Hz), from the modes that the seats are told of.
 
     None where there is none, or where modes may share the last place at a seat.
     """
-    component, given = system.components[rotor], scene.components[rotor].set
-    told = {port: _mode_stiffness(component, port) for port in ports}
-    elastic = int(str(given["modes"])) - RIGID_MODES + int(str(given["residual"])) * len(ports)
+    component, given = drop.system.components[rotor], drop.scene.components[rotor].set
+    told = {a.body_port: _mode_stiffness(component, a.body_port) for a in drop.seats}
+    elastic = int(str(given["modes"])) - RIGID_MODES + int(str(given["residual"])) * len(drop.seats)
     if given["modes"] == 0 or any(elastic > len(values) for values in told.values()):
         return None
     square = max((value for values in told.values() for value in values), default=0.0)
@@ -246,18 +231,17 @@ def _mode_stiffness(component: Component, port: str) -> list[float]:
 class _Judge:
     """The reference, and over what its first impacts are compared."""
 
-    exact: Run
+    exact: WatchedDrop
     impacts: Mapping[str, tuple[float, float]]
 
     def row(self, modes: int, residual: bool, step: float, plain: Run, corrected: Run) -> Row:
         """`plain`, `corrected`: by mode displacement and by mode acceleration; one motion."""
-        peaks = {seat: plain.traces[seat].peaks(end) for seat, (_, end) in self.impacts.items()}
-        distances = [self._distance(seat, plain.traces[seat]) for seat in plain.traces]
-        wall = min(plain.wall, corrected.wall)
+        traces, outcome = plain.drop.traces, plain.drop.outcome
+        peaks = {seat: traces[seat].peaks(end) for seat, (_, end) in self.impacts.items()}
+        orbit = max(self._distance(seat, trace) for seat, trace in traces.items())
+        wall = min(run.drop.outcome.wall_time / run.drop.outcome.simulated for run in (plain, corrected))
         stresses = (plain.stresses, corrected.stresses)
-        return Row(
-            modes, residual, step, peaks, max(distances), *stresses, plain.frequency, wall, plain.energy
-        )
+        return Row(modes, residual, step, peaks, orbit, *stresses, plain.frequency, wall, outcome.residual)
 
     def _distance(self, seat: str, trace: Trace) -> float:
         """Largest distance of the journal from the reference's (m), from the first contact of any seat."""

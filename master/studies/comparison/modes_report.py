@@ -162,8 +162,6 @@ def _cells(comparison: Comparison, row: Row) -> str:
 
 def write_report(comparison: Comparison, folder: Path) -> None:
     """modes.csv and modes.png into `folder`."""
-    # matplotlib is slow to import
-
     with writing_to(folder):
         write_table(comparison, folder / "modes.csv")
         errors_over_modes(comparison).savefig(folder / "modes.png", dpi=150)

@@ -23,7 +23,6 @@ from enum import StrEnum
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...coupling.loop.span import brief
 from ...coupling.simulation import opened, refuse_endless, simulate
 from ...coupling.system import fastest_contact
 from ...scene.run_spec import tidy
@@ -47,6 +46,7 @@ from ..drop.reference import (
     refine,
     solve,
 )
+from ..drop.running import undivided, wall_time, warm_up
 
 ABOVE_FLOOR = 10.0  # an error counts from this many times the floor of what it is measured against
 MIN_SLOPE = 0.5  # least slope between neighbours: below it something else than the macro step errs
@@ -93,7 +93,6 @@ LOOSE_SOLVERS_OF_MANY = LOOSE_SOLVERS[:1]  # each takes about as long as the ref
 REFERENCE_AGREEMENT = 0.1  # of the wanted error: what the reference's solvers may differ by
 SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
 SAME_TIME_FACTOR = 1.2  # times the least wall time: as good as the same
-NO_STOP_RESIDUAL = 1e9  # a residual of the ledger at which nothing stops
 
 
 @dataclass(frozen=True)
@@ -225,9 +224,7 @@ def compare_schemes(
     fails says so in its row.
     """
     limits = scene.run.warn_residual, scene.run.stop_residual
-    scene = scene.set(
-        {"run.stop_residual": NO_STOP_RESIDUAL, "run.whirl_halvings": 0, "run.impact_step": 0}
-    )
+    scene = undivided(scene)
     begin("fine steps")
     refuse_endless(max(asked.duration or MAX_SPAN, asked.timed or 0.0), min(asked.steps))
     landing = land(scene, asked.duration)
@@ -240,7 +237,7 @@ def compare_schemes(
     finely = judge.row(fine(scene, 2.0 * FINE_STEP), "fine steps", 2.0 * FINE_STEP)
     if finely.failed:
         raise TouchdownError(f"with macro steps of {2e6 * FINE_STEP:g} us: {finely.failed}")
-    _warm_up(scene, asked)
+    warm_up(scene, asked.in_process)
     rows = []
     for name in asked.schemes:
         for step in asked.steps:
@@ -334,25 +331,14 @@ class _Judge:
         }
 
 
-def _warm_up(scene: Scene, asked: Asked) -> None:
-    """Compile what is to be timed."""
-    with opened(scene, asked.in_process) as system:
-        simulate(brief(scene, system, 2), system).raise_if_interrupted()
-
-
 def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
     """The row with its wall time: the median of some runs."""
     if row.failed:
         return row
     if asked.timed is not None:
         scene = scene.set({"run.duration": asked.timed})
-    spent = []
     try:
-        for _ in range(asked.repeat):
-            with opened(scene, asked.in_process) as system:
-                outcome = simulate(scene, system)
-            outcome.raise_if_stopped()
-            spent.append(outcome.wall_time / outcome.simulated)
+        spent = [wall_time(scene, asked.in_process) for _ in range(asked.repeat)]
     except TouchdownError as error:
         return replace(row, failed=f"while it was timed: {error}")
     return replace(row, wall=statistics.median(spent))

@@ -175,8 +175,6 @@ def advice(comparison: Comparison) -> list[str]:
 
 def write_report(comparison: Comparison, folder: Path) -> None:
     """work_precision.csv, orders.csv and work_precision.png into `folder`."""
-    # matplotlib is slow to import
-
     with writing_to(folder):
         write_table(comparison, folder / "work_precision.csv")
         write_orders(comparison, folder / "orders.csv")

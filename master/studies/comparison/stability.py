@@ -35,13 +35,13 @@ from ...scene import schemes
 from ...scene.file import load_scene
 from ...scene.run_spec import RunSpec
 from ...scene.scene import ComponentSpec, Scene
+from ..drop.running import undivided
 
 STEPS = (*(float(f"{digit}e{power}") for power in (-6, -5, -4) for digit in (1, 2, 5)), 1e-3)  # s
 FIRST_STEP = 2e-5  # s, where the search begins
 REFERENCE_STEP = 5e-7  # s
 GROWTH_LIMIT = 1.5  # of a journal's speed or distance; of the energy, its square
 VISIBLE_ERROR = 0.05
-NO_STOP_RESIDUAL = 1e300  # a ledger residual that no run reaches
 
 
 @dataclass(frozen=True)
@@ -222,10 +222,7 @@ class Bounds(Observer):
 
 def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome, tuple[float, ...]]:
     """Run a case in process: what the loop says, and the figures, none where the run broke off."""
-    scene = case.scene.set({"run.scheme": scheme, "run.macro_step": step})
-    scene = scene.set(
-        {"run.stop_residual": NO_STOP_RESIDUAL, "run.whirl_halvings": 0, "run.impact_step": 0}
-    )
+    scene = undivided(case.scene.set({"run.scheme": scheme, "run.macro_step": step}))
     with opened(scene, in_process=True) as system:
         outcome = simulate(scene, system, observers=[bounds])
         outcome.raise_if_interrupted()

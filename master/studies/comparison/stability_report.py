@@ -309,8 +309,6 @@ def study_stability(
     study = Study(cases, schemes, rights, findings, why, _interrupted(failed))
     write_tables(study, folder)
     if findings:
-        # matplotlib is slow to import
-
         draw_chart(study, folder / "stability.png")
     return study
 

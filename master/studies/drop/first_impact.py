@@ -10,18 +10,20 @@ side of one.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ....modelkit.ports import PARTING_TOLERANCE
+from ...common.errors import TouchdownError
 from ...components.component import FORCE, POSITION
 from ...coupling.connections import Attachment
 from ...coupling.observer import Moment, Observer
 from ...coupling.simulation import Outcome, opened, simulate
 from ...coupling.system import System
-from ...results.summary import seat_name
+from ...results.summary import seat_name, touchdown_seats
 from ...scene.scene import Scene
 
 MIN_SPAN = 2e-3  # s
@@ -190,12 +192,44 @@ def _trace(time: np.ndarray, rows: list[list[float]], inside: Mapping[str, str])
     return Trace(time, *columns[:outer], inside=dict(zip(inside, columns[outer:], strict=True)))
 
 
-def run_watched(
-    scene: Scene, system: System, seats: Sequence[Attachment], stop: Stop | None
-) -> tuple[Outcome, Mapping[str, Trace]]:
-    """Run a scene to its end, or as `stop` has it; raises TouchdownError where it stops by itself."""
-    watch = Watch(system, seats, stop)
-    outcome = simulate(scene, system, observers=[watch])
-    outcome.raise_if_stopped()
-    names = [seat_name(a, list(seats)) for a in seats]
-    return outcome, dict(zip(names, watch.traces(), strict=True))
+@dataclass(frozen=True)
+class WatchedDrop:
+    """A drop whose seats were watched, and its system as the run left it."""
+
+    scene: Scene
+    system: System
+    seats: Sequence[Attachment]
+    outcome: Outcome
+    traces: Mapping[str, Trace]  # by seat
+
+    @property
+    def end(self) -> float:
+        """Its end (s from the scene's zero)."""
+        return self.outcome.end - self.outcome.zero
+
+    def impacts(self) -> Mapping[str, tuple[float, float]]:
+        """The first impact (s from zero) at each seat that is touched; TouchdownError where none is."""
+        impacts = {seat: impact for seat, t in self.traces.items() if (impact := t.first_impact())}
+        if not impacts:
+            duration = self.scene.run.duration
+            raise TouchdownError(f"nothing touches down within run.duration = {duration:g} s")
+        return impacts
+
+
+@contextmanager
+def watched_drop(scene: Scene, stop: Stop | None = None, body: str | None = None) -> Iterator[WatchedDrop]:
+    """Run a scene in process to its end, or as `stop` has it, and watch its seats: all, or those of `body`.
+
+    Raises TouchdownError where there is no such seat, or the run stops by itself.
+    """
+    with opened(scene, in_process=True) as system:
+        seats = [a for a in touchdown_seats(system) if body in (None, a.body)]
+        if not seats:
+            where = "to compare at" if body is None else f"on {body}"
+            raise TouchdownError(f"scene {scene.name} has no touchdown bearing {where}")
+        watch = Watch(system, seats, stop)
+        outcome = simulate(scene, system, observers=[watch])
+        outcome.raise_if_stopped()
+        names = [seat_name(a, seats) for a in seats]
+        traces = dict(zip(names, watch.traces(), strict=True))
+        yield WatchedDrop(scene, system, seats, outcome, traces)

@@ -17,7 +17,7 @@ from ...coupling.system import System
 from ...results.summary import seat_name, touchdown_seats
 from ...scene.scene import Scene
 from ...scene.schemes import DEFAULT
-from .first_impact import CONTACT, MIN_PEAK, ROUNDING, Stop, Trace, reported_inside, run_watched
+from .first_impact import CONTACT, MIN_PEAK, ROUNDING, Stop, Trace, reported_inside, watched_drop
 
 FINE_STEP = 1e-6  # s, macro step of what peak forces are measured against
 MAX_SPAN = 5e-3  # s after the first contact
@@ -78,19 +78,11 @@ def land(scene: Scene, duration: float | None) -> Landing:
     Without one until the first impact is over at every seat, at most MAX_SPAN. Raises TouchdownError where
     there is no touchdown bearing, nothing touches, or the run stops.
     """
-    scene = fine(scene, FINE_STEP)
-    with opened(scene, True) as system:
-        seats = touchdown_seats(system)
-        if not seats:
-            raise TouchdownError(f"scene {scene.name} has no touchdown bearing to compare at")
-        stop = Stop(MAX_SPAN if duration is None else duration, early=duration is None)
-        outcome, traces = run_watched(scene, system, seats, stop)
-    impacts = {seat: impact for seat, t in traces.items() if (impact := t.first_impact())}
-    if not impacts:
-        raise TouchdownError(f"nothing touches down within run.duration = {scene.run.duration:g} s")
+    stop = Stop(MAX_SPAN if duration is None else duration, early=duration is None)
+    with watched_drop(fine(scene, FINE_STEP), stop) as drop:
+        impacts, run = drop.impacts(), drop.outcome
     first = min(start for start, _ in impacts.values())
-    end = outcome.end - outcome.zero
-    return Landing(first, end, outcome.zero, seats, impacts, traces, outcome.start, outcome.duration)
+    return Landing(first, drop.end, run.zero, drop.seats, impacts, drop.traces, run.start, run.duration)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from ....bearings import catalogue
-from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError
+from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
+from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
 from ...common.errors import TouchdownError, one_of, with_remedy
 
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
@@ -53,6 +54,52 @@ def described(bearing: Bearing) -> str:
     rated = bearing.capacity()
     if bearing.balls.rows > 1:
         lines.append(f"  all rows: C0 {1e-3 * rated.static:.4g} kN, C {1e-3 * rated.dynamic:.4g} kN")
+    return "\n".join(lines)
+
+
+SEATS = (
+    ("held round by a rigid seat", HELD),
+    ("in a soft seat of 1e8 N/m", Seat(stiffness=1e8)),
+    ("in a soft seat of 5e6 N/m", Seat(stiffness=5e6)),
+    ("loose in a rigid seat by 5 um (radial)", Seat(play=5e-6)),
+    ("loose in a rigid seat by 20 um (radial)", Seat(play=20e-6)),
+)
+POSITIONS = (0.0, 0.5)  # of the load: on a ball, between two
+
+
+def shared(bearing: Bearing, load: float) -> str:
+    """The most loaded ball under a static radial `load` (N), by inner ring and outer ring's seat."""
+    rings = ("rigid", 0), ("bends", harmonics_for(bearing.balls.count))
+    lines = [
+        f"{bearing.designation} under a static load of {load:g} N: most loaded ball, worst place",
+        f"  {'outer ring':<40}  inner ring rigid  inner ring bends",
+    ]
+    for title, seat in SEATS:
+        most = [
+            max(float(ball_loads(bearing, load, top, offset, seat).max()) for offset in POSITIONS)
+            for _, top in rings
+        ]
+        lines.append(f"  {title:<40}  {most[0]:>14.1f} N  {most[1]:>14.1f} N")
+    lines.append(
+        "  Drops run with an outer ring that is held round, and an inner one that bends by ring.harmonics."
+    )
+    return "\n".join(lines)
+
+
+def fast_enough(bearing: Bearing, speed: float) -> str:
+    """Which cages run the bearing at `speed` (rad/s) for long, by its bore times that."""
+    unit = speed_limits.MM_RPM
+    given = speed_limits.speed_factor(bearing, speed) / unit
+    lines = [
+        f"{bearing.designation} at {speed * 30.0 / math.pi:,.0f} rpm: {given:,.0f} mm rpm over the bore"
+    ]
+    for cage, limit in speed_limits.limits(bearing).items():
+        verdict = "runs for long" if given <= limit / unit else "is too fast for long"
+        lines.append(f"  {cage:<38}{limit / unit:>11,.0f} mm rpm   {verdict}")
+    lines.append(
+        "  Makers' limits (NHBB; hybrids 20 % more) are of lubricated bearings that run for hours; without "
+        "a cage they\n  state none. A landing lasts seconds: beyond them ask the maker."
+    )
     return "\n".join(lines)
 
 

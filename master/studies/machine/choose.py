@@ -17,8 +17,9 @@ from dataclasses import dataclass, replace
 from operator import mul
 from pathlib import Path
 from statistics import median
+from typing import NamedTuple
 
-from ....bearings.catalogue import Bearing
+from ....bearings.catalogue import Bearing, speed_limits
 from ....bearings.catalogue.landing import landing
 from ....bearings.catalogue.load_sharing import harmonics_worth
 from ...common.errors import TouchdownError, one_of
@@ -56,6 +57,7 @@ class Seat:
     clearance: float  # m
     friction: float
     is_line: bool  # contact of journal and bore by geometry
+    speed: float = 0.0  # rad/s, of the fastest rotor at the start
 
 
 @dataclass(frozen=True)
@@ -65,11 +67,8 @@ class Candidate:
     bearing: str
     mount: str  # "" for the scene's own
     settings: Mapping[str, object]
-
-    @property
-    def title(self) -> str:
-        """For people."""
-        return f"{self.bearing} in {self.mount}" if self.mount else self.bearing
+    speed_factor: float = 0.0  # m rad/s, bore times the rotor's speed
+    cages: tuple[str, ...] = ()  # that makers run so fast for long
 
 
 @dataclass(frozen=True)
@@ -118,6 +117,8 @@ def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
     Raises TouchdownError where there is no such bearing.
     """
     with opened(scene, in_process=True) as system:
+        speeds = [f"{name}.speed" for name in scene.components]
+        fastest = max((abs(system.value(name)) for name in speeds if name in system), default=0.0)
         seats = [
             Seat(
                 name,
@@ -125,6 +126,7 @@ def seats_of(scene: Scene) -> tuple[list[Seat], str | None]:
                 system.value(f"{name}.clearance"),
                 system.value(f"{name}.friction.dynamic"),
                 f"{name}.contact.law" in system and system.value(f"{name}.contact.law") == 1.0,
+                fastest,
             )
             for name in scene.components
             if f"{name}.balls.count" in system and f"{name}.journal_radius" in system
@@ -156,7 +158,11 @@ def candidates(
                     f"{seat.component} take {1e3 * bore:g} mm; leave it out, or change the journal"
                 )
             settings |= {f"{seat.component}.preset": name} | _fitted(bearing, seat, weight)
-        found += [Candidate(name, mount, {**settings, **changes}) for mount, changes in tried.items()]
+        speed = max(seat.speed for seat in seats)
+        runs = speed_limits.speed_factor(bearing, speed), speed_limits.cages_for(bearing, speed)
+        found += [
+            Candidate(name, mount, {**settings, **changes}, *runs) for mount, changes in tried.items()
+        ]
     return found
 
 
@@ -205,21 +211,68 @@ def ranked(chosen: Sequence[Candidate], members: Sequence[Member]) -> list[Ranke
     return sorted(found, key=lambda one: (one.passing.value, one.worst[0]), reverse=True)
 
 
+class Row(NamedTuple):
+    """A candidate in the ranking, as `choose.csv` has it."""
+
+    place: int
+    bearing: str
+    mount: str
+    drops: int
+    failed: int
+    share: float  # of drops that keep to all requirements
+    share_low: float
+    share_high: float
+    worst_requirement: str
+    worst_margin_median: float
+    speed_factor_mm_rpm: float
+    cages: str  # that makers run so fast for long
+
+
+HEAD = "bearing", "keeps to all", "worst requirement, median margin", "d n, mm rpm", "cages for that"
+
+
+def rows_of(found: Sequence[Ranked]) -> list[Row]:
+    """The ranking, the best first."""
+    return [
+        Row(
+            place,
+            one.candidate.bearing,
+            one.candidate.mount,
+            len(one.members),
+            one.failed,
+            *one.passing,
+            one.worst[1],
+            one.worst[0],
+            one.candidate.speed_factor / speed_limits.MM_RPM,
+            "; ".join(one.candidate.cages),
+        )
+        for place, one in enumerate(found, start=1)
+    ]
+
+
+def cells(row: Row) -> tuple[str, ...]:
+    """A candidate in words, under `HEAD`."""
+    share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f} to {100 * row.share_high:.0f} %)"
+    margin, name = row.worst_margin_median, row.worst_requirement
+    shown = f"{100.0 * margin:.3g} %" if math.isfinite(margin) else "not told"
+    worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
+    failed = f"; {row.failed} of {row.drops} drops failed" if row.failed else ""
+    title = f"{row.bearing} in {row.mount}" if row.mount else row.bearing
+    return title, share, worst + failed, f"{row.speed_factor_mm_rpm:,.0f}", row.cages or "none"
+
+
 def lines(found: Sequence[Ranked]) -> Iterator[str]:
     """A table for people."""
-    width = max(len("bearing"), *(len(one.candidate.title) for one in found))
-    yield f"{'':>4}  {'bearing':<{width}}  keeps to all          worst requirement, median margin"
-    for place, one in enumerate(found, start=1):
-        share, (margin, name) = one.passing, one.worst
-        part = f"{100 * share.value:.0f} % ({100 * share.low:.0f} to {100 * share.high:.0f} %)"
-        shown = f"{100.0 * margin:.3g} %" if math.isfinite(margin) else "not told"
-        worst = f"{KINDS[name].meaning}, {shown}" if name else "-"
-        failed = f"; {one.failed} of {len(one.members)} drops failed" if one.failed else ""
-        yield f"{place:>4}  {one.candidate.title:<{width}}  {part:<20}  {worst}{failed}"
+    rows = [HEAD, *map(cells, rows_of(found))]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for place, row in enumerate(rows):
+        texts = (f"{text:<{width}}" for text, width in zip(row, widths, strict=True))
+        yield f"{place or '':>4}  {'  '.join(texts)}".rstrip()
 
 
 def remarks(found: Sequence[Ranked]) -> Iterator[str]:
-    """What is to be said beside the table: drops without a contact, why drops failed, what they warn of."""
+    """What is to be said beside the table: what it rests on, and what drops fail by or warn of."""
+    yield from assumptions([one.candidate for one in found])
     members = sorted((m for one in found for m in one.members), key=lambda m: m.number)
     ended = [m for m in members if not m.failed]
     if untouched := sum(not largest(m.summary, "peak_contact_force_N") for m in ended):
@@ -230,18 +283,56 @@ def remarks(found: Sequence[Ranked]) -> Iterator[str]:
             yield from (what, *said)
 
 
-def write_table(found: Sequence[Ranked], path: Path) -> None:
-    """The ranking as CSV."""
-    head = ("place", "bearing", "mount", "drops", "failed", "share", "share_low", "share_high")
-    with replacing(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        rows = csv.writer(file)
-        rows.writerow((*head, "worst_requirement", "worst_margin_median"))
-        for place, one in enumerate(found, start=1):
-            margin, name = one.worst
-            counts = len(one.members), one.failed
-            rows.writerow(
-                (place, one.candidate.bearing, one.candidate.mount, *counts, *one.passing, name, margin)
-            )
+def assumptions(chosen: Sequence[Candidate]) -> Iterator[str]:
+    """What the ranking rests on."""
+    if len(chosen) > 1:
+        yield "all take the same drops; an interval is of a bearing's own drops alone"
+    if fast := sorted({one.bearing for one in chosen if not one.cages and one.speed_factor > 0.0}):
+        yield (
+            f"{', '.join(fast)}: faster than makers run any cage for long; ask the maker, whose limits for "
+            "seconds are higher (`touchdown catalogue NAME --speed`)"
+        )
+    mounts = {one.mount: set(one.settings) for one in chosen if one.mount}
+    bearing_keys = set.intersection(*mounts.values()) if mounts else set[str]()
+    for mount, given in mounts.items():
+        others = set.union(*mounts.values()) - given - bearing_keys
+        if others:
+            yield f"mount {mount} says nothing of {', '.join(sorted(others))}: the scene's values stay"
+
+
+TABLE = "choose.csv"
+
+
+def write_table(found: Sequence[Ranked], folder: Path) -> None:
+    """The ranking as CSV, `TABLE` in a folder."""
+    with replacing(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([Row._fields, *rows_of(found)])
+
+
+def read_table(folder: Path) -> list[Row]:
+    """The ranking in a folder, the best first; none where there is none."""
+    if not (folder / TABLE).is_file():
+        return []
+    with (folder / TABLE).open(newline="", encoding="utf-8") as file:
+        return [_row(row) for row in csv.DictReader(file)]
+
+
+def _row(told: Mapping[str, str]) -> Row:
+    """A `Row` from its texts."""
+    return Row(
+        int(told["place"]),
+        told["bearing"],
+        told["mount"],
+        int(told["drops"]),
+        int(told["failed"]),
+        float(told["share"]),
+        float(told["share_low"]),
+        float(told["share_high"]),
+        told["worst_requirement"],
+        float(told["worst_margin_median"]),
+        float(told["speed_factor_mm_rpm"]),
+        told["cages"],
+    )
 
 
 Runner = Callable[[Scene, Design], Sequence[Member]]

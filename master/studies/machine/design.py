@@ -7,7 +7,7 @@ comment beside its value in the scene that is written (`machine.scene_text`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ....bearings.catalogue import Bearing
@@ -41,6 +41,14 @@ class Support:
 
 
 @dataclass(frozen=True)
+class MountFile:
+    """Settings of a mount, from a file."""
+
+    name: str  # of the file
+    settings: Mapping[str, object]  # by variable
+
+
+@dataclass(frozen=True)
 class Design:
     """A machine: all numbers in SI."""
 
@@ -56,6 +64,7 @@ class Design:
     touchdown: tuple[Support, ...]
     bearings: tuple[Bearing, ...]  # at each of `touchdown`
     presets: tuple[str, ...]  # what the scene calls them
+    mount: str | MountFile | None = None  # what they sit in: a rule's name or a file; None: housings
 
     @property
     def levitated_mass(self) -> float:

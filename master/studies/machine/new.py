@@ -20,6 +20,7 @@ from ...scene.file import SCENE_FILE
 from ..rotor.report import find_rotor
 from .bearings import find_bearing
 from .design import GRAVITY, MAX_MODES_KEPT, Design, Support, first_bending, sensible_speed, supports
+from .mounts import chosen_mount
 from .scene_text import scene_text
 
 LEVITATED_LINE = re.compile(r"^levitated_at\s*=\s*\[[^\]]*\]", re.MULTILINE)
@@ -104,6 +105,9 @@ class Wanted:
     mass: float | None = None  # of a rigid rotor
     inertia: float | None = None  # and its polar moment of inertia
     balls: str = "steel"  # material of the bearings' balls
+    mount: str | None = (
+        None  # what they sit in: soft, stiff, or the path of a mount's .toml; None: housings
+    )
 
 
 @dataclass(frozen=True)
@@ -219,6 +223,7 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         touchdown=touchdown,
         bearings=kinds,
         presets=presets,
+        mount=chosen_mount(wanted.mount),
     )
     return design, bearings.files | {ROTOR_FILE: rewritten(text_of(path), shaft, placed)}
 
@@ -248,6 +253,7 @@ def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Desi
         touchdown=touchdown,
         bearings=kinds,
         presets=presets,
+        mount=chosen_mount(wanted.mount),
     )
 
 

@@ -29,11 +29,12 @@ SPEED = 9000.0 / RPM  # rad/s, the default
 MODES = 5
 SPEEDS = 81  # in the Campbell diagram
 MAX_SPEED_RATIO = 2.0  # times the speed asked for: its end
+MATRICES = (".mtx", ".hb")
 FOREIGN = {  # what files of others hold
     **dict.fromkeys(TABLES, "a table of sections"),
     **dict.fromkeys(MODELS, "ROSS's files"),
     ARCHIVE: "matrices or modal data",
-    ".mtx": "the matrices in that folder",
+    **dict.fromkeys(MATRICES, "the matrices in that folder"),
 }
 FOREIGN_SOURCES = "a table of sections, of ROSS's files, of matrices or modal data"
 TO_REST = (
@@ -135,10 +136,10 @@ def _foreign(path: Path) -> str:
     kind, source = path.suffix.lower(), path
     if not os.path.exists(path) or (kind == ".toml" and not is_of_ross(path)):
         return ""
-    if path.is_dir() and not any(path.glob("*.mtx")):
+    if path.is_dir() and not any(any(path.glob(f"*{kind}")) for kind in MATRICES):
         return ""
     of = "its matrices" if path.is_dir() else FOREIGN.get(kind, FOREIGN_SOURCES)
-    if kind == ".mtx":
+    if kind in MATRICES:
         source = path.parent
     return f"{path} is no rotor's file; `touchdown import-rotor {source}` makes one of {of}"
 

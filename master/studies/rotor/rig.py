@@ -1,6 +1,6 @@
-"""A bearing alone on a rig: stiffness, damping, and the nearest linear law.
+"""A bearing alone on a rig that moves its journal as asked and reads its force.
 
-A bearing alone on a rig that moves its journal as asked and reads its force: stiffness and damping.
+It tells stiffness and damping, the nearest linear law, and what a journal feels that goes round pressed.
 
 It is stepped as in a run, through the variables of the contract, so that a bearing of others is measured
 as one of the project's own. Its housing stands still.
@@ -9,7 +9,10 @@ as one of the project's own. Its housing stands still.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -171,6 +174,9 @@ LOWERING_STEP = 20e-6  # s, macro step of that
 SETTLING_TIME, MEASURING_TIME = 4e-3, 2e-3
 MAX_PRESSES = 25  # at most, until the load is met
 LOAD_TOLERANCE = 1e-3  # of the load
+CIRCLING_STEP = 20e-6  # s, macro step of a journal that goes round
+# S, from circle to circle, and until the bearing has got used to one
+CLIMBING_TIME, CIRCLING_TIME = 10e-3, 10e-3
 SLOPE_SHARE = 0.02  # of the load, by which a pressed journal is moved on for the slope
 
 
@@ -193,11 +199,23 @@ class Pressed:
     damping: float  # N s/m, vertically
 
 
+class Circled(NamedTuple):
+    """A bearing whose journal goes round in a circle, in the mean of a turn."""
+
+    force: complex  # N, on the journal: outwards, and along the circle as the imaginary part
+    watched: float
+
+
 class Rig:
     """Moves the journal of a bearing, and what senses it; all forces are those on the journal, N."""
 
-    def __init__(self, component: Component, port: str, place: Place, macro_step: float) -> None:
-        """`component` is loaded and set, not initialised; macro_step: s, for what takes no other."""
+    def __init__(
+        self, component: Component, port: str, place: Place, macro_step: float, watched: str = ""
+    ) -> None:
+        """`component` is loaded and set, not initialised; macro_step: s, for what takes no other.
+
+        watched: a variable that `circled` looks at.
+        """
         self._component, self._place, self._port = component, place, port
         self._own_step = None if component.any_step else macro_step
         self.spin = 0.0  # rad/s, of the journal, counter-clockwise
@@ -207,8 +225,10 @@ class Rig:
         ]  # fmt: skip
         taken = [name for name in names if name in component.variables]
         self._inputs = [_input(name) for name in taken]
-        self._force = np.zeros(2)
-        component.bind(taken, self._force, [f"{port}.{f}" for f in FORCE])
+        named = [f"{port}.{f}" for f in FORCE] + [watched] * (watched in component.variables)
+        self._told = np.zeros(len(named))
+        self._force = self._told[:2]
+        component.bind(taken, self._told, named)
         self._time = 0.0
         component.enter(0.0)
         self._set(AT_REST, AT_REST, AT_REST, True)
@@ -291,6 +311,50 @@ class Rig:
         swings = [self.dynamic_stiffness(f, up, move, down, PERIOD_LIMIT)[1] for f in highest]
         rates = 2.0 * math.pi * highest
         return Pressed(float(depth), across, along, float(np.mean(np.imag(swings) / rates)))
+
+    def circled(self, radii: Sequence[float], omega: float) -> list[Circled]:
+        """What the bearing answers to a journal on circles about its middle, one after the other.
+
+        radii: m, from one on which it does not touch, and which is not told; omega: rad/s,
+        counter-clockwise. The journal goes from circle to circle along a spiral, with the speed that this
+        has: what is pressed without having been moved would hold no energy.
+        """
+        count = max(
+            MIN_STEPS_PER_PERIOD, round(2.0 * math.pi / (abs(omega) * self._step_of(CIRCLING_STEP)))
+        )
+        step = 2.0 * math.pi / (abs(omega) * count)
+        if self._own_step is not None:
+            step = self._own_step
+        wait, climb = (max(1, round(time / step)) for time in (CIRCLING_TIME, CLIMBING_TIME))
+        found, angle = list[Circled](), 0.0
+        for inner, outer in pairwise(radii):
+            rate = (outer - inner) / (climb * step)
+            for k in range(climb):
+                self._turn(inner + k * step * rate, rate, angle, omega, step)
+                angle += omega * step
+            for _ in range(wait):
+                self._turn(outer, 0.0, angle, omega, step)
+                angle += omega * step
+            told = np.empty((count, 2), complex)
+            for k in range(count):
+                told[k] = self._turn(outer, 0.0, angle, omega, step), self._told[-1]
+                angle += omega * step
+            force, watched = told[:, 0].mean(), float(np.real(told[:, 1]).mean())
+            found.append(Circled(complex(force), watched))
+        return found
+
+    def _turn(self, radius: float, rate: float, angle: float, omega: float, step: float) -> complex:
+        """Mean force over a step (s) on the journal: outwards, and along the circle as the imaginary part.
+
+        It starts at an `angle` (rad) on a `radius` (m) that grows at `rate` (m/s).
+        """
+        out = np.array([math.cos(angle), math.sin(angle)])
+        along = np.array([-out[1], out[0]])
+        bend = 2.0 * rate * omega * along - radius * omega**2 * out
+        middle = self._place.housing - self._place.journal
+        force = self._take(middle + radius * out, rate * out + radius * omega * along, bend, step)
+        half = 0.5 * omega * step  # from the start to the middle; a mean over the turn is less by its sinc
+        return complex(*force) * np.exp(-1j * (angle + half)) * half / math.sin(half)
 
     def _slope(self, off: np.ndarray, move: np.ndarray) -> float:
         """Stiffness (N/m) at rest about `off` (2,), by central differences over `move` (2,), m."""

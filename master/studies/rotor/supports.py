@@ -157,7 +157,7 @@ def seen_in(scene: Scene) -> Seen:
             sensors=sensors,
             places={a.bearing: _place(system, a, sensors[a.bearing], mounts) for a in journals},
             mounts=mounts,
-            foundations={m: f for m in mounts.values() if (f := _foundation(system, m)) is not None},
+            foundations={m: f for m in mounts.values() if (f := foundation_of(system, m)) is not None},
             remarks=tuple(system.remarks),
         )
 
@@ -227,7 +227,7 @@ def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[
     return Place(at(a.body_end.title), housing, {p: at(f"{a.body}.{s}") for p, s in sensors.items()})
 
 
-def _foundation(system: System, mount: str) -> Foundation | None:
+def foundation_of(system: System, mount: str) -> Foundation | None:
     """What the body at COMPONENT.PORT is, as the contract has it; None: it does not give way."""
     names = [f"{mount}.{gain}" for gain in GAINS if gain != "inv_I"]
     inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)

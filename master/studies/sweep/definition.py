@@ -151,7 +151,7 @@ def parse(text: str, option: str = "--vary") -> Variation:
     what = f"{option} {text}"
     name, equals, right = (part.strip() for part in text.partition("="))
     if not equals or not name:
-        raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT")
+        raise TouchdownError(f"{what}: write NAME=VALUE,VALUE,... or NAME=START:STOP:COUNT[:log]")
     if not right:
         raise TouchdownError(f"{what}: the list of values is empty")
     is_range = ":" in right and ".toml:" not in right  # a preset may be DEFINITION_FILE.toml:NAME
@@ -223,11 +223,17 @@ def with_unit(number: float, unit: str) -> str:
     return f"{number:.12g} {unit}".strip()
 
 
+LOGARITHMIC = "log"  # ends a range whose values have even ratios
+
+
 def _evenly(right: str, what: str) -> tuple[str, ...]:
     head, _, unit = right.partition(" ")
+    head, even, logarithmic = head.partition(f":{LOGARITHMIC}")
     parts = head.split(":")
-    if len(parts) != 3 or ":" in unit:
-        raise TouchdownError(f"{what}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg")
+    if len(parts) != 3 or ":" in unit or logarithmic:
+        raise TouchdownError(
+            f"{what}: write START:STOP:COUNT, then the unit, such as 0:315:8 deg; or 1:100:5:log kN/m"
+        )
     try:
         start, stop, count = (float(part) for part in parts)
     except ValueError:
@@ -236,7 +242,10 @@ def _evenly(right: str, what: str) -> tuple[str, ...]:
         raise TouchdownError(f"{what}: START, STOP and COUNT must be finite numbers")
     if count != int(count) or not 1 <= count <= MAX_VALUES:
         raise TouchdownError(f"{what}: COUNT must be a whole number from 1 to {MAX_VALUES}")
-    return tuple(with_unit(value, unit.strip()) for value in np.linspace(start, stop, int(count)))
+    if even and not min(start, stop) > 0.0:
+        raise TouchdownError(f"{what}: START and STOP must be above 0 for even ratios ({LOGARITHMIC})")
+    between = np.geomspace if even else np.linspace
+    return tuple(with_unit(value, unit.strip()) for value in between(start, stop, int(count)))
 
 
 MAX_POINTS = 100_000  # points; weeks of drops

@@ -215,8 +215,6 @@ def _nearest(circle: Circle, phase: float, spacing: float) -> str:
 
 def write_report(study: Study, folder: Path) -> None:
     """phases.csv, a row per run with all its figures; verdict.json, the windows; verdict.png."""
-    # matplotlib is slow to import
-
     with writing_to(folder):
         write_records(_records(study), folder / "phases.csv")
         text = json.dumps(as_plain(study), indent=2)

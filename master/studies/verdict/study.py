@@ -32,6 +32,7 @@ from ...results.whirl.evidence import ANGLE, unbalanced
 from ...results.whirl.verdict import TOO_COARSE, Share, clopper_pearson, recorded_too_coarsely, whirling
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
+from ..drop.running import unstopped
 from ..sweep.members import Member
 from ..sweep.report import largest
 from ..sweep.sweep import Execution, Task, run_tasks
@@ -249,7 +250,6 @@ RESOLUTION = 4.0  # deg
 MIN_RESOLUTION = 0.1  # deg; nothing turns about that exactly, and a circle has thousands of runs by then
 REFERENCE_STEP = 5e-6  # s
 MAX_LONGER = 4.0  # times the scene's duration, at most, so that a whirl that dies away is seen to
-NO_STOP_RESIDUAL = 1e9  # a residual of the ledger at which no run stops: how many would have is counted
 
 
 @dataclass(frozen=True)
@@ -403,11 +403,8 @@ def _with_step(scene: Scene, step: float) -> _Stepped:
     """At a macro step (s), recorded as often as the scene is, so that verdicts are told from the same."""
     refuse_endless(scene.run.duration, step)
     every = max(1, round(scene.run.record_every * scene.run.macro_step / step))
-    changes: dict[str, object] = {"run.macro_step": step, "run.record_every": every}
-    name = f"{1e6 * step:g}us"
-    return _Stepped(
-        f"macro step {1e6 * step:g} us", name, scene.set({**changes, "run.stop_residual": NO_STOP_RESIDUAL})
-    )
+    scene = unstopped(scene.set({"run.macro_step": step, "run.record_every": every}))  # it is counted
+    return _Stepped(f"macro step {1e6 * step:g} us", f"{1e6 * step:g}us", scene)
 
 
 def _adaptive(scene: Scene, step: float) -> _Stepped:

@@ -152,4 +152,7 @@ def test_a_model_s_material_is_rated() -> None:
     assert found.hybrid
     assert found.balls == SILICON_NITRIDE_NUMBERS
     assert not RatedBearing.of(values | {"ring.material": SILICON_NITRIDE}).hybrid
+    # steel balls in ceramic rings dent as steel does
+    turned = RatedBearing.of(values | {"balls.material": 0, "ring.material": SILICON_NITRIDE})
+    assert turned.pressure_limit == 4.2e9
     assert RatedBearing.of(values | {"balls.modulus": 300e9}).balls.modulus == 300e9

@@ -11,6 +11,7 @@ import touchdown
 from tests.support.bearing_states import instance_of
 from touchdown.bearings import catalogue
 from touchdown.bearings.catalogue.load_sharing import (
+    Seat,
     ball_loads,
     gain_by_bending,
     harmonics_for,
@@ -88,6 +89,40 @@ def test_the_worst_ball_under_a_static_load(
     assert worst(0) == pytest.approx(rigid, abs=0.02)
     assert worst(40) == pytest.approx(elements, rel=0.015)
     assert worst(harmonics_for(bearing.balls.count)) == pytest.approx(elements, rel=0.04)
+
+
+@pytest.mark.parametrize(
+    ("name", "seat", "rigid", "bent"),
+    [
+        ("6904", Seat(stiffness=5e6), 72.0, 99.0),
+        ("6904", Seat(stiffness=1e8), 80.0, 114.0),
+        ("6904", Seat(stiffness=1e9), 88.0, 129.0),
+        ("6904", Seat(play=5e-6), 111.0, 144.0),
+        ("6904", Seat(play=20e-6), 145.0, 167.0),
+        ("6004", Seat(stiffness=1e8), 174.0, 195.0),
+        ("6004", Seat(play=20e-6), 262.0, 271.0),
+    ],
+)
+def test_an_outer_ring_that_is_soft_or_loose_in_its_seat(
+    name: str, seat: Seat, rigid: float, bent: float
+) -> None:
+    """350 N, with an inner ring that is rigid or bends: as another program, which rounds to 1 N."""
+    for harmonics, asked in ((0, rigid), (12, bent)):
+        worst = ball_loads(BEARINGS[name], 350.0, harmonics, seat=seat).max()
+        assert worst == pytest.approx(asked, abs=1.2)
+
+
+def test_a_seat_that_holds_is_the_limit_of_both() -> None:
+    """Of stiffness, and of play that vanishes; play of a soft seat is softer than of a rigid one."""
+    bearing = BEARINGS["6904"]
+    held = ball_loads(bearing, 350.0, 7).max()
+    assert ball_loads(bearing, 350.0, 7, seat=Seat(stiffness=1e13)).max() == pytest.approx(held, rel=1e-4)
+    # a steel seat gives way a little under a ring that bears on one half of it
+    assert ball_loads(bearing, 350.0, 7, seat=Seat(play=1e-10)).max() == pytest.approx(held, rel=5e-3)
+    loose, soft = (
+        ball_loads(bearing, 350.0, 7, seat=seat).max() for seat in (Seat(play=5e-6), Seat(1e8, 5e-6))
+    )
+    assert soft < loose
 
 
 def test_balls_bear_the_load() -> None:

@@ -29,6 +29,20 @@ ASKED = int(os.environ.get("BITS_STEPS", "0"))
 CHEAP = {"housing": 1000, "rigid_rotor": 1000, "bushing": 300, "rotor_I": 40}  # macro steps
 DEAR = dict.fromkeys(sorted(set(names()) - set(CHEAP)), 200)
 CASES = [*CHEAP.items(), *(pytest.param(*case, marks=pytest.mark.native) for case in DEAR.items())]
+EVERYTHING = {  # where the defaults leave most of a model out
+    "mount": {
+        "mass": 0.5, "spring.xx": 1e7, "spring.yy": 5e6, "spring.xy": 1e5, "damper.xx": 100.0,
+        "slide[1].stiffness": 1e7, "slide[1].force": 20.0, "slide[3].stiffness": 5e6,
+        "slide[3].force": 60.0, "branch[2].stiffness": 4e6, "stop.stiffness": 1e10, "stop.gap": 5e-6,
+        "stop.dissipation": 0.3, "film.viscosity": 0.01,
+    },
+    "foundation": {
+        "modes": 2, "mode[1].A.x": 0.3, "mode[1].A.y": 0.2, "mode[2].A.y": 1.0, "mode[2].B.x": 0.5,
+        "mode[2].omega": 3000.0, "mode[2].damping_ratio": 0.02, "mount_A.slide[2].stiffness": 1e7,
+        "mount_A.slide[2].force": 10.0, "mount_B.branch[1].stiffness": 1e7, "mount_B.film.viscosity": 0.01,
+        "mount_B.stop.gap": 1e-7, "mount_B.stop.stiffness": 1e10,
+    },
+}  # fmt: skip
 WHOLE = {"modes": (2, 5, 10), "residual": (0, 1)}  # that rotors hold constants for
 
 
@@ -93,8 +107,9 @@ def starts(name: str, parameters: dict[str, float]) -> bool:
 
 
 def parameter_sets(name: str) -> list[dict[str, float]]:
-    """The defaults, then values near them that go together; whole numbers that choose tables, too."""
-    return [{}, *islice((one for one in drawn(name) if starts(name, one)), SETS - 1)]
+    """The defaults or everything, then values near the defaults that go together; whole numbers, too."""
+    first = EVERYTHING.get(name, {})
+    return [first, *islice((one for one in drawn(name) if starts(name, one)), SETS - 1)]
 
 
 def drawn(name: str) -> Iterator[dict[str, float]]:

@@ -14,6 +14,7 @@ from touchdown.fmus.build import cached
 from touchdown.fmus.recipes import recipe
 from touchdown.master.coupling.assembly import declared_steps
 from touchdown.master.coupling.simulation import opened
+from touchdown.master.scene.scene import ComponentSpec
 
 SCENE = touchdown.load("disk-caged-simplified")
 
@@ -21,7 +22,7 @@ SCENE = touchdown.load("disk-caged-simplified")
 def said(inner: float | None, proposed: float | None, step: float = 2e-5) -> list[str]:
     """Of a scene all of whose components declare the same; the bearing takes two macro steps in one."""
     scene: Any = SimpleNamespace(
-        run=SimpleNamespace(macro_step=step), components={"bearing": SimpleNamespace(every=2)}
+        run=SimpleNamespace(macro_step=step), components={"bearing": ComponentSpec("x", every=2)}
     )
     component: Any = SimpleNamespace(inner_step=inner, made_for_step=proposed)
     return list(declared_steps(scene, {"bearing": component}))

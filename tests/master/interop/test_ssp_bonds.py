@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import zipfile
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import bodies
 import pytest
 
+import touchdown
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.read import RUN_KEYS
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.interop.ssp.xml import SSD_FILE
 from touchdown.master.results.run import run_scene
+from touchdown.master.scene.gaps import Gap
+from touchdown.master.scene.requirements import Requirement
 from touchdown.master.scene.run_spec import RunSpec
 from touchdown.master.scene.scene import Scene
 
 FORCE, POSITION, VELOCITY = bodies.TWO
 RUN = {"macro_step": 1e-3, "duration": 0.01}
 LISTED = list(bodies.TWO)
+LIMIT = Requirement("ball_pressure", 2.5e9)
 BY_NAME = [{"force": FORCE, "velocity": VELOCITY}]
 GEAR = [[*wire, 2.0, 0.0] for wire in bodies.TWO]
 
@@ -68,6 +72,15 @@ def test_all_of_how_to_run_goes_along() -> None:
     """But for times, which the structure tells, and for what belongs to a computer."""
     elsewhere = {"duration", "start_time", "macro_step", "call_timeout"}
     assert {field.name for field in fields(RunSpec)} - elsewhere == set(RUN_KEYS)
+
+
+def test_gaps_and_requirements_go_along(tmp_path: Path) -> None:
+    """With the names of the package."""
+    gap = Gap("AMB A", "rotor.amb", 0.5e-3, "housing.seat")
+    scene = replace(touchdown.load("disk-caged-simplified"), gaps=(gap,), requirements=(LIMIT,))
+    again = touchdown.load(write_package(scene, tmp_path / "disk.ssp").path)
+    assert again.gaps == (gap,)
+    assert again.requirements == (LIMIT,)
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,37 @@ stator = "housing.seat"
 """
 
 
+STUB = """
+title = "Stub shaft"
+[material.steel]
+modulus = "207 GPa"
+density = "7830 kg/m3"
+poisson = 0.3
+[[element]]
+count = 4
+length = "20 mm"
+outer_diameter = "28 mm"
+[stations]
+A = 1
+B = 5
+[sensors]
+near_amb = 3
+[[gap]]
+name = "magnet"
+station = "near_amb"
+radial = "0.35 mm"
+"""
+MACHINE = """
+attach = [["bearing_A.journal", "rotor.A"], ["bearing_B.journal", "rotor.B"]]
+[components.rotor]
+fmu = "stub.toml"
+[components.bearing_A]
+fmu = "bushing"
+[components.bearing_B]
+fmu = "bushing"
+"""
+
+
 @pytest.fixture(scope="module")
 def dropped(tmp_path_factory: pytest.TempPathFactory) -> touchdown.Result:
     """A disk that falls 0.3 mm into its bearing, and bounces."""
@@ -136,3 +167,86 @@ def test_a_gap_that_was_not_recorded_is_said(tmp_path: Path) -> None:
     assert result.summary["gap_AMB_A_least_um"] is None
     assert result.summary["least_gap_um"] is None
     assert "gap AMB A: rotor.amb was not recorded; see run.record" in result.warnings
+
+
+def test_a_gap_may_act(tmp_path: Path) -> None:
+    """A rub ring of 0.2 mm in the middle bears what the bushings of 0.3 mm at the ends do not reach."""
+    (tmp_path / "stub.toml").write_text(STUB.replace("B = 5", "B = 5\nC = 3"), encoding="utf-8")
+    gap = """
+        [[gap]]
+        name = "rub ring"
+        at = "rotor.C"
+        radial = "0.2 mm"
+        journal_radius = "14 mm"
+        [set.gap_rub_ring]
+        friction.dynamic = 0.1
+        """
+    (tmp_path / "own.toml").write_text(f"{MACHINE}\n{gap}", encoding="utf-8")
+    scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "12 ms", "run.macro_step": "10 us"})
+    assert scene.components["gap_rub_ring"].fmu == "bushing"
+    result = touchdown.run(scene, tmp_path / "run", in_process=True)
+    assert result.recording["gap_rub_ring.contact.force"].max() > 10.0
+    assert result.recording["bearing_A.contact.force"].max() == 0.0
+    assert result.summary["gap_rub_ring_touches"] >= 1
+    (said,) = (w for w in result.warnings if "rub ring" in w)
+    assert said.endswith("It acts as the bushing gap_rub_ring, which has its forces and its heat")
+    assert scene.components["gap_rub_ring"].set["friction.dynamic"] == 0.1
+    again = touchdown.load(str(tmp_path / "run" / "scene.json"))
+    assert again.gaps == scene.gaps
+    assert again.components.keys() == scene.components.keys()
+
+
+def test_gaps_add_up_over_files(tmp_path: Path) -> None:
+    """Of the scene that is extended and of the rotor's file; one name is one gap, the last one's."""
+    (tmp_path / "stub.toml").write_text(STUB, encoding="utf-8")
+    (tmp_path / "base.toml").write_text(
+        f"""{MACHINE}
+        [[gap]]
+        name = "labyrinth"
+        at = "rotor.B"
+        radial = "0.4 mm"
+        """,
+        encoding="utf-8",
+    )
+    (tmp_path / "own.toml").write_text(
+        """
+        extends = "base.toml"
+        [[gap]]
+        name = "labyrinth"
+        at = "rotor.B"
+        radial = "0.5 mm"
+        [[gap]]
+        name = "shroud"
+        at = "rotor.A"
+        radial = "0.6 mm"
+        """,
+        encoding="utf-8",
+    )
+    found = {gap.name: gap for gap in touchdown.load(tmp_path / "own.toml").gaps}
+    assert {name: gap.radial for name, gap in found.items()} == {
+        "magnet": pytest.approx(0.35e-3),
+        "labyrinth": pytest.approx(0.5e-3),
+        "shroud": pytest.approx(0.6e-3),
+    }
+    assert found["magnet"].at == "rotor.near_amb"
+
+
+def test_a_gap_that_stays_open_keeps_no_drop_from_settling(tmp_path: Path) -> None:
+    """Its bushing is never touched; the disk comes to rest in its bearing, and the run ends there."""
+    (tmp_path / "stub.toml").write_text(STUB.replace("B = 5", "B = 5\nC = 3"), encoding="utf-8")
+    gap = """
+        [run]
+        until = "settled"
+        [components.rotor.set]
+        speed = 0
+        [[gap]]
+        name = "wide"
+        at = "rotor.C"
+        radial = "1 mm"
+        journal_radius = "14 mm"
+        """
+    (tmp_path / "own.toml").write_text(f"{MACHINE}\n{gap}", encoding="utf-8")
+    scene = touchdown.load(tmp_path / "own.toml").set({"run.duration": "1 s", "run.macro_step": "20 us"})
+    summary = touchdown.run(scene, in_process=True).summary
+    assert summary["settled_gap_wide"] is None
+    assert float(str(summary["settling_time_s"])) < float(str(summary["end_time_s"])) < 0.9

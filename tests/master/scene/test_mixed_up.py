@@ -148,7 +148,7 @@ def test_a_scene_that_a_run_left_is_read_back() -> None:
         (lambda scene: scene["components"]["bearing"].update(names={"a": 3}), "names.a = 3 must be text"),
         (lambda scene: scene["components"]["bearing"].update(own=["mass"]), "own has an unknown key mass"),
         (lambda scene: scene.update(own=["mass"]), "own has an unknown key mass"),
-        (lambda scene: scene.update(zero=3), "zero = 3 is a value"),
+        (lambda scene: scene.update(zero="3 mm"), "zero = '3 mm' has the unit mm"),
         (lambda scene: scene.update(attach=[[1, 2]]), "attach must be a list of pairs"),
         (lambda scene: scene.update(energy_scale=[1]), "energy_scale = 1 is a value"),
         (lambda scene: scene.update(components=[]), "components must be a table"),

@@ -11,7 +11,7 @@ import pytest
 
 from touchdown.rotor.beams.body import PointMass, disc
 from touchdown.rotor.beams.element import Element, split
-from touchdown.rotor.beams.shaft import Shaft, Station, Support, Unbalance
+from touchdown.rotor.beams.shaft import Gap, Shaft, Station, Support, Unbalance
 from touchdown.rotor.file import RotorFileError, load, parse, save, shipped, written
 
 STEEL = Element(length=0.02, outer_diameter=0.03, modulus=207e9, density=7830.0, poisson=0.3)
@@ -71,6 +71,14 @@ def test_numbers_of_any_bits_are_read_again() -> None:
         assert parse(written(shaft), "any") == shaft
 
 
+def test_gaps_are_read_again() -> None:
+    """At a station, where they may act, and at a sensor."""
+    places = {"stations": (Station("A", 1),), "sensors": (Station("eye", 2),)}
+    gaps = Gap("seal", "A", 1e-4, 0.02), Gap("magnet", "eye", 3e-4)
+    shaft = Shaft("S", (STEEL,), gaps=gaps, **places)
+    assert parse(written(shaft), "any") == shaft
+
+
 def test_quantities_read_as_people_write_them() -> None:
     text = written(HAND_MADE)
     for line in ('length = "20 mm"', 'modulus = "42.2 GPa"', 'density = "7830 kg/m3"', 'moment = "3 g.mm"',
@@ -91,6 +99,10 @@ def test_quantities_read_as_people_write_them() -> None:
         ),
         (Shaft("S", (STEEL,), stations=(Station("a b", 1),)), "'a b' = 1 has a name that cannot be used"),
         (Shaft("S", (STEEL,), stations=(Station("A", 3),)), "stations.A = 3 is not a node"),
+        (
+            Shaft("S", (STEEL,), stations=(Station("A", 1),), gaps=(Gap("seal", "B", 1e-4),)),
+            r"gap\[1\].station = 'B' is no station or sensor; there are: A",
+        ),
         (Shaft("S", ()), "material is missing"),
         (
             Shaft("S", (dataclasses.replace(STEEL, sleeve_density=1e3),)),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from collections.abc import Callable
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ import touchdown
 from touchdown.rotor.beams.shaft import Shaft
 from touchdown.rotor.file import find
 from touchdown.rotor.imports import ImportedRotorError, of_arrays, placed, read
+from touchdown.rotor.imports.arrays import from_folder
 from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 from touchdown.rotor.statics import at_rest
@@ -355,3 +358,26 @@ def test_folders_and_archives_that_cannot_be_read_are_told(tmp_path: Path) -> No
     refused(tmp_path / "no.npz", "cannot be read")
     np.savez(tmp_path / "other.npz", A=1.0)
     refused(tmp_path / "other.npz", "holds neither matrices")
+
+
+def test_a_folder_of_harwell_boeing_files_is_the_same_rotor(tmp_path: Path) -> None:
+    """As ANSYS writes them: symmetric matrices by their lower triangle, which SciPy does not read."""
+    for file in EXAMPLE.glob("*.csv"):
+        shutil.copy(file, tmp_path)
+    for name in "MKG":
+        whole = sparse.csc_array(io.mmread(EXAMPLE / f"{name}.mtx"))
+        triangle = whole if name == "G" else sparse.csc_array(sparse.tril(whole))
+        written = StringIO()
+        io.hb_write(written, sparse.csc_matrix(triangle))
+        text = written.getvalue()
+        (tmp_path / f"{name}.hb").write_text(text if name == "G" else text.replace("RUA", "RSA", 1))
+    found, expected = from_folder(tmp_path), from_folder(EXAMPLE)
+    assert found.superelement is not None
+    assert expected.superelement is not None
+    for part in ("mass_matrix", "stiffness_matrix", "polar_matrix"):
+        np.testing.assert_allclose(
+            getattr(found.superelement, part), getattr(expected.superelement, part), rtol=1e-12, atol=1e-9
+        )
+    (tmp_path / "M.hb").write_text("nothing")
+    with pytest.raises(ImportedRotorError, match=r"M\.hb: cannot be read"):
+        from_folder(tmp_path)

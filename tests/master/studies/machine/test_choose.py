@@ -10,7 +10,18 @@ import touchdown
 from touchdown.master.cli import main
 from touchdown.master.common.errors import Ended, TouchdownError
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.machine.choose import Candidate, Spread, choose, lines, ranked, remarks
+from touchdown.master.studies.machine.choose import (
+    Candidate,
+    Spread,
+    assumptions,
+    choose,
+    lines,
+    ranked,
+    read_table,
+    remarks,
+    rows_of,
+    write_table,
+)
 from touchdown.master.studies.sweep.definition import Design
 from touchdown.master.studies.sweep.members import Member
 
@@ -45,7 +56,7 @@ def test_the_share_comes_first_then_the_worst_margin() -> None:
         for k, margins in enumerate(one for bearing in drops for one in bearing)
     ]
     found = ranked(chosen, members)
-    assert [one.candidate.title for one in found] == ["b", "a", "c"]
+    assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert found[0].worst == (pytest.approx(-0.05), "heat")
     assert [one.failed for one in found] == [0, 0, 1]
     assert found[0].passing.value == 0.5
@@ -58,9 +69,32 @@ def test_a_drop_that_failed_keeps_to_none() -> None:
     """Also where its figures until then do; what is not told is no number."""
     members = [member(1, 0.9, 0.9, failed="stopped"), member(2, 0.1, 0.1), member(3, 0.1, None)]
     found = ranked([Candidate(name, "", {}) for name in ("a", "b", "c")], members)
-    assert [one.candidate.title for one in found] == ["b", "a", "c"]
+    assert [one.candidate.bearing for one in found] == ["b", "a", "c"]
     assert [one.passing.value for one in found] == [1.0, 0.0, 0.0]
-    assert list(lines(found))[3].endswith("largest stroke of a housing, not told")
+    assert "largest stroke of a housing, not told" in list(lines(found))[3]
+
+
+def test_what_the_ranking_rests_on() -> None:
+    """A bearing that is too fast for every cage; a mount that leaves what another one sets."""
+    slow, fast = (Candidate(name, "", {}, 1.0, cages) for name, cages in (("a", ("bronze",)), ("b", ())))
+    said = list(assumptions([slow, fast]))
+    assert "a bearing's own drops alone" in said[0]
+    assert said[1].startswith("b: faster than makers run any cage for long")
+    soft = Candidate("a", "soft", {"bearing.preset": "a", "housing.stiffness": 1e6})
+    damped = Candidate("a", "damped", {"bearing.preset": "a", "housing.damping": 1e3})
+    told = list(assumptions([soft, damped]))[1:]
+    assert told == [
+        "mount soft says nothing of housing.damping: the scene's values stay",
+        "mount damped says nothing of housing.stiffness: the scene's values stay",
+    ]
+
+
+def test_a_ranking_is_read_as_it_was_written(tmp_path: Path) -> None:
+    """Also a bearing without a finite margin."""
+    found = ranked([Candidate("a", "soft", {}, 9.0, ("x", "y"))], [member(1, failed="stopped")])
+    assert read_table(tmp_path) == []
+    write_table(found, tmp_path)
+    assert read_table(tmp_path) == rows_of(found)
 
 
 def test_what_is_said_beside_the_table() -> None:
@@ -128,7 +162,9 @@ def test_it_ranks_and_goes_on(scene: Scene, tmp_path: Path, capsys: pytest.Captu
     assert "largest pressure on a race" in said[0]
     rows = (tmp_path / "runs" / "choose.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) == 3
-    assert (tmp_path / "runs" / "report.html").is_file()
+    page = (tmp_path / "runs" / "report.html").read_text(encoding="utf-8")
+    assert "ranks first" in page
+    assert "machined phenolic or polyamide-imide" in page
     assert scene.requirements[0].kind == "ball_pressure"
 
 

@@ -120,6 +120,57 @@ def test_different_bearings_keep_what_is_different(here: Path) -> None:
         assert system.value("housing_B.outer_ring") == pytest.approx(0.3)
 
 
+def test_a_soft_mount_by_its_rules(here: Path) -> None:
+    """A rotor at rest sinks a twentieth of the clearance; friction takes most from a circle of a tenth."""
+    assert made("--amb", "A,B", "--mount", "soft") == 0
+    scene = touchdown.load("mine")
+    assert scene.components["housing_A"].fmu == "mount"
+    rotor = load_rotor("rotor.toml")
+    with opened(scene, in_process=True) as system:
+        value = system.value
+        weight, clearance = 0.5 * 9.81 * rotor.mass, value("bearing_A.clearance")
+        spring, slide = value("housing_A.spring.xx"), value("housing_A.slide[1].stiffness")
+        assert weight / spring == pytest.approx(0.05 * clearance, rel=0.05)
+        assert value("housing_B.spring.yy") == spring
+        reach = value("housing_A.slide[1].force") / slide
+        assert math.sqrt(2.0) * reach == pytest.approx(0.1 * clearance, rel=0.05)
+        assert value("housing_A.mass") == pytest.approx(10.0 * bearing("7014").outer_ring, rel=0.05)
+        assert value("housing_A.stop.gap") == pytest.approx(0.5 * clearance, rel=0.05)
+    summary = touchdown.run(scene.set(BRIEF), in_process=True).summary
+    assert summary["completed"]
+    assert summary["stop_hits_bearing_A"] == 0
+
+
+def test_a_stiff_mount_is_the_housing(here: Path) -> None:
+    made("--amb", "A,B")
+    housing = touchdown.load("mine")
+    made("--amb", "A,B", "--mount", "stiff", "--force")
+    with opened(housing, in_process=True) as one, opened(touchdown.load("mine"), in_process=True) as other:
+        for own, name in (("mass", "mass"), ("stiffness", "spring.yy"), ("damping", "damper.xx")):
+            assert other.value(f"housing_B.{name}") == one.value(f"housing_B.{own}")
+        assert other.value("housing_B.outer_ring") == one.value("housing_B.outer_ring")
+
+
+def test_a_mount_of_a_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As `choose` takes it; `new` writes what stands there."""
+    text = (
+        '[set."housing_*"]\nmass = "0.5 kg"\nspring = { xx = 1e7, yy = 2e7 }\n"slide[2].force" = "30 N"\n'
+    )
+    (here / "ribbon.toml").write_text(text, encoding="utf-8")
+    assert made("--amb", "A,B", "--mount", "ribbon.toml") == 0
+    with opened(touchdown.load("mine"), in_process=True) as system:
+        assert system.value("housing_A.spring.yy") == 2e7
+        assert system.value("housing_B.slide[2].force") == 30.0
+        assert system.value("housing_B.mass") == 0.5
+    capsys.readouterr()
+    (here / "two.toml").write_text(
+        "[set.housing_A]\nmass = 1\n[set.housing_B]\nmass = 1\n", encoding="utf-8"
+    )
+    for wrong, said in (("softer", "did you mean soft"), ("two.toml", "one mount for all is taken")):
+        assert made("--amb", "A,B", "--mount", wrong) == 2
+        assert said in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("name", sorted(shipped()))
 def test_a_rotor_that_comes_along_needs_no_places(name: str) -> None:
     """Its own are taken, and its file stays as it is."""

@@ -36,7 +36,18 @@ def test_its_rotor_becomes_its_machine(tmp_path: Path, monkeypatch: pytest.Monke
             assert main(words[1:]) == 0
         elif words[1] == "run":
             assert find_scene(options.scene).set(dict(s.split("=") for s in options.set)).attach
-    assert done == ["rotor", "catalogue", "new", "run", "report", *["run"] * 2, "report", "run", "choose"]
+    assert done[:10] == [
+        "rotor",
+        "catalogue",
+        "new",
+        "run",
+        "report",
+        *["run"] * 2,
+        "report",
+        "run",
+        "choose",
+    ]
+    assert done[10:] == ["whirl", "sweep", "survive"]
     assert load("rotor.toml").mass == pytest.approx(60.0, abs=0.5)
 
 
@@ -48,3 +59,16 @@ def test_the_page_of_bearings_has_one_that_can_be_read(tmp_path: Path) -> None:
             assert made.balls.count == 19
             return
     pytest.fail("the page names no file")
+
+
+def test_the_page_of_mounts_has_commands_that_are_some() -> None:
+    """Their scenes and settings are there; continuous integration runs them."""
+    lines = [text for name, text in walk.steps(ROOT / "docs" / "mounts.md") if not name]
+    verbs = []
+    for line in lines:
+        words = shlex.split(line)
+        options = parser().parse_args(joined(words[1:]))
+        verbs.append(words[1])
+        if words[1] in ("run", "sweep") and not options.scene.startswith("runs/"):
+            assert find_scene(options.scene).attach
+    assert verbs == ["run", "run", "report", "new", "run", "import-mount", "new", "whirl"]

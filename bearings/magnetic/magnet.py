@@ -1,0 +1,94 @@
+"""The magnets of a radial bearing: two axes of two opposite ones each, in differential driving mode.
+
+The state of a coil is its flux linkage. Its force hangs on that alone, and the current on flux linkage and
+air gap, so that negative stiffness, back-EMF, saturation and slew follow from one equation:
+
+    K = mu0 N^2 A / 4       i = lambda g / (2 K) + l_fe / (mu0 N) max(lambda / (N A) - B_s, 0)
+    d lambda/dt = v - R i   F = lambda^2 / (4 K) cos(alpha)
+
+Without saturation that is F = K i^2 / g^2 cos(alpha), as in Schweitzer and Maslen, Magnetic Bearings
+(2009), chapter 4. Saturated iron is as permeable as air. Leakage, eddy currents and hysteresis are left
+out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...modelkit.kernel import kernel
+from ...modelkit.variables import real
+
+MU0 = 4e-7 * math.pi  # V s/(A m)
+SMALLEST_GAP = 0.05  # of the centred journal's; nearer, the journal would have hit the magnets
+
+
+@dataclass(frozen=True)
+class Magnet:
+    """Four equal magnets: the first axis lies at `angle`, the second a quarter turn further."""
+
+    gap: float = real(0.6e-3, "m", "air gap of the centred journal", above=0.0)
+    area: float = real(1e-4, "m2", "cross-section of a pole", above=0.0)
+    turns: float = real(200.0, "1", "turns of a magnet's coil", above=0.0)
+    pole_angle: float = real(
+        math.pi / 8, "rad", "half the angle between a magnet's poles", minimum=0.0, maximum=1.5
+    )
+    angle: float = real(math.pi / 4, "rad", "of the first axis, from the horizontal")
+    flux_limit: float = real(1.2, "T", "flux density at which the iron saturates", above=0.0)
+    iron_path: float = real(
+        0.1, "m", "of the iron, which once it is saturated is as permeable as air", minimum=0.0
+    )
+
+
+@dataclass(frozen=True)
+class Circuit:
+    """What follows from the magnets and the bias current."""
+
+    factor: float = real(0.0, "N.m2/A2", "K of F = K i^2 / g^2")
+    inductance: float = real(0.0, "V.s/A", "of a coil, with the journal centred")
+    pull: float = real(0.0, "N/(V2.s2)", "force over the flux linkage squared")
+    cosine: float = real(0.0, "1", "of the first axis")
+    sine: float = real(0.0, "1", "of the first axis")
+    current_factor: float = real(0.0, "N/A", "k_i, force per control current")
+    displacement_factor: float = real(0.0, "N/m", "k_s, force against a displacement; below zero")
+
+
+@kernel
+def lay_out(d, p, bias):
+    """Set the constants d (`Circuit`) of the magnets p (`Magnet`) with a bias current (A)."""
+    d.factor = 0.25 * MU0 * p.turns * p.turns * p.area
+    d.inductance = 2.0 * d.factor / p.gap
+    pole = math.cos(p.pole_angle)
+    d.pull = pole / (4.0 * d.factor)
+    d.cosine, d.sine = math.cos(p.angle), math.sin(p.angle)
+    d.current_factor = 4.0 * d.factor * bias / p.gap**2 * pole
+    d.displacement_factor = -4.0 * d.factor * bias**2 / p.gap**3 * pole
+
+
+@kernel
+def current_of(flux, gap, p, d):
+    """Current (A) that goes with a flux linkage (V s) over an air gap (m)."""
+    current = 0.5 * flux * gap / d.factor
+    density = flux / (p.turns * p.area)
+    if density > p.flux_limit:
+        current += p.iron_path / (MU0 * p.turns) * (density - p.flux_limit)
+    return current
+
+
+@kernel
+def flux_of(current, gap, p, d):
+    """Flux linkage (V s) that goes with a current (A, from 0) over an air gap (m)."""
+    per_flux = 0.5 * gap / d.factor
+    flux = current / per_flux
+    linked = p.turns * p.area
+    if flux <= p.flux_limit * linked:
+        return flux
+    iron = p.iron_path / (MU0 * p.turns)
+    return (current + iron * p.flux_limit) / (per_flux + iron / linked)
+
+
+@kernel
+def gap_of(coil, u1, u2, p):
+    """Air gap (m) of a coil (0 to 3: first axis +, -, second axis +, -), the journal at u1, u2 (m)."""
+    u = u1 if coil < 2 else u2
+    return max(p.gap - u if coil % 2 == 0 else p.gap + u, SMALLEST_GAP * p.gap)

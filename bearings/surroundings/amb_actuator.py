@@ -1,0 +1,448 @@
+"""Magnetic bearing without its controller: magnets, amplifiers, DC link, sensors, and the sampling.
+
+Two axes of two opposite magnets each carry the journal with what a controller asks for, which is another
+component. The bearing samples its sensors itself, at the exact ticks t = n `sample_time` also within a
+macro step, and lets the set points that it was last given act at the next tick: what a controller makes of
+sample n acts from sample n + 1 on, one sample of delay, whatever the macro step is. Without a sample time
+the sensors are told at the end of each macro step and set points act at the beginning of the next.
+
+Failures of amplifiers and of the link (`event`) act at their exact times. The static load, which
+`axis[k].hold` states as a control current, is found as the simple magnetic bearing `amb` finds it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...modelkit.kernel import kernel
+from ...modelkit.model import Model
+from ...modelkit.ports import (
+    FlexibleSeatMotion,
+    Interface,
+    Load,
+    MountMotion,
+    MountReaction,
+    PointMotion,
+    SeatReaction,
+    StaticLoad,
+)
+from ...modelkit.status import BAD_INPUT, OK, TOO_LONG_STEP
+from ...modelkit.variables import Choices, choice, group, groups, integer, real
+from .. import seat
+from ..magnetic import amplifier, magnet, sensing
+from ..magnetic.amplifier import ALWAYS, COILS, Amplifier, Coil, Event, Supply
+from ..magnetic.magnet import Circuit, Magnet
+from ..magnetic.sensing import AT_SENSOR, Sensor
+
+FLUX = seat.INSIDE  # flux linkages of the four coils, V s
+RESET = FLUX + COILS  # integrals of the current controls, A s
+SENSE = RESET + COILS  # the sensors' low-pass, m
+SUPPLIED, TAKEN, AT_CURRENT, AT_VOLTAGE = range(SENSE + 2, SENSE + 6)  # J, J, s, s
+SIZE = SENSE + 6
+ROUNDING = 1e-12  # s; a remainder of a macro step that only rounding leaves
+EVENTS = 8
+COMMANDS = Choices("Command", ("current", "force"))
+CURRENT_SCALE = 0.1  # A; an error of the current that matters
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Of a small machine: 26 N/A, -86 kN/m."""
+
+    magnet: Magnet = group(Magnet)
+    amplifier: Amplifier = group(Amplifier)
+    supply: Supply = group(Supply)
+    sensing: Sensor = group(Sensor)
+    command: int = choice(0, COMMANDS, "which set point acts, that of the current or of the force")
+    sample_time: float = real(
+        1e-4, "s", "from sample to sample; 0: no sampling, the end of the macro step counts", minimum=0.0
+    )
+    event: tuple = groups(Event, EVENTS)
+    interface: Interface = group(Interface)
+
+
+@dataclass(frozen=True)
+class HeldMotion(StaticLoad, FlexibleSeatMotion):
+    """Motion of the journal, and what it takes to hold it."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """What a controller asks of an axis."""
+
+    set: float = real(0.0, "A", "control current: bias + set in the + coil, bias - set in the other")
+    force_set: float = real(0.0, "N", "force at the centre, where forces are commanded; over k_i")
+    enable: float = real(1.0, "1", "0: the amplifiers of the axis drive their currents to zero")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Motion of journal, stator and sensor, and the controller's commands."""
+
+    journal: HeldMotion = group(HeldMotion)
+    housing: MountMotion = group(MountMotion)
+    sensor: PointMotion = group(PointMotion)
+    axis: tuple = groups(Command, 2)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What a controller takes of an axis, and how the axis is."""
+
+    sensed: float = real(0.0, "m", "position in the last sample", nominal=1e-4)
+    hold: float = real(0.0, "A", "control current that holds the static load at the centre", constant=True)
+    current_plus: float = real(0.0, "A", "in the + coil", local=True)
+    current_minus: float = real(0.0, "A", "in the - coil", local=True)
+    voltage_plus: float = real(0.0, "V", "at the + coil", local=True)
+    voltage_minus: float = real(0.0, "V", "at the - coil", local=True)
+    force: float = real(0.0, "N", "of the axis on the journal", local=True)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """For how long something was at its limit since the start."""
+
+    current_time: float = real(0.0, "s", "a set point was cut at the current limit", local=True)
+    voltage_time: float = real(0.0, "s", "an amplifier of an enabled axis gave all voltage", local=True)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Loads; what a controller takes; what limits and supply went through."""
+
+    journal: SeatReaction = group(SeatReaction)
+    housing: MountReaction = group(MountReaction)
+    axis: tuple = groups(Axis, 2)
+    tick: float = real(0.0, "1", "number of the sample to come: t / sample_time")
+    period: float = real(0.0, "s", "from sample to sample; 0: none are taken", constant=True)
+    link: float = real(0.0, "V", "voltage of the DC link", local=True)
+    supplied: float = real(0.0, "J", "work of the magnets on the rotor since the start", local=True)
+    link_energy: float = real(0.0, "J", "that the coils took of the DC link since the start", local=True)
+    peak_current: float = real(0.0, "A", "largest of any coil since the start", local=True)
+    least_gap: float = real(0.0, "m", "smallest air gap to the magnets since the start", local=True)
+    limits: Limits = group(Limits)
+    current_factor: float = real(0.0, "N/A", "k_i, force per control current at the centre", constant=True)
+    displacement_factor: float = real(
+        0.0, "N/m", "k_s, force against a displacement at the centre; below zero", constant=True
+    )
+
+
+@dataclass(frozen=True)
+class Acting:
+    """Set points that act now."""
+
+    control: float = real(0.0, "A", "control current")
+    on: float = real(1.0, "1", "enabled")
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Memory between steps."""
+
+    seat: seat.SeatMemory = group(seat.SeatMemory)
+    since: float = real(0.0, "s", "from the inputs to the beginning of the present stretch")
+    done: float = real(0.0, "s", "of the stretch, ahead of what is being integrated")
+    ticks: int = integer(0, "number of the sample to come")
+    begun: int = integer(0, "samples have been taken")
+    axis: tuple = groups(Acting, 2)
+    coil: tuple = groups(Coil, COILS)
+    link_off: float = real(ALWAYS, "s", "when the link was cut off; below zero: it is on")
+
+
+MEMORY = seat.bearing_memory(Parameters, Outputs, SIZE, Circuit, Hidden, Inputs)
+
+
+@kernel
+def displacement(t, q, m):
+    """Journal along both axes, then the sensed place (m), t (s) after the inputs."""
+    ex, ey = q[seat.JX] - q[seat.HX], q[seat.JY] - q[seat.HY]
+    sx, sy = ex, ey
+    if m.p.sensing.at == AT_SENSOR:  # what it saw at the inputs, moved on as the journal moved
+        j, u = m.u.journal, m.u.sensor
+        sx += u.x - j.x + t * (u.vx - j.vx)
+        sy += u.y - j.y + t * (u.vy - j.vy)
+    c, s = m.d.cosine, m.d.sine
+    return c * ex + s * ey, c * ey - s * ex, c * sx + s * sy, c * sy - s * sx
+
+
+@kernel
+def drive(coil, flux, integral, gap, volt, m):
+    """Of a coil: voltage (V), current (A), rate of its integral (A), current cut off, voltage at its limit.
+
+    flux (V s), integral (A s), gap (m); volt: the link's voltage (V).
+    """
+    i = magnet.current_of(flux, gap, m.p.magnet, m.d)
+    axis = m.s.axis[coil // 2]
+    if m.s.coil[coil].alive < 0.5:
+        return (-volt if flux > 0.0 else 0.0), i, 0.0, False, False
+    target, cut = 0.0, False
+    if axis.on > 0.5:
+        target, cut = amplifier.set_point(coil, axis.control, m.p.amplifier)
+    v = amplifier.wanted_voltage(target - i, integral, i, m.d.inductance, m.p.amplifier)
+    if -volt <= v <= volt:
+        return v, i, target - i, cut, False
+    return min(max(v, -volt), volt), i, 0.0, cut, axis.on > 0.5
+
+
+@kernel
+def react(t, q, dq, m):
+    """`Load` of the magnets (N); sets dq of what is inside; t (s) into what is being integrated."""
+    t += m.s.done
+    volt = amplifier.link_voltage(m.time + t, m.s.link_off, m.p.supply)
+    u1, u2, y1, y2 = displacement(m.s.since + t, q, m)
+    f1, f2, power = 0.0, 0.0, 0.0
+    any_cut, any_full = False, False
+    for coil in range(COILS):
+        flux = q[FLUX + coil]
+        gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
+        v, i, dq[RESET + coil], cut, full = drive(coil, flux, q[RESET + coil], gap, volt, m)
+        any_cut, any_full = any_cut or cut, any_full or full
+        rate = v - m.p.amplifier.resistance * i
+        dq[FLUX + coil] = 0.0 if flux <= 0.0 and rate < 0.0 else rate  # amplifiers drive one way only
+        power += v * i
+        pull = m.d.pull * max(flux, 0.0) ** 2
+        if coil < 2:
+            f1 += pull if coil == 0 else -pull
+        else:
+            f2 += pull if coil == 2 else -pull
+    dq[SENSE] = sensing.rate(y1, q[SENSE], m.p.sensing)
+    dq[SENSE + 1] = sensing.rate(y2, q[SENSE + 1], m.p.sensing)
+    dq[TAKEN] = power
+    dq[AT_CURRENT] = 1.0 if any_cut else 0.0
+    dq[AT_VOLTAGE] = 1.0 if any_full else 0.0
+    fx, fy = m.d.cosine * f1 - m.d.sine * f2, m.d.sine * f1 + m.d.cosine * f2
+    dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
+    return Load(fx, fy, 0.0, -fx, -fy)
+
+
+@kernel
+def rhs(t, q, dq, m):
+    """Derivative dq (m.n,) of everything the bearing integrates, t (s) into what is being integrated."""
+    seat.copy_rates(m.s.done + t, q, dq, m, m.half, react(t, q, dq, m))
+
+
+@kernel
+def observe(t, q, m):
+    """Largest current and smallest gap, after each accepted micro-step."""
+    u1, u2, _, _ = displacement(m.s.since + m.s.done + t, q, m)
+    for coil in range(COILS):
+        gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
+        m.o.peak_current = max(m.o.peak_current, magnet.current_of(q[FLUX + coil], gap, m.p.magnet, m.d))
+    m.o.least_gap = min(m.o.least_gap, m.p.magnet.gap - math.sqrt(u1 * u1 + u2 * u2))
+
+
+@kernel
+def ready(m, since):
+    """Note the clock; since (s): from the inputs to the stretch that begins at m.time."""
+    m.s.since, m.s.done = since, 0.0
+
+
+@kernel
+def sample(q, m):
+    """What the sensors tell (m) goes into the outputs."""
+    for k in range(2):
+        noise = sensing.deviation(m.s.ticks, k, m.p.sensing)
+        m.o.axis[k].sensed = m.p.sensing.gain * q[SENSE + k] + noise
+
+
+@kernel
+def take_commands(m):
+    """Let the set points act that were last given."""
+    for k in range(2):
+        given = m.u.axis[k]
+        m.s.axis[k].control = given.set if m.p.command == 0 else given.force_set / m.d.current_factor
+        m.s.axis[k].on = given.enable
+
+
+@kernel
+def report(q, m):
+    """Currents, voltages, forces, and without a sample time what the sensors tell now."""
+    since = m.s.since + 2.0 * m.half
+    volt = amplifier.link_voltage(m.time + 2.0 * m.half, m.s.link_off, m.p.supply)
+    u1, u2, _, _ = displacement(since, q, m)
+    for k in range(2):
+        o, plus, minus = m.o.axis[k], 2 * k, 2 * k + 1
+        gap = magnet.gap_of(plus, u1, u2, m.p.magnet)
+        v, i, _, _, _ = drive(plus, q[FLUX + plus], q[RESET + plus], gap, volt, m)
+        o.voltage_plus, o.current_plus = v, i
+        gap = magnet.gap_of(minus, u1, u2, m.p.magnet)
+        v, i, _, _, _ = drive(minus, q[FLUX + minus], q[RESET + minus], gap, volt, m)
+        o.voltage_minus, o.current_minus = v, i
+        o.force = m.d.pull * (q[FLUX + plus] ** 2 - q[FLUX + minus] ** 2)
+    if m.p.sample_time == 0.0:
+        sample(q, m)
+        m.s.ticks += 1
+    m.o.tick = m.s.ticks
+    m.o.link, m.o.supplied, m.o.link_energy = volt, q[SUPPLIED], q[TAKEN]
+    m.o.limits.current_time, m.o.limits.voltage_time = q[AT_CURRENT], q[AT_VOLTAGE]
+
+
+@kernel
+def settle(words):
+    """Error weights of the state, and the constants of the magnets; returns 0: nothing can be wrong."""
+    m = words.view(MEMORY)[0]
+    magnet.lay_out(m.d, m.p.magnet, m.p.amplifier.bias)
+    seat.set_weights(m.weight)
+    m.n = SIZE
+    for coil in range(COILS):
+        m.weight[FLUX + coil] = 1.0 / (CURRENT_SCALE * m.d.inductance)
+        m.weight[RESET + coil] = m.p.amplifier.reset / CURRENT_SCALE
+    m.weight[SENSE] = m.weight[SENSE + 1] = 1.0 / seat.POSITION_SCALE
+    for quadrature in range(SUPPLIED, SIZE):
+        m.weight[quadrature] = 0.0
+    return 0
+
+
+@kernel
+def _static_load(m):
+    """Force (N) that holds the journal at rest: stated, or what the seat alone would need."""
+    j = m.u.journal
+    if j.inv_m > 0.0 and j.static_fx == 0.0 and j.static_fy == 0.0:
+        return -j.ax_free / j.inv_m, -j.ay_free / j.inv_m
+    return j.static_fx, j.static_fy
+
+
+@kernel
+def start(words):
+    """Begin with the currents that hold the static load; words: the memory, in 8-byte words."""
+    m = words.view(MEMORY)[0]
+    seat.take_inputs(m.q, m)
+    m.o.current_factor, m.o.displacement_factor = m.d.current_factor, m.d.displacement_factor
+    m.o.period, m.o.least_gap = m.p.sample_time, m.p.magnet.gap
+    fx, fy = _static_load(m)
+    m.o.axis[0].hold = (m.d.cosine * fx + m.d.sine * fy) / m.d.current_factor
+    m.o.axis[1].hold = (m.d.cosine * fy - m.d.sine * fx) / m.d.current_factor
+    for k in range(2):
+        m.s.axis[k].control, m.s.axis[k].on = m.o.axis[k].hold, 1.0
+    for coil in range(COILS):
+        m.s.coil[coil].alive = 1.0
+    m.s.link_off, m.s.begun, m.s.ticks = ALWAYS, 0, 0
+    if m.p.sample_time > 0.0:
+        m.s.ticks = math.ceil((m.time - ROUNDING) / m.p.sample_time)
+    for n in range(EVENTS):
+        event = m.p.event[n]
+        if event.kind > 0 and event.time < m.time - ROUNDING:
+            amplifier.happen(event, m.s)
+    u1, u2, y1, y2 = displacement(0.0, m.q, m)
+    for coil in range(COILS):
+        target, _ = amplifier.set_point(coil, m.s.axis[coil // 2].control, m.p.amplifier)
+        gap = magnet.gap_of(coil, u1, u2, m.p.magnet)
+        m.q[FLUX + coil] = magnet.flux_of(target, gap, m.p.magnet, m.d)
+    m.q[SENSE], m.q[SENSE + 1] = y1, y2
+    sample(m.q, m)
+    seat.begin(react, report, m)
+    m.o.journal.fx, m.o.journal.fy = fx, fy
+    m.o.housing.fx, m.o.housing.fy = -fx, -fy
+
+
+@kernel
+def _act(now, m):
+    """What is due at the time `now` (s): a sample, events."""
+    ts = m.p.sample_time
+    if ts > 0.0 and abs(m.s.ticks * ts - now) <= ROUNDING:
+        if m.s.begun == 1:
+            take_commands(m)
+        sample(m.q, m)
+        m.s.ticks += 1
+        m.s.begun = 1
+    for n in range(EVENTS):
+        event = m.p.event[n]
+        if event.kind > 0 and abs(event.time - now) <= ROUNDING:
+            amplifier.happen(event, m.s)
+
+
+@kernel
+def _until_next(now, left, m):
+    """How long (s) nothing happens from the time `now` (s) on, at most `left` (s)."""
+    if m.p.sample_time > 0.0:
+        left = min(left, m.s.ticks * m.p.sample_time - now)
+    for n in range(EVENTS):
+        event = m.p.event[n]
+        if event.kind > 0 and event.time > now + ROUNDING:
+            left = min(left, event.time - now)
+    return left
+
+
+@kernel
+def integrate(m, work, step):
+    """Advance m.q by `step` (s), from tick to tick and event to event. As `seat.integrate`."""
+    h, status, evaluations = m.h, OK, 0
+    if m.p.sample_time == 0.0:
+        take_commands(m)
+    while status == OK and step - m.s.done > ROUNDING:
+        now = m.time + m.s.done
+        _act(now, m)
+        span = _until_next(now, step - m.s.done, m)
+        m.h = h
+        h, status, more = seat.integrate(rhs, observe, m, work, span)
+        evaluations += more
+        for coil in range(COILS):
+            m.q[FLUX + coil] = max(m.q[FLUX + coil], 0.0)
+        m.s.done += span
+    m.s.done = 0.0
+    return h, status, evaluations
+
+
+@kernel
+def instant(t, q, dq, m):
+    """Derivative dq (m.n,) and load in m.o (N) under motion and set points m.u at time t (s).
+
+    Set points act as they are given, without sampling; events up to t have happened.
+    """
+    m.time, m.s.done, m.s.since = t, 0.0, 0.0
+    for n in range(EVENTS):
+        event = m.p.event[n]
+        if event.kind > 0 and event.time <= t:
+            amplifier.happen(event, m.s)
+    take_commands(m)
+    seat.instant(react, 0.0, q, dq, m)
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step of `step` (s) from `time` (s); returns a status."""
+    m = words.view(MEMORY)[0]
+    j, u = m.u.journal, m.u.sensor
+    total = u.x + u.y + u.vx + u.vy + j.static_fx + j.static_fy
+    for k in range(2):
+        total += m.u.axis[k].set + m.u.axis[k].force_set + m.u.axis[k].enable
+    if not math.isfinite(total):
+        return BAD_INPUT
+    if m.p.sample_time > 0.0 and step > m.p.sample_time + ROUNDING:
+        return TOO_LONG_STEP
+    return seat.advance_timed(ready, react, integrate, report, words, m, work, time, step)
+
+
+_STATIC = ("journal.inv_m", "journal.static_fx", "journal.static_fy")
+_FACTORS = ("magnet.gap", "magnet.area", "magnet.turns", "magnet.pole_angle", "amplifier.bias")
+_PORTS = ("journal", "housing")
+_HOLD = ("journal.ax_free", "journal.ay_free", *_STATIC, *_FACTORS, "magnet.angle")
+_SENSED = (
+    *("journal.x", "journal.y", "housing.x", "housing.y", "sensor.x", "sensor.y", "magnet.angle"),
+    *("sensing.at", "sensing.gain", "sensing.noise", "sensing.seed"),
+)
+
+MODEL = Model(
+    name="amb_actuator",
+    title="Magnetic bearing without its controller",
+    about="Magnets, amplifiers, DC link and sensors of a radial magnetic bearing, for a controller",
+    parameters=Parameters,
+    inputs=Inputs,
+    outputs=Outputs,
+    derived=Circuit,
+    hidden=Hidden,
+    memory=MEMORY,
+    settle=settle,
+    start=start,
+    advance=advance,
+    instant=instant,
+    starts_from={
+        **{f"{port}.f{axis}": (f"journal.a{axis}_free", *_STATIC) for axis in "xy" for port in _PORTS},
+        **{f"axis[{k}].sensed": _SENSED for k in (1, 2)},
+        **{f"axis[{k}].hold": _HOLD for k in (1, 2)},
+        "period": ("sample_time",),
+        "current_factor": _FACTORS,
+        "displacement_factor": _FACTORS,
+    },
+)

@@ -1,0 +1,328 @@
+"""What a touchdown bearing sits in: a carrier on springs, dampers, dry friction, rubber, a film and a stop.
+
+It takes the place of `housing` at the same port. The carrier moves across the shaft's axis; between it and
+the ground the elements of `mount_law` act in parallel. `x0`, `y0` put its relaxed place off the rotor's
+axis (misalignment). Frame and signs as everywhere: x horizontal, y up, SI.
+
+A macro step is one step, or several equal ones where slides, stop or film act faster than it. In each, what
+is linear (mass, springs, dampers, branches) goes by Gauss's collocation under the outer force less the mean
+force f of the other elements. Its way d is linear in that force, d = d_free - G f, and f follows from d:
+
+    G^-1 (d - d_free) + f(d) = 0
+
+which Newton's method solves. As the linear part gives f . d to the others, and they state it as stored
+energy and heat, kinetic and stored energy and heat add up to the outer work whatever the step is. Without
+slides, stop and film the step is exact to order six, with them to order two.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...modelkit.integrators import gauss
+from ...modelkit.kernel import kernel
+from ...modelkit.model import Model, memory_layout
+from ...modelkit.ports import Energy, MountLoad, MountState
+from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from ...modelkit.variables import array, flatten, group, integer, real
+from .mount_law import (
+    BRANCHES,
+    HEATS,
+    SLIDES,
+    Carrier,
+    Told,
+    branches_in_use,
+    drives,
+    equations,
+    force_now,
+    go,
+    is_linear,
+    linear_heat,
+    linear_rate,
+    mean_force,
+    note_hit,
+    note_peaks,
+    quickness,
+    rates,
+    sag,
+    stored,
+    tangent,
+    tell,
+)
+
+X, Y, VX, VY = range(4)
+BRANCH = 4  # stretch of the branches, x and y of each
+LINEAR = BRANCH + 2 * BRANCHES
+Z = LINEAR  # stretch of the slides, x and y of each
+WORK = Z + 2 * SLIDES
+HEAT = WORK + 1
+STATE = HEAT + HEATS
+WIDTH = LINEAR + 4  # and the outer force with its slope
+RESOLUTION = 0.25  # rad of the fastest swing in a step
+MOST_PARTS = 4096  # of a macro step
+MOST_TRIES = 50  # of Newton's method
+CLOSE = 1e-9  # of the way; Newton's last step, after which the next would be rounding
+DIFFERENCE = 1e-7  # of the way, for slopes of the force
+
+
+@dataclass(frozen=True)
+class Parameters(Carrier):
+    """Of the carrier, what it stands on, and the ground's gravity."""
+
+    gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Force of the bearing."""
+
+    seat: MountLoad = group(MountLoad)
+
+
+@dataclass(frozen=True)
+class Outputs(Told):
+    """Motion, and what the mount tells of itself."""
+
+    seat: MountState = group(MountState)
+    energy: Energy = group(Energy)
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """The linear part, and its step of one length, kept until another one is wanted."""
+
+    length: float = real(0.0, "s", "that the matrices are for; 0: for none")
+    size: int = integer(4, "of the linear state")
+    linear: int = integer(0, "1 where there is nothing else")
+    rate: float = real(0.0, "rad/s", "of the linear part, at most")
+    points: object = array(gauss.POINTS * LINEAR, WIDTH)
+    end: object = array(LINEAR, WIDTH)
+    stiff: object = array(2, 2)
+
+
+MEMORY = memory_layout(Parameters, Inputs, Outputs, STATE, derived=Prepared)
+
+
+@kernel
+def publish(q, m):
+    """Outputs at the end of the step, from the state q."""
+    p, o = m.p, m.o.seat
+    mass = p.mass + p.outer_ring
+    fx, fy, stop = force_now(p, q, q[Z:WORK])
+    o.x, o.y, o.vx, o.vy = q[X] + p.x0, q[Y] + p.y0, q[VX], q[VY]
+    o.ax_free, o.ay_free = -fx / mass, -fy / mass - p.gravity
+    o.inv_m = 1.0 / mass
+    k, c = tangent(p)
+    o.k_over_m, o.c_over_m = k / mass, c / mass
+    o.work = q[WORK]
+    e = m.o.energy
+    e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2)
+    e.potential = stored(p, q, q[Z:WORK]) + mass * p.gravity * (q[Y] + p.y0)
+    e.dissipated = np.sum(q[HEAT : HEAT + HEATS])
+    tell(m.o, q, stop, q[HEAT:])
+
+
+@kernel
+def rhs(t, q, dq, m):
+    """Derivative dq (STATE,) of the state q under the force mean + slope (t - t_mid); t: s."""
+    p, u = m.p, m.u.seat
+    mass, s = p.mass + p.outer_ring, t - m.half
+    outer_x, outer_y = u.fx + u.dfx * s, u.fy + u.dfy * s
+    fx, fy = rates(p, q, q[Z:WORK], dq[Z:WORK], dq[HEAT : HEAT + HEATS])
+    dq[X], dq[Y] = q[VX], q[VY]
+    dq[VX], dq[VY] = (outer_x - fx) / mass, (outer_y - fy) / mass - p.gravity
+    for i in range(BRANCHES):
+        for axis in range(2):
+            at = BRANCH + 2 * i + axis
+            dq[at] = q[VX + axis] - q[at] / p.branch[i].time if p.branch[i].stiffness > 0.0 else 0.0
+    dq[WORK] = outer_x * q[VX] + outer_y * q[VY]
+
+
+@kernel
+def settle(words):
+    """The size of the linear part and its fastest rate; returns 1 where the dampers drive the carrier."""
+    m = words.view(MEMORY)[0]
+    p, d, c = m.p, m.d, m.p.damper
+    m.n = STATE
+    for i in range(WORK):
+        m.weight[i] = 1e2 if i in (VX, VY) else 1e6  # 1 cm/s and 1 um matter
+    d.length = 0.0
+    d.size = 4 + 2 * branches_in_use(p)
+    d.linear = 1 if is_linear(p) else 0
+    d.rate = linear_rate(p, p.mass + p.outer_ring)
+    m.told[0], m.told[1], m.told[2], m.told[3] = c.xx, c.yy, c.xy, c.yx
+    return 1 if drives(c) else 0
+
+
+@kernel
+def start(words):
+    """At rest, sagged under its own weight on springs and stop."""
+    m = words.view(MEMORY)[0]
+    p = m.p
+    m.q[X], m.q[Y] = sag(p, (p.mass + p.outer_ring) * p.gravity)
+    publish(m.q, m)
+
+
+@kernel
+def _prepare(m, h):
+    """Have m.d ready for steps of h (s)."""
+    d = m.d
+    n = d.size
+    a, b = np.empty((n, n)), np.empty((n, 2))
+    equations(m.p, m.p.mass + m.p.outer_ring, a, b)
+    gauss.prepare(a, b, h, d.points, d.end)
+    xx, xy, yx, yy = d.end[X, n], d.end[X, n + 1], d.end[Y, n], d.end[Y, n + 1]
+    det = xx * yy - xy * yx
+    d.stiff[0, 0], d.stiff[0, 1], d.stiff[1, 0], d.stiff[1, 1] = yy / det, -xy / det, -yx / det, xx / det
+    d.length = h
+
+
+@kernel
+def _parts(m, step, push_x, push_y):
+    """Into how many equal steps a macro step of `step` (s) is divided: a power of two."""
+    p, d = m.p, m.d
+    rate = d.rate
+    if d.linear == 0:
+        rate = max(rate, quickness(p, p.mass + p.outer_ring, m.q, push_x, push_y, step))
+    wanted = rate * step / RESOLUTION
+    parts = 1
+    while parts < wanted and parts < MOST_PARTS:
+        parts *= 2
+    return parts
+
+
+@kernel
+def _way(m, free_x, free_y, h):
+    """The way (m, m) of a step of h (s) that goes (free_x, free_y) without slides, stop and film."""
+    p, q, s = m.p, m.q, m.d.stiff
+    z = q[Z:WORK]
+    dx, dy, was = free_x, free_y, math.inf
+    jx, jy = 0.0, 0.0  # the last change
+    for _ in range(MOST_TRIES):
+        fx, fy = mean_force(p, q[X], q[Y], dx, dy, h, z)
+        rx = s[0, 0] * (dx - free_x) + s[0, 1] * (dy - free_y) + fx
+        ry = s[1, 0] * (dx - free_x) + s[1, 1] * (dy - free_y) + fy
+        now = math.hypot(rx, ry)
+        if now > was and math.hypot(jx, jy) > CLOSE * math.hypot(dx, dy):  # too far across a kink
+            jx, jy = 0.5 * jx, 0.5 * jy
+            dx, dy = dx - jx, dy - jy
+            continue
+        was = now
+        small = DIFFERENCE * (abs(dx) + abs(dy)) + 1e-16
+        ax, ay = mean_force(p, q[X], q[Y], dx + small, dy, h, z)
+        bx, by = mean_force(p, q[X], q[Y], dx, dy + small, h, z)
+        xx, yx = s[0, 0] + (ax - fx) / small, s[1, 0] + (ay - fy) / small
+        xy, yy = s[0, 1] + (bx - fx) / small, s[1, 1] + (by - fy) / small
+        det = xx * yy - xy * yx
+        jx, jy = (xy * ry - yy * rx) / det, (yx * rx - xx * ry) / det
+        dx, dy = dx + jx, dy + jy
+        if math.hypot(jx, jy) <= CLOSE * math.hypot(dx, dy):
+            break
+    return dx, dy
+
+
+@kernel
+def _step(m, time, h, since):
+    """One step of h (s) from `time` (s), its middle `since` (s) after that of the macro step."""
+    p, q, u, d = m.p, m.q, m.u.seat, m.d
+    n, weight = d.size, (p.mass + p.outer_ring) * p.gravity
+    outer_x, outer_y = u.fx + u.dfx * since, u.fy + u.dfy * since
+    given, end, points = np.empty(WIDTH), np.empty(LINEAR), np.empty(gauss.POINTS * LINEAR)
+    for i in range(n):
+        given[i] = q[i]
+    given[n], given[n + 1], given[n + 2], given[n + 3] = outer_x, outer_y - weight, u.dfx, u.dfy
+    x, y = q[X], q[Y]
+    if d.linear == 0:
+        gauss.apply(d.end, 2, given, n + 4, end)
+        dx, dy = _way(m, end[X] - x, end[Y] - y, h)
+        fx, fy = mean_force(p, x, y, dx, dy, h, q[Z:WORK])
+        given[n] -= fx
+        given[n + 1] -= fy
+        go(p, x, y, dx, dy, h, q[Z:WORK], q[HEAT:])
+    gauss.apply(d.end, n, given, n + 4, end)
+    gauss.apply(d.points, gauss.POINTS * n, given, n + 4, points)
+    for i in range(gauss.POINTS):
+        state, part = points[i * n : (i + 1) * n], h * gauss.WEIGHTS[i]
+        late = (gauss.PLACES[i] - 0.5) * h
+        linear_heat(p, state, part, q[HEAT:])
+        q[WORK] += part * ((outer_x + u.dfx * late) * state[VX] + (outer_y + u.dfy * late) * state[VY])
+        note_peaks(m.o, p.stop, state)
+    for i in range(n):
+        q[i] = end[i]
+    note_peaks(m.o, p.stop, q)
+    note_hit(m.o, p.stop, math.hypot(x, y), math.hypot(q[X], q[Y]), time, h)
+
+
+@kernel
+def advance(words, work, time, step):
+    """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
+    m = words.view(MEMORY)[0]
+    u = m.u.seat
+    if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
+        return BAD_INPUT
+    m.time = time
+    m.half = 0.5 * step
+    parts = _parts(m, step, abs(u.fx) + m.half * abs(u.dfx), abs(u.fy) + m.half * abs(u.dfy))
+    h = step / parts
+    if m.d.length != h:
+        _prepare(m, h)
+    for i in range(parts):
+        _step(m, time + i * h, h, (i + 0.5) * h - m.half)
+    m.evaluations += parts
+    publish(m.q, m)
+    finite = math.isfinite(np.sum(m.q))
+    return OK if finite else BAD_LOAD
+
+
+DRIVES = (
+    "damper has xx = {0:g}, yy = {1:g}, xy = {2:g}, yx = {3:g} N.s/m, which drives the carrier in some "
+    "direction; xx and yy must not be below 0, nor ((xy + yx)/2)^2 above xx yy"
+)
+_NAMES = [variable.name for variable in flatten(Parameters())]
+
+
+def _named(*starts: str) -> tuple[str, ...]:
+    """Parameters whose names start so."""
+    return tuple(name for name in _NAMES if name.startswith(starts))
+
+
+_MASS = ("mass", "outer_ring")
+_BORNE = ("stop.gap", "stop.stiffness", "stop.exponent")
+_SAG = _named(*_MASS, "gravity", "spring.", *_BORNE)
+_TANGENT = _named(
+    *_MASS, "spring.xx", "spring.yy", "slide[", *(f"branch[{i + 1}].s" for i in range(BRANCHES))
+)
+_FADING = _named(*_MASS, "damper.xx", "damper.yy", "film.")
+
+MODEL = Model(
+    name="mount",
+    title="Mount",
+    about="Carrier with the outer ring on springs, dry friction, rubber, a squeeze film and a stop",
+    parameters=Parameters,
+    inputs=Inputs,
+    outputs=Outputs,
+    memory=MEMORY,
+    settle=settle,
+    start=start,
+    advance=advance,
+    rhs=rhs,
+    publish=publish,
+    problems=(DRIVES,),
+    starts_from={
+        "seat.x": ("x0", *_SAG),
+        "seat.y": ("y0", *_SAG),
+        "seat.ax_free": _SAG,
+        "seat.ay_free": _SAG,
+        "seat.inv_m": _MASS,
+        "seat.k_over_m": _TANGENT,
+        "seat.c_over_m": _FADING,
+        "energy.potential": ("y0", *_SAG),
+        "stroke": _SAG,
+        "peak_stroke": _SAG,
+        "stop_force": _SAG,
+        "peak_stop_force": _SAG,
+    },
+)

@@ -1,0 +1,591 @@
+"""The elements of a mount: what each resists with over a step, what it keeps, and what becomes heat.
+
+They act in parallel between carrier and ground; q is the carrier's way from the relaxed place. Springs,
+dampers and Maxwell branches are linear, and whoever steps them does so by their equations (`equations`).
+The others follow a step in which the carrier goes straight from q to q + d in h seconds. Each gives the
+mean f of its force over that way, so that f . d is what it stores and what it turns into heat, and heat is
+never below zero:
+
+    slide   a spring behind dry friction (Jenkins): it is dragged like a weight on a string of length
+            r = force/stiffness. While it slides, its stretch turns towards d,
+            tan(psi'/2) = tan(psi/2) exp(-s/r) after s metres, and the foot goes r ln(sin psi/sin psi')
+    stop    (U(r') - U(r))/(r'^2 - r^2) (q + q'), U = stiffness (r - gap)^(n + 1)/(n + 1), r = |q|; damping
+            by chi times that force times the speed of r (Hunt and Crossley), without pull
+    film    B(q + d/2, d) d/h: a short bearing that is squeezed (Ocvirk), B = viscosity radius length^3
+            times the integral of n n^T/thickness^3 over the circle, or over the half that d closes
+            (Guembel); its integrals by Sommerfeld's substitution
+
+Several slides together are Iwan's model; their loop is that of Masing's rule.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ...modelkit.kernel import kernel
+from ...modelkit.variables import Choices, choice, group, groups, integer, real
+
+SLIDES, BRANCHES = 4, 3
+SPRING, DAMPER, SLIDE, BRANCH, STOP, FILM = range(6)  # where heat arises
+HEATS = 6
+NEVER = -1.0  # s
+NARROW = 1e-9  # m; changes of the stroke below it give the stop's mean force by its middle
+THINNEST = 1e-3  # of the clearance; a film is not squeezed below it
+CAVITATION = Choices(
+    "Cavitation", ("none", "half"), ("the film pulls as it pushes", "it pushes only, where it is squeezed")
+)
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """Of two directions; the force that resists is xx x + xy y horizontally, yx x + yy y vertically."""
+
+    xx: float = real(0.0, "N/m", "horizontal")
+    yy: float = real(0.0, "N/m", "vertical")
+    xy: float = real(0.0, "N/m", "horizontal force by vertical motion")
+    yx: float = real(0.0, "N/m", "vertical force by horizontal motion")
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Of two directions, as `Stiffness`, by velocity."""
+
+    xx: float = real(0.0, "N.s/m", "horizontal")
+    yy: float = real(0.0, "N.s/m", "vertical")
+    xy: float = real(0.0, "N.s/m", "horizontal force by vertical motion")
+    yx: float = real(0.0, "N.s/m", "vertical force by horizontal motion")
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A spring behind dry friction (Jenkins), alike in all directions."""
+
+    stiffness: float = real(0.0, "N/m", "while it sticks; 0: there is none", minimum=0.0)
+    force: float = real(0.0, "N", "at which it slides", minimum=0.0)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A spring in series with a dashpot (Maxwell), as rubber has several of."""
+
+    stiffness: float = real(0.0, "N/m", "of its spring; 0: there is none", minimum=0.0)
+    time: float = real(1e-3, "s", "in which its force fades (relaxation time)", above=0.0)
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Where the stroke ends."""
+
+    gap: float = real(1e-4, "m", "stroke up to it", minimum=0.0)
+    stiffness: float = real(0.0, "N/m^n", "force by indentation^exponent; 0: there is none", minimum=0.0)
+    exponent: float = real(1.5, "1", "n", minimum=1.0, maximum=4.0)
+    dissipation: float = real(0.0, "s/m", "damping over elastic force, per speed", minimum=0.0)
+
+
+@dataclass(frozen=True)
+class Film:
+    """Squeeze film of a short bearing around the carrier."""
+
+    radius: float = real(0.02, "m", "of the film", above=0.0)
+    length: float = real(0.01, "m", "of the film along the shaft", above=0.0)
+    clearance: float = real(1e-4, "m", "radial", above=0.0)
+    viscosity: float = real(0.0, "Pa.s", "0: there is none", minimum=0.0)
+    cavitation: int = choice(1, CAVITATION, "where the film is torn")
+
+
+@dataclass(frozen=True)
+class Elements:
+    """What is between a carrier and what it stands on; everything is off by default."""
+
+    spring: Stiffness = group(Stiffness)
+    damper: Damping = group(Damping)
+    slide: tuple = groups(Slide, SLIDES)
+    branch: tuple = groups(Branch, BRANCHES)
+    stop: Stop = group(Stop)
+    film: Film = group(Film)
+
+
+@dataclass(frozen=True)
+class Carrier(Elements):
+    """A carrier and what it stands on. Defaults: the housing of the source, which is stiff and linear."""
+
+    spring: Stiffness = group(Stiffness, xx=2.5e8, yy=2.5e8)
+    damper: Damping = group(Damping, xx=2500.0, yy=2500.0)
+    mass: float = real(5.0, "kg", "mass of the carrier", above=0.0)
+    outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
+    x0: float = real(0.0, "m", "horizontal position with the mount relaxed (misalignment)")
+    y0: float = real(0.0, "m", "vertical position with the mount relaxed (misalignment)")
+
+
+@dataclass(frozen=True)
+class Heat:
+    """Heat by element, since the start."""
+
+    spring: float = real(
+        0.0, "J", "work that cross-coupling of the springs took; of either sign", local=True
+    )
+    damper: float = real(0.0, "J", "of the dampers", local=True)
+    slide: float = real(0.0, "J", "of dry friction", local=True)
+    branch: float = real(0.0, "J", "of the Maxwell branches", local=True)
+    stop: float = real(0.0, "J", "of the stop", local=True)
+    film: float = real(0.0, "J", "of the squeeze film", local=True)
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a mount tells of itself."""
+
+    stroke: float = real(0.0, "m", "distance from the relaxed place", local=True)
+    peak_stroke: float = real(0.0, "m", "the largest stroke so far", local=True)
+    stop_force: float = real(0.0, "N", "of the stop", local=True)
+    peak_stop_force: float = real(0.0, "N", "the largest force of the stop so far", local=True)
+    stop_time: float = real(NEVER, "s", "when the stop was first reached; -1: not yet", local=True)
+    stop_hits: int = integer(0, "how often the stop was reached", local=True)
+    heat: Heat = group(Heat)
+
+
+@kernel
+def branches_in_use(p):
+    """How many branches the state has to hold: up to the last that there is."""
+    count = 0
+    for i in range(BRANCHES):
+        if p.branch[i].stiffness > 0.0:
+            count = i + 1
+    return count
+
+
+@kernel
+def is_linear(p):
+    """Whether there are springs, dampers and branches only."""
+    any_slide = False
+    for i in range(SLIDES):
+        any_slide = any_slide or p.slide[i].stiffness > 0.0
+    return not (any_slide or p.stop.stiffness > 0.0 or p.film.viscosity > 0.0)
+
+
+@kernel
+def equations(p, mass, a, b):
+    """Put the linear elements under a carrier of `mass` (kg) into a (n, n), b (n, 2); n = 4 + 2 branches.
+
+    State: x, y (m), vx, vy (m/s), then stretch x, y (m) of each branch's spring; b: per outer force (N).
+    """
+    k, c = p.spring, p.damper
+    for i in range(len(a)):
+        b[i, 0] = b[i, 1] = 0.0
+        for j in range(len(a)):
+            a[i, j] = 0.0
+    a[0, 2] = a[1, 3] = 1.0
+    b[2, 0] = b[3, 1] = 1.0 / mass
+    a[2, 0], a[2, 1], a[3, 0], a[3, 1] = -k.xx / mass, -k.xy / mass, -k.yx / mass, -k.yy / mass
+    a[2, 2], a[2, 3], a[3, 2], a[3, 3] = -c.xx / mass, -c.xy / mass, -c.yx / mass, -c.yy / mass
+    for i in range(branches_in_use(p)):
+        for axis in range(2):
+            at = 4 + 2 * i + axis
+            a[2 + axis, at] = -p.branch[i].stiffness / mass
+            a[at, 2 + axis] = 1.0
+            a[at, at] = -1.0 / p.branch[i].time
+
+
+@kernel
+def linear_heat(p, state, duration, heat):
+    """Add to heat (6,) what the linear elements turn into heat in `duration` (s) at the rate of `state`."""
+    k, c = p.spring, p.damper
+    x, y, vx, vy = state[0], state[1], state[2], state[3]
+    turning = 0.5 * (k.xy - k.yx)  # the part of the springs that has no energy
+    heat[SPRING] += duration * turning * (y * vx - x * vy)
+    heat[DAMPER] += duration * (c.xx * vx * vx + (c.xy + c.yx) * vx * vy + c.yy * vy * vy)
+    for i in range(branches_in_use(p)):
+        wx, wy = state[4 + 2 * i], state[5 + 2 * i]
+        heat[BRANCH] += duration * p.branch[i].stiffness / p.branch[i].time * (wx * wx + wy * wy)
+
+
+@kernel
+def slide(p, zx, zy, dx, dy):
+    """A slide of stretch (zx, zy) (m) on the way (dx, dy) (m), its parameters p.
+
+    Returns its mean force (N, N), its stretch afterwards (m, m), and how far its foot slid (m).
+    """
+    if p.force <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    k, r = p.stiffness, p.force / p.stiffness
+    ex, ey = zx + dx, zy + dy
+    if ex * ex + ey * ey <= r * r:
+        return k * (zx + 0.5 * dx), k * (zy + 0.5 * dy), ex, ey, 0.0
+    way = math.hypot(dx, dy)
+    ux, uy = dx / way, dy / way
+    along, left = zx * ux + zy * uy, max(r * r - zx * zx - zy * zy, 0.0)
+    root = math.sqrt(along * along + left)
+    first = left / (along + root) if along > 0.0 else root - along  # m, while it sticks
+    first = min(first, way)
+    bx, by = zx + first * ux, zy + first * uy
+    across = (uy * bx - ux * by) / r  # sine of the angle from the stretch on to the way
+    t = across / (1.0 + math.sqrt(max(1.0 - across * across, 0.0)))  # tan(psi/2); it points ahead
+    length = (way - first) / r
+    later = t * math.exp(-length)
+    square, after = t * t, later * later
+    slid = r * (length + math.log1p(after) - math.log1p(square))
+    turned = 2.0 * r * r * (math.atan(t) - math.atan(later))
+    cosine, sine = (1.0 - after) / (1.0 + after), 2.0 * later / (1.0 + after)
+    fx = k / way * (0.5 * first * (zx + bx) + r * slid * ux + turned * uy)
+    fy = k / way * (0.5 * first * (zy + by) + r * slid * uy - turned * ux)
+    return fx, fy, r * (cosine * ux + sine * uy), r * (cosine * uy - sine * ux), slid
+
+
+@kernel
+def stop_energy(p, stroke):
+    """Energy (J) of a stop at the stroke (m)."""
+    s = stroke - p.gap
+    return p.stiffness * s ** (p.exponent + 1.0) / (p.exponent + 1.0) if s > 0.0 else 0.0
+
+
+@kernel
+def stop_force(p, stroke, rate):
+    """Force (N) of a stop at the stroke (m) as it grows by `rate` (m/s)."""
+    s = stroke - p.gap
+    return p.stiffness * s**p.exponent * max(1.0 + p.dissipation * rate, 0.0) if s > 0.0 else 0.0
+
+
+@kernel
+def stop_mean(p, before, after, h):
+    """Mean radial force (N) of a stop while the stroke goes from `before` to `after` (m) in h (s)."""
+    gone, middle = after - before, 0.5 * (before + after)
+    if abs(gone) > NARROW:
+        force = (stop_energy(p, after) - stop_energy(p, before)) / gone
+    else:
+        force = stop_force(p, middle, 0.0)
+    return max(force + p.dissipation * stop_force(p, middle, 0.0) * gone / h, 0.0)
+
+
+@kernel
+def film_matrix(p, x, y, dx, dy):
+    """(xx, xy, yy) of a film's resistance (N s/m) at (x, y) (m), squeezed along (dx, dy).
+
+    Measured from the side where it is thinnest, thickness = clearance H, H = 1 - e cos(theta), and with
+    cos(gamma) = (cos(theta) - e)/H the integrals of cos^2, cos sin and sin^2 over H^3 are elementary.
+    """
+    scale = p.viscosity * p.radius * (p.length / p.clearance) ** 3
+    place = math.hypot(x, y)
+    e = min(place / p.clearance, 1.0 - THINNEST)
+    nx, ny = (x / place, y / place) if place > 0.0 else (1.0, 0.0)
+    way = math.hypot(dx, dy)
+    s2 = 1.0 - e * e
+    root = math.sqrt(s2)
+    radial, mixed, across = math.pi * (1.0 + 2.0 * e * e), 0.0, math.pi
+    if p.cavitation == 1 and way > 0.0:
+        cosine, sine = (dx * nx + dy * ny) / way, (dy * nx - dx * ny) / way
+        h1, h2 = 1.0 - e * sine, 1.0 + e * sine  # a quarter turn before the way, and after it
+        c1, s1 = (sine - e) / h1, -root * cosine / h1
+        c2, s2g = (-sine - e) / h2, root * cosine / h2
+        turn = math.atan2(s2g * c1 - c2 * s1, c1 * c2 + s1 * s2g)
+        turn = turn + 2.0 * math.pi if turn < 0.0 else turn
+        double = 0.5 * (s2g * c2 - s1 * c1)
+        radial = (e * e + 0.5) * turn + 2.0 * e * (s2g - s1) + double
+        mixed = 0.5 * (s2g * s2g - s1 * s1) - e * (c2 - c1)
+        across = 0.5 * turn - double
+    radial, mixed, across = (
+        scale * radial / (s2 * s2 * root),
+        scale * mixed / (s2 * s2),
+        scale * across / (s2 * root),
+    )
+    xx = radial * nx * nx - 2.0 * mixed * nx * ny + across * ny * ny
+    yy = radial * ny * ny + 2.0 * mixed * nx * ny + across * nx * nx
+    return xx, (radial - across) * nx * ny + mixed * (nx * nx - ny * ny), yy
+
+
+@kernel
+def mean_force(p, x, y, dx, dy, h, z):
+    """Mean force (N, N) of slides, stop and film on the way (dx, dy) from (x, y) (m) in h (s).
+
+    z: stretch of the slides (2 SLIDES,), m.
+    """
+    fx, fy = 0.0, 0.0
+    for i in range(SLIDES):
+        if p.slide[i].stiffness > 0.0:
+            found = slide(p.slide[i], z[2 * i], z[2 * i + 1], dx, dy)
+            fx += found[0]
+            fy += found[1]
+    if p.stop.stiffness > 0.0:
+        before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
+        if max(before, after) > p.stop.gap:
+            share = stop_mean(p.stop, before, after, h) / (before + after)
+            fx += share * (2.0 * x + dx)
+            fy += share * (2.0 * y + dy)
+    if p.film.viscosity > 0.0:
+        xx, xy, yy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
+        fx += (xx * dx + xy * dy) / h
+        fy += (xy * dx + yy * dy) / h
+    return fx, fy
+
+
+@kernel
+def go(p, x, y, dx, dy, h, z, heat):
+    """Go (dx, dy) from (x, y) (m) in h (s): stretch z (m) of the slides and heat (6,) (J) follow."""
+    for i in range(SLIDES):
+        if p.slide[i].stiffness > 0.0:
+            found = slide(p.slide[i], z[2 * i], z[2 * i + 1], dx, dy)
+            z[2 * i], z[2 * i + 1] = found[2], found[3]
+            heat[SLIDE] += p.slide[i].force * found[4]
+    if p.stop.stiffness > 0.0:
+        before, after = math.hypot(x, y), math.hypot(x + dx, y + dy)
+        if max(before, after) > p.stop.gap:
+            stored = stop_energy(p.stop, after) - stop_energy(p.stop, before)
+            heat[STOP] += stop_mean(p.stop, before, after, h) * (after - before) - stored
+    if p.film.viscosity > 0.0:
+        xx, xy, yy = film_matrix(p.film, x + 0.5 * dx, y + 0.5 * dy, dx, dy)
+        heat[FILM] += (xx * dx * dx + 2.0 * xy * dx * dy + yy * dy * dy) / h
+
+
+@kernel
+def stored(p, state, z):
+    """Energy (J) in the mount: `state` as in `equations`, z: stretch of the slides (2 SLIDES,), m."""
+    k, x, y = p.spring, state[0], state[1]
+    energy = 0.5 * (k.xx * x * x + (k.xy + k.yx) * x * y + k.yy * y * y)
+    for i in range(branches_in_use(p)):
+        energy += 0.5 * p.branch[i].stiffness * (state[4 + 2 * i] ** 2 + state[5 + 2 * i] ** 2)
+    for i in range(SLIDES):
+        energy += 0.5 * p.slide[i].stiffness * (z[2 * i] ** 2 + z[2 * i + 1] ** 2)
+    if p.stop.stiffness > 0.0:
+        energy += stop_energy(p.stop, math.hypot(x, y))
+    return energy
+
+
+@kernel
+def force_now(p, state, z):
+    """Force (N, N) that the mount resists with at one instant, and that of its stop (N)."""
+    k, c = p.spring, p.damper
+    x, y, vx, vy = state[0], state[1], state[2], state[3]
+    fx = k.xx * x + k.xy * y + c.xx * vx + c.xy * vy
+    fy = k.yx * x + k.yy * y + c.yx * vx + c.yy * vy
+    for i in range(branches_in_use(p)):
+        fx += p.branch[i].stiffness * state[4 + 2 * i]
+        fy += p.branch[i].stiffness * state[5 + 2 * i]
+    for i in range(SLIDES):
+        fx += p.slide[i].stiffness * z[2 * i]
+        fy += p.slide[i].stiffness * z[2 * i + 1]
+    stop, stroke = 0.0, math.hypot(x, y)
+    if p.stop.stiffness > 0.0 and stroke > p.stop.gap and stroke > 0.0:
+        stop = stop_force(p.stop, stroke, (x * vx + y * vy) / stroke)
+        fx += stop * x / stroke
+        fy += stop * y / stroke
+    if p.film.viscosity > 0.0:
+        xx, xy, yy = film_matrix(p.film, x, y, vx, vy)
+        fx += xx * vx + xy * vy
+        fy += xy * vx + yy * vy
+    return fx, fy, stop
+
+
+@kernel
+def rates(p, state, z, dz, dheat):
+    """Force as `force_now` has it (N, N); fills dz (m/s) of the slides, dheat (6,) (W) of the elements."""
+    x, y, vx, vy = state[0], state[1], state[2], state[3]
+    fx, fy, stop = force_now(p, state, z)
+    for i in range(HEATS):
+        dheat[i] = 0.0
+    linear_heat(p, state, 1.0, dheat)
+    for i in range(SLIDES):
+        zx, zy = z[2 * i], z[2 * i + 1]
+        dz[2 * i], dz[2 * i + 1] = 0.0, 0.0
+        if p.slide[i].stiffness > 0.0 and p.slide[i].force > 0.0:
+            size, reach = math.hypot(zx, zy), p.slide[i].force / p.slide[i].stiffness
+            away = (zx * vx + zy * vy) / size if size >= reach else 0.0  # m/s, that the foot slides
+            dz[2 * i], dz[2 * i + 1] = vx, vy
+            if away > 0.0:
+                dz[2 * i] -= away * zx / size
+                dz[2 * i + 1] -= away * zy / size
+                dheat[SLIDE] += p.slide[i].force * away
+    if stop > 0.0:
+        stroke = math.hypot(x, y)
+        rate = (x * vx + y * vy) / stroke
+        dheat[STOP] = (stop - stop_force(p.stop, stroke, 0.0)) * rate
+    if p.film.viscosity > 0.0:
+        xx, xy, yy = film_matrix(p.film, x, y, vx, vy)
+        dheat[FILM] = xx * vx * vx + 2.0 * xy * vx * vy + yy * vy * vy
+    return fx, fy
+
+
+@kernel
+def tangent(p):
+    """Stiffness (N/m) and damping (N s/m) at the relaxed place, slides sticking; the mean of x and y."""
+    k, c = 0.5 * (p.spring.xx + p.spring.yy), 0.5 * (p.damper.xx + p.damper.yy)
+    for i in range(SLIDES):
+        k += p.slide[i].stiffness if p.slide[i].force > 0.0 else 0.0
+    for i in range(BRANCHES):
+        k += p.branch[i].stiffness
+    if p.film.viscosity > 0.0:
+        xx, _, yy = film_matrix(p.film, 0.0, 0.0, 1.0, 0.0)
+        c += 0.5 * (xx + yy)
+    return max(k, 0.0), max(c, 0.0)
+
+
+@kernel
+def quickness(p, mass, state, fx, fy, step):
+    """Fastest rate (rad/s) of slides, stop and film within the `step` (s) ahead, under the force (N)."""
+    k = 0.0
+    for i in range(SLIDES):
+        k += p.slide[i].stiffness if p.slide[i].force > 0.0 else 0.0
+    stroke, speed = math.hypot(state[0], state[1]), math.hypot(state[2], state[3])
+    push = math.hypot(fx, fy)
+    if p.stop.stiffness > 0.0 and stroke + step * (speed + step * push / mass) > p.stop.gap:
+        n = p.stop.exponent
+        depth = max(stroke - p.stop.gap, (push / p.stop.stiffness) ** (1.0 / n))
+        depth = max(depth, (0.5 * (n + 1.0) * mass * speed * speed / p.stop.stiffness) ** (1.0 / (n + 1.0)))
+        k += n * p.stop.stiffness * depth ** (n - 1.0)
+    rate = math.sqrt(k / mass)
+    if p.film.viscosity > 0.0:
+        xx, _, yy = film_matrix(p.film, state[0], state[1], state[2], state[3])
+        rate += (xx + yy) / mass
+    return rate
+
+
+@kernel
+def note_peaks(told, stop, state):
+    """Keep in `told` (`Told`) the largest stroke and force of the stop, as they are in `state`."""
+    stroke = math.hypot(state[0], state[1])
+    told.peak_stroke = max(told.peak_stroke, stroke)
+    if stop.stiffness > 0.0 and stroke > stop.gap:
+        rate = (state[0] * state[2] + state[1] * state[3]) / stroke
+        told.peak_stop_force = max(told.peak_stop_force, stop_force(stop, stroke, rate))
+
+
+@kernel
+def note_hit(told, stop, before, after, time, h):
+    """Keep in `told` that a step of h (s) from `time` (s) led the stroke (m) into the stop, if it did."""
+    if stop.stiffness > 0.0 and after > stop.gap >= before:
+        if told.stop_hits == 0:
+            told.stop_time = time + h * (stop.gap - before) / (after - before)
+        told.stop_hits += 1
+
+
+@kernel
+def tell(told, state, stop, heat):
+    """Fill in `told`: stroke of `state`, force of the stop (N) and heat (6,) (J)."""
+    told.stroke = math.hypot(state[0], state[1])
+    told.peak_stroke = max(told.peak_stroke, told.stroke)
+    told.stop_force = stop
+    told.peak_stop_force = max(told.peak_stop_force, stop)
+    h = told.heat
+    h.spring, h.damper, h.slide = heat[SPRING], heat[DAMPER], heat[SLIDE]
+    h.branch, h.stop, h.film = heat[BRANCH], heat[STOP], heat[FILM]
+
+
+@kernel
+def drives(damper):
+    """Whether dampers drive the carrier in some direction."""
+    mixed = 0.5 * (damper.xy + damper.yx)
+    return damper.xx < 0.0 or damper.yy < 0.0 or damper.xx * damper.yy < mixed * mixed
+
+
+@kernel
+def linear_rate(p, mass):
+    """Fastest rate (rad/s) of springs, dampers and branches under a carrier of `mass` (kg), at most."""
+    k, c = p.spring, p.damper
+    stiffness = max(abs(k.xx) + abs(k.xy), abs(k.yy) + abs(k.yx))
+    for i in range(BRANCHES):
+        stiffness += p.branch[i].stiffness
+    return math.sqrt(stiffness / mass) + max(abs(c.xx) + abs(c.xy), abs(c.yy) + abs(c.yx)) / mass
+
+
+@kernel
+def _leant(p, weight, reach):
+    """Place (m, m) where the springs and `reach` (N/m) more in both directions bear `weight` (N)."""
+    k = p.spring
+    xx, yy = k.xx + reach, k.yy + reach
+    det = xx * yy - k.xy * k.yx
+    if det > 0.0:
+        return k.xy * weight / det, -xx * weight / det
+    return 0.0, (-weight / yy if yy > 0.0 and k.xy == 0.0 else 0.0)
+
+
+@kernel
+def sag(p, weight):
+    """Where the carrier rests (m, m) under `weight` (N) on springs and stop, slides slack.
+
+    The middle where nothing bears it. The stop stands for a spring of its secant stiffness, which is found
+    by bisection.
+    """
+    x, y = _leant(p, weight, 0.0)
+    stroke, s = math.hypot(x, y), p.stop
+    free = p.spring.yy <= 0.0
+    if weight <= 0.0 or s.stiffness <= 0.0 or (stroke <= s.gap and not free):
+        return x, y
+    low, high = 0.0, weight / (s.gap + (weight / s.stiffness) ** (1.0 / s.exponent))
+    for _ in range(200):
+        secant = 0.5 * (low + high)
+        x, y = _leant(p, weight, secant)
+        stroke = math.hypot(x, y)
+        if stop_force(s, stroke, 0.0) > secant * stroke:
+            low = secant
+        else:
+            high = secant
+    return x, y
+
+
+def elements_of(value: Callable[[str], float]) -> Elements:
+    """The elements of a mount whose parameters `value` gives by name ("spring.xx", ...), SI."""
+    directions = ("xx", "yy", "xy", "yx")
+    return Elements(
+        Stiffness(*(value(f"spring.{one}") for one in directions)),
+        Damping(*(value(f"damper.{one}") for one in directions)),
+        tuple(
+            Slide(value(f"slide[{k}].stiffness"), value(f"slide[{k}].force")) for k in range(1, SLIDES + 1)
+        ),
+        tuple(
+            Branch(value(f"branch[{k}].stiffness"), value(f"branch[{k}].time"))
+            for k in range(1, BRANCHES + 1)
+        ),
+        Stop(*(value(f"stop.{field.name}") for field in fields(Stop))),
+        Film(
+            value("film.radius"),
+            value("film.length"),
+            value("film.clearance"),
+            value("film.viscosity"),
+            int(value("film.cavitation")),
+        ),
+    )
+
+
+def dynamic_stiffness(p: Elements, omega: float, amplitude: float = 0.0) -> np.ndarray:
+    """Force over way of a mount, (2, 2) complex (N/m), swinging as exp(i omega t); omega: rad/s.
+
+    Row: direction of the force that resists, column: of the motion; x, y. Springs, dampers and branches
+    are exact. Slides, stop and film are linearised harmonically for a circle of radius `amplitude` (m)
+    about the relaxed place, either way round; 0: slides stick, the film is that of small motion.
+
+        slide   force^2/(k a^2) + i force/a sqrt(1 - (force/(k a))^2)    where a > force/k
+        film    (C_tt i + 2 s e/(1 - e^2)^2 if torn) omega, C_tt = s pi (1 - e^2)^(-3/2), half if torn
+    """
+    k, c = p.spring, p.damper
+    found = np.array([[k.xx, k.xy], [k.yx, k.yy]], complex)
+    found += 1j * omega * np.array([[c.xx, c.xy], [c.yx, c.yy]])
+    alike = 0.0j
+    for branch in p.branch:
+        alike += branch.stiffness * 1j * omega * branch.time / (1.0 + 1j * omega * branch.time)
+    for one in p.slide:
+        if one.stiffness <= 0.0 or one.force <= 0.0:
+            continue
+        reach = one.force / one.stiffness
+        if amplitude <= reach:
+            alike += one.stiffness
+        else:
+            share = reach / amplitude
+            alike += one.stiffness * share * complex(share, math.sqrt(1.0 - share * share))
+    if p.stop.stiffness > 0.0 and amplitude > p.stop.gap:
+        alike += p.stop.stiffness * (amplitude - p.stop.gap) ** p.stop.exponent / amplitude
+    alike += _film_stiffness(p.film, omega, amplitude)
+    return found + alike * np.eye(2)
+
+
+def _film_stiffness(film: Film, omega: float, amplitude: float) -> complex:
+    """Of a film, as `dynamic_stiffness`, while its journal circles at `amplitude` (m)."""
+    if film.viscosity <= 0.0:
+        return 0.0j
+    e = min(amplitude / film.clearance, 1.0 - THINNEST)
+    s = film.viscosity * film.radius * (film.length / film.clearance) ** 3
+    across = s * math.pi * (1.0 - e * e) ** -1.5
+    if film.cavitation == 0:
+        return 1j * omega * across
+    return complex(abs(omega) * 2.0 * s * e / (1.0 - e * e) ** 2, 0.5 * omega * across)

@@ -1,0 +1,10 @@
+"""FMU: controller of magnetic bearings."""
+
+from touchdown.bearings.surroundings.amb_controller import MODEL
+from touchdown.fmus.slave import ModelSlave
+
+
+class MagneticController(ModelSlave):
+    """controller of magnetic bearings."""
+
+    model = MODEL

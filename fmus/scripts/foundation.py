@@ -1,0 +1,10 @@
+"""FMU: foundation under several touchdown bearings."""
+
+from touchdown.bearings.surroundings.foundation import MODEL
+from touchdown.fmus.slave import ModelSlave
+
+
+class Foundation(ModelSlave):
+    """foundation under several touchdown bearings."""
+
+    model = MODEL

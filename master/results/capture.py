@@ -1,0 +1,140 @@
+"""Whether a rotor that was to be levitated again is captured, seat by seat.
+
+With the command at t_c, c the clearance of a touchdown bearing and r the true distance of its journal from
+the bearing's middle:
+
+captured    from some t_k <= t_c + WITHIN on, r <= c/2 for HOLD and for TURNS turns of the rotor, and there
+            is no contact from t_k to the end of the run; t_k - t_c is the capture time
+lost        else, and why: through the gap (the journal came to the magnets: what follows is void), whirl
+            (by the whirl's verdict, still so at the end), not lifted (contact in more than LASTING of the
+            time from t_c on), rebounds (contacts without either)
+undecided   not captured, and the run ends before t_c + WITHIN and the time to hold
+
+Forces are means over macro steps, at recorded times. What commands a rotor tells the time of it
+(`commanded_time`); what holds one by magnets tells of its coils.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..coupling.connections import Attachment
+from .ending import Readable, housing_port
+from .recording import Recording
+from .whirl.verdict import Kind, kind, verdict_class
+
+WITHIN = 0.5  # s
+HOLD, TURNS = 0.05, 5.0  # s; turns
+SHARE = 0.5  # of the clearance
+LASTING = 0.9  # of the time from the command on
+COMMANDED = "commanded_time"  # s, simulation's clock, of a controller; below zero: never
+GAP = "least_gap"  # m, of an actuator
+COILS = (  # figures of actuators: key, variable, and which of several counts
+    ("largest_coil_current_A", "peak_current", max),
+    ("time_at_current_limit_s", "limits.current_time", max),
+    ("time_at_voltage_limit_s", "limits.voltage_time", max),
+)
+
+
+@dataclass(frozen=True)
+class Capture:
+    """The verdict at one seat, and what it rests on."""
+
+    words: str
+    after: float | None  # s, capture time; None where it is not captured
+    last_contact: float | None  # s after the command; None: none
+    peak_force: float  # N, after the command
+
+
+def judge(
+    time: np.ndarray, radius: np.ndarray, force: np.ndarray, clearance: float, hold: float, lost: str = ""
+) -> Capture:
+    """The verdict on a seat; arrays (n,).
+
+    time: s since the command; radius: m, of the journal from the bearing; force: N, of the contact;
+    hold: s, for which it must stay; lost: why it is lost if it is not captured, where that is known.
+    """
+    later = time >= 0.0
+    time, radius, touching = time[later], radius[later], force[later] > 0.0
+    peak = float(force[later].max(initial=0.0))
+    contacts = np.flatnonzero(touching)
+    last = float(time[contacts[-1]]) if len(contacts) else None
+    free = int(contacts[-1]) + 1 if len(contacts) else 0
+    outside = np.flatnonzero(radius > SHARE * clearance)
+    begins = [free, *(int(k) + 1 for k in outside if k >= free)]
+    for first in begins:
+        if first >= len(time) or time[first] > WITHIN:
+            break
+        leaves = outside[outside >= first]
+        end = time[leaves[0]] if len(leaves) else time[-1]
+        if end - time[first] >= hold:
+            return Capture("captured", float(time[first]), last, peak)
+    if not len(time) or time[-1] < WITHIN + hold:
+        return Capture("undecided: the run ends too early", None, last, peak)
+    why = lost or ("not lifted" if touching.mean() > LASTING else "rebounds")
+    return Capture(f"lost: {why}", None, last, peak)
+
+
+def capture_figures(
+    system: Readable,
+    recording: Recording,
+    zero: float,
+    seats: Mapping[str, Attachment],
+    figures: Mapping[str, object],
+) -> dict[str, object]:
+    """Figures of a run whose rotor was to be levitated again; none of others.
+
+    zero: s on the simulation's clock; seats: by name; figures: of the run, its whirls among them. Raises
+    NotRecordedError where motion or force was not recorded.
+    """
+    times = _told(system, COMMANDED)
+    if not times or max(times) < 0.0:
+        return {}
+    command = max(times) - zero
+    found: dict[str, object] = {}
+    captures = {
+        name: _at_seat(system, recording, command, a, _known(system, name, figures))
+        for name, a in seats.items()
+        if f"{a.bearing}.clearance" in system
+    }
+    for name, one in captures.items():
+        found[f"capture_{name}"] = one.words
+        found[f"capture_{name}_time_s"] = one.after
+        found[f"capture_{name}_last_contact_s"] = one.last_contact
+        found[f"capture_{name}_peak_force_N"] = one.peak_force
+    if captures:
+        found["capture_command_time_s"] = command
+    for key, variable, which in COILS:
+        if values := _told(system, variable):
+            found[key] = which(values)
+    return found
+
+
+def _told(system: Readable, variable: str) -> list[float]:
+    """The values at the end of all components' variables of that name."""
+    return [
+        system.value(f"{name}.{variable}") for name in system.components if f"{name}.{variable}" in system
+    ]
+
+
+def _known(system: Readable, name: str, figures: Mapping[str, object]) -> str:
+    """Why a rotor that is not captured is lost; "": not known yet."""
+    if any(gap <= 0.0 for gap in _told(system, GAP)):
+        return "through the gap"
+    words = verdict_class(str(figures.get(f"whirl_{name}") or ""))
+    return "whirl" if kind(words) is Kind.SUSTAINED else ""
+
+
+def _at_seat(system: Readable, recording: Recording, command: float, a: Attachment, lost: str) -> Capture:
+    x, y = (recording[a.motion(axis)] for axis in "xy")
+    port = housing_port(system, a)
+    if port and f"{port}.x" in recording:
+        x, y = x - recording[f"{port}.x"], y - recording[f"{port}.y"]
+    force = np.hypot(recording[a.load("fx")], recording[a.load("fy")])
+    speed = abs(system.value(a.motion("omega"))) if a.motion("omega") in system else 0.0
+    hold = max(HOLD, 2.0 * np.pi * TURNS / speed if speed > 0.0 else HOLD)
+    clearance = system.value(f"{a.bearing}.clearance")
+    return judge(recording.time - command, np.hypot(x, y), force, clearance, hold, lost)

@@ -1,0 +1,91 @@
+"""A scene's rotor as the magnetic bearings' linear plant, free of everything else.
+
+Coordinates p of both planes, x then y (2n), mass-normalised:
+
+    p'' + damping p' + Omega (gyroscopic coupling) p' + omega^2 p = acts^T f
+
+The stators are taken as fixed in space.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....rotor.modal.modes import Basis
+from ...common.errors import TouchdownError
+from ...coupling.connections import Attachment
+from ...coupling.simulation import opened
+from ...coupling.system import System
+from ...scene.scene import Scene
+from ..rotor.supports import seen_in
+
+RIGID = ("mass", "inertia")  # parameters of a rotor that is one mass in the plane
+
+
+@dataclass(frozen=True)
+class FreeRotor:
+    """A rotor of one plane's modes, seen at some of its places."""
+
+    omega: np.ndarray  # (n,), rad/s
+    damping_ratio: float  # of the elastic modes
+    gyroscopic: np.ndarray  # (n, n)
+    speed: float  # rad/s, counter-clockwise
+    acts: np.ndarray  # (k, n), 1/kg^0.5, where bearing k acts
+    sees: np.ndarray  # (k, n), where its sensors are
+
+    @property
+    def places(self) -> int:
+        """Coordinates of both planes."""
+        return 2 * len(self.omega)
+
+    def rates(self, speed: float) -> np.ndarray:
+        """Of (p, p') per (p, p') (4n, 4n) at a speed (rad/s)."""
+        n = len(self.omega)
+        a = np.zeros((4 * n, 4 * n))
+        a[: 2 * n, 2 * n :] = np.eye(2 * n)
+        a[2 * n :, : 2 * n] = -np.diag(np.tile(self.omega**2, 2))
+        a[2 * n :, 2 * n :] = -np.diag(np.tile(2.0 * self.damping_ratio * self.omega, 2))
+        turned = speed * self.gyroscopic
+        a[2 * n : 3 * n, 3 * n :] -= turned
+        a[3 * n :, 2 * n : 3 * n] += turned
+        return a
+
+    def along(self, shape: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Displacement along a direction (2,) per coordinate (2n,), of a place with `shape` (n,)."""
+        return np.concatenate((direction[0] * shape, direction[1] * shape))
+
+
+def free_rotor(scene: Scene, bearings: Sequence[str], sensing: Sequence[bool]) -> FreeRotor:
+    """The rotor that `bearings` hold; sensing: whether each looks through its sensor, not at its journal.
+
+    Raises TouchdownError where it is neither rigid nor of beam elements.
+    """
+    with opened(scene, in_process=True, listening=False) as system:
+        held = _held(scene, system, bearings)
+        body = held[0].body
+        variables = system.components[body].variables
+        if set(RIGID) <= variables.keys() and "modes" not in variables:
+            root = 1.0 / np.sqrt(system.value(f"{body}.mass"))
+            one = np.full((len(held), 1), root)
+            speed = system.value(f"{body}.speed")
+            return FreeRotor(np.zeros(1), 0.0, np.zeros((1, 1)), speed, one, one)
+    seen = seen_in(scene)
+    basis: Basis = seen.basis
+    acts = basis.deflections([seen.shaft.node(a.body_port) for a in held])
+    looks = [
+        next(iter(seen.sensors[a.bearing].values()), a.body_port) if by_sensor else a.body_port
+        for a, by_sensor in zip(held, sensing, strict=True)
+    ]
+    sees = basis.deflections([seen.shaft.node(station) for station in looks])
+    return FreeRotor(basis.omega, seen.damping_ratio, basis.gyroscopic, seen.speed, acts, sees)
+
+
+def _held(scene: Scene, system: System, bearings: Sequence[str]) -> list[Attachment]:
+    """Of each bearing, that on its journal."""
+    found = [a for b in bearings for a in system.attachments if a.bearing == b and a.on_journal]
+    if len(found) != len(bearings) or len({a.body for a in found}) != 1:
+        raise TouchdownError(f"scene {scene.name}: its magnetic bearings must hold one rotor")
+    return found

@@ -1,0 +1,85 @@
+"""The loops of a scene as text and as a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...results.run import make_writable
+from ...scene.scene import Scene
+from .figure import draw
+from .loops import Controlled, Sampled
+from .margins import zone
+from .over_speed import Found, loops_in
+
+HZ = 1.0 / (2.0 * math.pi)
+RPM = 30.0 / math.pi
+POLES = 6  # told, the slowest first
+MIN_IMAGINARY = 1e-2  # of a pole's size; less does not swing
+
+
+def report(scene: Scene, folder: Path, speeds: Sequence[float] = ()) -> str:
+    """`loops_in` as text; loop.png in `folder`."""
+    found = loops_in(scene, speeds)
+    make_writable(folder)
+    draw(found, folder / "loop.png")
+    return "\n".join(lines(found))
+
+
+def lines(found: Found) -> Iterator[str]:
+    """What there is to say, a line each."""
+    yield found.scene.title
+    loops, own = found.loops, found.own
+    if isinstance(loops, Sampled):
+        delay = loops.laws.delay
+        later = "a sample" if delay == 1 else f"{delay} samples"
+        yield f"sampled every {1e6 * loops.period:g} us; set points act {later} later"
+        for bearing in loops.bearings:
+            yield _magnet(bearing, found.clearance)
+    yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
+    yield "  loop               max |S|     dB  zone      at Hz  crossing Hz  delay margin ms"
+    for name, one in zip(loops.names, own.margins, strict=True):
+        crossing = f"{HZ * max(one.crossings):11.4g}" if one.crossings else "       none"
+        delay = f"{1e3 * one.delay:15.4g}" if math.isfinite(one.delay) else "            any"
+        yield (
+            f"  {name:<17}{one.peak:9.4f}{20 * math.log10(one.peak):7.2f}  {one.zone:<4}"
+            f"{HZ * one.at:11.2f}  {crossing}  {delay}"
+        )
+    yield "  zones by the limits 3, 4, 5 (9.5, 12, 14 dB) that are quoted of ISO 14839-3"
+    yield "\nover the speed, the worst loop:"
+    yield "       rpm  max |S|  zone  slowest pole 1/s"
+    for at in found.speeds:
+        peak = max(one.peak for one in at.margins)
+        unstable = "  unstable" if at.poles[0].real > 0.0 else ""
+        yield f"  {RPM * at.speed:8.0f}{peak:9.4f}  {zone(peak):<4}{at.poles[0].real:14.4g}{unstable}"
+    yield f"\nslowest poles at {RPM * own.speed:g} rpm:"
+    yield "    real 1/s         Hz   damping ratio"
+    yield from _poles(own.poles)
+
+
+def _magnet(bearing: Controlled, clearance: float) -> str:
+    """What the magnets can do."""
+    one = bearing.actuator
+    told = (
+        f"{bearing.name}: k_i {one.current_factor:.4g} N/A, k_s {one.displacement_factor / 1e3:.4g} kN/m, "
+        f"slew {one.slew / 1e3:.4g} kN/s"
+    )
+    if not clearance or not bearing.load:
+        return told
+    lifting = one.lifting_current(bearing.load, clearance, bearing.angle)
+    where = f"from {1e3 * clearance:g} mm below the centre"
+    return f"{told}; {lifting:.4g} A in its coils lift {bearing.load:.4g} N {where}"
+
+
+def _poles(poles: np.ndarray) -> Iterator[str]:
+    """The slowest, of a pair one."""
+    shown = [p for p in poles if p.imag >= 0.0 or abs(p.imag) < MIN_IMAGINARY * abs(p)]
+    told: list[str] = []
+    for pole in shown:
+        swings = abs(pole.imag) >= MIN_IMAGINARY * abs(pole)
+        end = f"{HZ * pole.imag:11.4g}{-pole.real / abs(pole):16.4f}" if swings else ""
+        told.append(f"  {pole.real:10.4f}{end}")
+    yield from list(dict.fromkeys(told))[:POLES]

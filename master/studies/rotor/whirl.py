@@ -1,0 +1,393 @@
+"""The whirl that a scene's rotor may get into, foretold without a drop: how fast, how hard, what drives it.
+
+The bearings are measured on a rig, each by itself: its journal goes round pressed into it, and the force
+across and along the circle is read. Receptances of rotor and mount do the rest
+(`rotor.modal.contact_whirl`).
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ....bearings import rating
+from ....bearings.surroundings.mount_law import dynamic_stiffness, elements_of
+from ....rotor.modal.contact_whirl import (
+    Carrier,
+    Circle,
+    ContactWhirl,
+    Seat,
+    circling,
+    receptance,
+    rigid,
+    steady,
+)
+from ...common.errors import TouchdownError
+from ...common.files import replacing
+from ...coupling.connections import Attachment
+from ...coupling.simulation import opened
+from ...coupling.system import System
+from ...scene.scene import Scene
+from ..sweep.definition import Design
+from .rig import Rig
+from .supports import SHUTDOWN, Seen, foundation_of, seen_in
+
+DEPTHS = np.geomspace(1e-6, 150e-6, 8)  # m, that journals are pressed in on the rig
+BEGIN = 0.9  # of the clearance: where a journal on the rig starts, without a touch
+MEASURED_AT = (150.0, 700.0)  # Hz
+SLOWEST, FASTEST = 5.0, 3000.0  # Hz, between which a whirl is looked for
+BALLS = "balls.force"  # N, of the most loaded ball
+CLEARANCE, SLIDING = "clearance", "slide[1].stiffness"
+HERTZ = 2.0 * math.pi
+BACKWARD, FORWARD = -1.0, 1.0
+# A whirl's centrifugal acceleration over gravity, above which drops of rotor I went on whirling and below
+# which they fell back, on 40 mounts drawn at random: found by running them, not derived
+LASTING = 10.0
+SURE = 1.5  # a margin from which on, or one over it, an answer is sure
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A bearing whose journal went round pressed in, by frequency and depth."""
+
+    omega: np.ndarray  # (F,), rad/s, without its sign
+    depth: np.ndarray  # (D,), m
+    force: np.ndarray  # (F, D), complex, N: outwards, and along the circle in the sense of the whirl
+    ball: np.ndarray  # (F, D), N, of the most loaded ball; 0: it tells none
+
+    def __call__(self, depth: float, omega: float) -> complex:
+        """Force on the journal (N), outwards and counter-clockwise, on a circle at `omega` (rad/s)."""
+        found = self._between(omega, [self._at(row, depth) for row in self.force])
+        return complex(found.real, math.copysign(1.0, omega) * found.imag)
+
+    def loaded(self, depth: float, omega: float) -> float:
+        """The most loaded ball (N)."""
+        shares = self.ball / np.abs(self.force)
+        share = self._between(omega, [np.interp(math.log(depth), self._logs, row) for row in shares])
+        return float(np.real(share)) * abs(self(depth, omega))
+
+    @cached_property
+    def _logs(self) -> np.ndarray:
+        return np.log(self.depth)
+
+    def _at(self, force: np.ndarray, depth: float) -> complex:
+        """At one frequency: a power law from depth to depth, beyond them the last one."""
+        at, logs, pressed = math.log(depth), self._logs, np.log(-np.real(force))
+        k = min(max(int(np.searchsorted(logs, at)) - 1, 0), len(logs) - 2)
+        part = (at - logs[k]) / (logs[k + 1] - logs[k])
+        inwards = math.exp(pressed[k] + part * (pressed[k + 1] - pressed[k]))
+        ratio = float(np.interp(at, logs, np.imag(force) / np.real(force)))
+        return complex(-inwards, -inwards * ratio)
+
+    def _between(self, omega: float, found: Sequence[complex]) -> complex:
+        """Of the values at the measured frequencies, by the square of them, as inertia goes."""
+        squares = self.omega**2
+        values = np.array(found)
+        at = min(max(omega * omega, squares[0]), squares[-1])
+        return complex(np.interp(at, squares, np.real(values)), np.interp(at, squares, np.imag(values)))
+
+
+@dataclass(frozen=True)
+class Journal:
+    """A touchdown bearing of the scene, measured, and what it stands on."""
+
+    name: str
+    node: int
+    clearance: float  # m
+    ball_limit: float  # N, of a ball, that dents a race; nan: it tells too little of its balls
+    measured: Mapping[float, Measured]  # by direction
+    carrier: Carrier
+
+    def seat(self, direction: float) -> Seat:
+        """For `ContactWhirl`."""
+        return Seat(self.clearance, self.measured[direction], self.carrier)
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A scene's rotor in its touchdown bearings."""
+
+    seen: Seen
+    spin: float  # rad/s, of the rotor; counter-clockwise
+    journals: tuple[Journal, ...]
+
+    def foretold(self, direction: float = BACKWARD) -> Foretold:
+        """The whirl against the spin, or with it."""
+        sign = direction * math.copysign(1.0, self.spin)
+        rotor = receptance(
+            self.seen.basis, self.seen.damping_ratio, [j.node for j in self.journals], self.spin
+        )
+        found = Foretold(self, direction, (), None)
+        if found.braked:
+            return found
+        whirl = ContactWhirl(rotor, [j.seat(sign) for j in self.journals])
+        way, settled = whirl.settled(sign * HERTZ * SLOWEST, sign * HERTZ * FASTEST)
+        return replace(found, way=tuple(way), settled=settled)
+
+
+@dataclass(frozen=True)
+class Foretold:
+    """What is to be expected of a whirl."""
+
+    machine: Machine
+    direction: float
+    way: tuple[Circle, ...]  # through which it is driven
+    settled: Circle | None
+
+    @property
+    def frequency(self) -> float:
+        """Hz, of the circle that it settles in; nan: there is none."""
+        return abs(self.settled.omega) / HERTZ if self.settled else math.nan
+
+    @property
+    def balls(self) -> tuple[float, ...]:
+        """The most loaded ball (N) of each bearing."""
+        if self.settled is None:
+            return ()
+        omega, sign = self.settled.omega, math.copysign(1.0, self.settled.omega)
+        there = zip(self.machine.journals, self.settled.depth, strict=True)
+        return tuple(j.measured[sign].loaded(float(depth), omega) for j, depth in there)
+
+    @property
+    def margin(self) -> float:
+        """Its centrifugal acceleration over what lasts against gravity (`LASTING`); 0: there is none."""
+        if self.settled is None:
+            return 0.0
+        clearance = min(j.clearance for j in self.machine.journals)
+        gravity = abs(self.machine.seen.gravity)
+        return self.settled.omega**2 * clearance / (LASTING * gravity) if gravity > 0.0 else math.inf
+
+    @property
+    def answer(self) -> str:
+        """Whether it lasts once it has begun, in words."""
+        if self.margin >= SURE:
+            return "and lasts once it has begun"
+        if self.margin <= 1.0 / SURE:
+            return "too slow to last against gravity"
+        return "and whether it lasts against gravity is not sure"
+
+    @property
+    def why_none(self) -> str:
+        """Why there is none, in words."""
+        if not self.way:
+            return "the bearings' forces brake it" if self.braked else "rotor and mounts allow no circle"
+        if self.way[-1].drive >= 1.0:
+            return "rotor and mounts brake more than the bearings drive"
+        return f"it would be driven beyond {abs(self.way[-1].omega) / HERTZ:.0f} Hz"
+
+    @property
+    def braked(self) -> bool:
+        """Whether no bearing drives it."""
+        sign = self.direction * math.copysign(1.0, self.machine.spin)
+        return all(np.all(np.imag(j.measured[sign].force) <= 0.0) for j in self.machine.journals)
+
+
+def machine(scene: Scene, spin: float | None = None) -> Machine:
+    """A scene's rotor in its touchdown bearings, measured; spin: rad/s, by default that of the scene.
+
+    Raises TouchdownError where its rotor is none of elements, or no bearing may be touched.
+    """
+    seen = seen_in(scene)
+    turning = seen.speed if spin is None else math.copysign(spin, seen.speed)
+    if turning == 0.0:
+        raise TouchdownError(
+            f"scene {scene.name}: its rotor does not spin, and drives no whirl; give --speed"
+        )
+    with opened(seen.scene, in_process=True, listening=False) as idle:
+        touchdown = [a for a in seen.journals if SHUTDOWN not in idle.components[a.bearing].variables]
+        told = {a.bearing: _numbers(idle.value, idle.components[a.bearing].variables, a) for a in touchdown}
+    if not touchdown:
+        raise TouchdownError(f"scene {scene.name} has no touchdown bearing to whirl in")
+    kept: _Kept = {}
+    journals = tuple(_journal(seen, a, turning, *told[a.bearing], kept) for a in touchdown)
+    return with_mounts(Machine(seen, turning, journals), scene)
+
+
+def _numbers(value: Callable[[str], float], known: Iterable[str], a: Attachment) -> tuple[float, float]:
+    """Clearance (m) of a bearing, and the load (N) of a ball that dents a race."""
+    if CLEARANCE not in known:
+        raise TouchdownError(
+            f"{a.bearing} tells no {CLEARANCE}, so that it is not known from where on it is touched; map "
+            "one of its parameters to that name ([components.NAME.names])"
+        )
+    told = {
+        n: value(f"{a.bearing}.{n}") for n in known if n.startswith(("balls.", "ring.")) and "[" not in n
+    }
+    try:
+        bearing = rating.RatedBearing.of(told)
+    except (KeyError, ValueError):  # it does not tell its balls, or is no ball bearing
+        return value(f"{a.bearing}.{CLEARANCE}"), math.nan
+    races = (rating.point_contact(bearing, race) for race in (rating.INNER, rating.OUTER))
+    limit = min(float(race.load(bearing.pressure_limit)) for race in races)
+    return value(f"{a.bearing}.{CLEARANCE}"), limit
+
+
+def _journal(
+    seen: Seen, a: Attachment, spin: float, clearance: float, ball_limit: float, kept: _Kept
+) -> Journal:
+    spec = seen.scene.components[a.bearing]
+    alike = (spec.fmu, spec.preset, tuple(sorted(spec.set.items(), key=str)), a.bearing_port)
+    if alike not in kept:
+        kept[alike] = {sign: _measured(seen, a, spin, clearance, sign) for sign in (BACKWARD, FORWARD)}
+    return Journal(a.bearing, seen.shaft.node(a.body_port), clearance, ball_limit, kept[alike], rigid)
+
+
+def _carrier(system: System, place: str) -> Carrier:
+    """What stands at a place, COMPONENT.PORT, of an initialised system."""
+    foundation = foundation_of(system, place)
+    if foundation is None:
+        return rigid
+    name = place.partition(".")[0]
+    if f"{name}.{SLIDING}" not in system:
+        return steady(foundation.mass, foundation.stiffness, foundation.damping)
+    elements = elements_of(lambda inner: system.value(f"{name}.{inner}"))
+    return circling(lambda omega, stroke: dynamic_stiffness(elements, omega, stroke), foundation.mass)
+
+
+_Kept = dict[tuple[object, ...], dict[float, Measured]]
+
+
+def _measured(seen: Seen, a: Attachment, spin: float, clearance: float, sign: float) -> Measured:
+    """A bearing on the rig, its journal going round in the direction of `sign`."""
+    # the deepest first: it makes the ring roll with the journal, as in a whirl that has lasted
+    radii = [BEGIN * clearance, *(clearance + DEPTHS[::-1])]
+    omega = HERTZ * np.array(MEASURED_AT)
+    force = np.empty((len(omega), len(DEPTHS)), complex)
+    ball = np.zeros(force.shape)
+    for row, rate in enumerate(omega):
+        with opened(seen.scene, in_process=True, listening=False) as idle:
+            component = idle.components[a.bearing]
+            step = seen.scene.run.macro_step * idle.every[a.bearing]
+            rig = Rig(component, a.bearing_port, seen.places[a.bearing], step, BALLS)
+            rig.spin = spin
+            found = rig.circled(radii, sign * rate)[::-1]
+        force[row] = [complex(one.force.real, sign * one.force.imag) for one in found]
+        if BALLS in component.variables:
+            ball[row] = [one.watched for one in found]
+    if np.any(np.real(force) >= 0.0):
+        raise TouchdownError(
+            f"{a.bearing} does not push back a journal that goes round in it, pressed in by "
+            f"{1e6 * DEPTHS[0]:g} to {1e6 * DEPTHS[-1]:g} um; no whirl can be foretold"
+        )
+    return Measured(omega, DEPTHS, force, ball)
+
+
+# -- over settings of what the bearings stand on -----------------------------------------------------
+
+
+def with_mounts(known: Machine, scene: Scene) -> Machine:
+    """The same rotor and bearings on the mounts of `scene`, which differs from theirs in nothing else."""
+    mounts = {place.partition(".")[0] for place in known.seen.mounts.values()}
+    alone = replace(
+        scene,
+        components={name: spec for name, spec in scene.components.items() if name in mounts},
+        attach=(),
+        sense=(),
+        connect=(),
+        bond=(),
+        zero=None,
+        energy_scale=(),
+        gaps=(),
+        requirements=(),
+    )
+    with opened(alone, in_process=True, listening=False) as system:
+        system.initialise()
+        carriers = {place: _carrier(system, place) for place in known.seen.mounts.values()}
+    journals = tuple(
+        replace(j, carrier=carriers[place]) if (place := known.seen.mounts.get(j.name)) else j
+        for j in known.journals
+    )
+    return replace(known, journals=journals)
+
+
+def over(
+    known: Machine,
+    scene: Scene,
+    points: Sequence[Mapping[str, object]],
+    tick: Callable[[int], object] = lambda done: None,
+) -> list[Foretold]:
+    """The backward whirl of a scene with each of these settings; the machine is that of the scene.
+
+    Bearings are measured anew only where more than their mounts is set. tick: called with how many more
+    are done.
+    """
+    mounts = {place.partition(".")[0] for place in known.seen.mounts.values()}
+    found: list[Foretold] = []
+    for point in points:
+        single = {one.strip(): value for name, value in point.items() for one in name.split(",")}
+        there = scene.set(single)
+        changed = {name for setting in single for name in _components(scene, setting)}
+        made = with_mounts(known, there) if changed <= mounts else machine(there, abs(known.spin))
+        found.append(made.foretold())
+        tick(1)
+    return found
+
+
+def _components(scene: Scene, setting: str) -> set[str]:
+    return {name.partition(".")[0] for name in scene.meant(setting)}
+
+
+# -- for people ------------------------------------------------------------------------------------------
+
+HEAD = "bearing", "force", "most loaded ball", "dents at", "stroke of its mount", "friction needed"
+ASSUMPTIONS = (
+    "a steady circle, as its receptances have it, without unbalance; impacts on the way there press harder",
+    "whether a drop gets into it hangs on friction, phase and alignment: `touchdown verdict` tells",
+)
+
+
+def lines(found: Foretold) -> Iterator[str]:
+    """What is foretold, for people."""
+    seen, way = found.machine.seen, "backward" if found.direction == BACKWARD else "forward"
+    if found.settled is None:
+        yield f"{way} whirl: none; {found.why_none}"
+        return
+    yield f"{way} whirl: {found.frequency:.4g} Hz, {found.answer}"
+    yield (
+        f"  its centrifugal acceleration is {LASTING * found.margin:.3g} times gravity; below {LASTING:g} "
+        "drops of rotor I fell back"
+    )
+    rows: list[tuple[str, ...]] = [HEAD]
+    for k, journal in enumerate(found.machine.journals):
+        ball, limit = found.balls[k], journal.ball_limit
+        rows.append(
+            (
+                journal.name,
+                f"{found.settled.force[k]:,.0f} N",
+                f"{ball:,.0f} N" if ball > 0.0 else "not told",
+                f"{limit:,.0f} N" if math.isfinite(limit) else "not told",
+                f"{1e6 * found.settled.stroke[k]:.3g} um" if journal.name in seen.mounts else "no mount",
+                f"{found.settled.friction[k]:.3g}",
+            )
+        )
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        yield "  " + "  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
+
+
+# -- as a table ------------------------------------------------------------------------------------------
+
+TABLE = "whirl.csv"
+
+
+def write_table(design: Design, found: Sequence[Foretold], folder: Path) -> None:
+    """Settings and what is foretold with them, as CSV."""
+    names = [journal.name for journal in found[0].machine.journals]
+    figures = [f"{what}_{name}" for name in names for what in ("force_N", "ball_force_N", "stroke_um")]
+    with replacing(folder / TABLE) as part, part.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow([*design.names, "frequency_Hz", "margin", *figures])
+        for point, one in zip(design.points, found, strict=True):
+            told: list[float] = []
+            for k in range(len(names)):
+                if one.settled is None:
+                    told += [math.nan] * 3
+                else:
+                    told += [one.settled.force[k], one.balls[k], 1e6 * one.settled.stroke[k]]
+            rows.writerow([*point, one.frequency, one.margin, *told])

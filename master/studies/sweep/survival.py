@@ -1,0 +1,247 @@
+"""How many drops a machine survives, from the drops of a sweep; nothing is run again.
+
+A drop ends it with the probability p that one goes beyond a limit, and takes shares d of what it has, such
+as of its bearings' rating lives. Drops leave it as it was in all else. With p and d drawn from the sweep,
+
+    P(N) = (1 - p)^N P(d_1 + ... + d_N < 1)
+
+p is known to Clopper and Pearson's interval; the sum's distribution is convolved on a grid. Drops that
+failed count as beyond the limit. Drops of a sweep stand for those of the machine as far as its settings are
+drawn as they occur.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import fftconvolve
+from scipy.stats import spearmanr
+
+from ...common.errors import Ended, TouchdownError, one_of
+from ...common.units import to_si
+from ...results.whirl.evidence import CONTACT
+from ...results.whirl.verdict import CONFIDENCE, Share, clopper_pearson
+from .definition import Definition
+from .members import Member
+from .report import keys
+
+CELLS = 16384  # of the grid of shares from 0 to 1
+SAFETY, FATIGUE = "lowest_static_safety", "drops_until_fatigue"
+FEWEST = 8  # drops from which on settings are ranked
+FEWEST_FOR_INDICES = 64  # and first-order indices told
+BINS = 8  # of a setting's values, for its index
+DRAWN = ("random", "Latin hypercube", "Sobol")  # samples that settings are drawn independently in
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What a drop must not go beyond: all figures that begin with `figure`."""
+
+    figure: str
+    value: float
+    at_least: bool = False
+
+    def words(self) -> str:
+        """For people."""
+        return f"{self.figure} {'below' if self.at_least else 'above'} {self.value:g}"
+
+    def worst(self, member: Member) -> float:
+        """The worst of the figures of a drop; nan where it has none, or a touched bearing does not tell."""
+        told = {
+            key.removeprefix(self.figure): value
+            for key, value in member.summary.items()
+            if key.startswith(self.figure)
+        }
+        found = [float(v) for v in told.values() if isinstance(v, int | float)]
+        silent = [tail for tail, value in told.items() if value is None]
+        if not found or any(isinstance(member.summary.get(CONTACT + tail), float) for tail in silent):
+            return math.nan
+        return min(found) if self.at_least else max(found)
+
+    def broken(self, member: Member) -> bool:
+        """Whether a drop goes beyond it, or failed, or does not tell."""
+        worst = self.worst(member)
+        inside = worst >= self.value if self.at_least else worst <= self.value
+        return bool(member.failed) or not inside
+
+
+DEFAULT = Limit(SAFETY, 1.0, at_least=True)
+
+
+@dataclass(frozen=True)
+class Survival:
+    """Of drops like those of a sweep."""
+
+    limit: Limit
+    broken: int
+    count: int
+    shares: Mapping[str, np.ndarray]  # by bearing: of its life that each drop takes, (drops,)
+
+    @property
+    def chance(self) -> Share:
+        """That a drop goes beyond the limit, with its interval."""
+        return clopper_pearson(self.broken, self.count)
+
+    def after(self, drops: int) -> Share:
+        """That the machine survives so many drops, with the interval of the limit's chance.
+
+        Of several bearings each drop takes the largest share: no less than any of them is used up by.
+        """
+        worst = np.maximum.reduce(list(self.shares.values())) if self.shares else np.empty(0)
+        p, used = self.chance, unspent(worst, drops)
+        value, low, high = ((1.0 - part) ** drops * used for part in (p.value, p.high, p.low))
+        return Share(value, low, high)
+
+
+def unspent(shares: np.ndarray, drops: int, cells: int = CELLS) -> float:
+    """Probability that the sum of `drops` shares, drawn from `shares` (any number), is below 1."""
+    if drops < 1 or not len(shares):
+        return 1.0
+    one, whole = _distribution(shares, cells), None
+    while drops:  # by the binary digits of the number; what is beyond 1 is spent, and stays so
+        if drops & 1:
+            whole = one if whole is None else np.maximum(fftconvolve(whole, one)[:cells], 0.0)
+        drops >>= 1
+        if drops:
+            one = np.maximum(fftconvolve(one, one)[:cells], 0.0)
+    assert whole is not None
+    return float(min(whole.sum(), 1.0))
+
+
+def _distribution(shares: np.ndarray, cells: int) -> np.ndarray:
+    """Of shares on a grid of `cells` from 0 on, each between two of its places so that means stay."""
+    at = np.asarray(shares, float) * cells
+    below = np.floor(at)
+    part = at - below
+    found = np.zeros(cells + 1)
+    for place, weight in ((below, 1.0 - part), (below + 1.0, part)):
+        inside = place < cells
+        np.add.at(found, place[inside].astype(int), weight[inside])
+    return found[:cells] / len(at)
+
+
+def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
+    """From the drops of a sweep that were run. Raises TouchdownError where none has the limit's figure."""
+    run = [m for m in members if m.failed or m.summary]
+    run = [m for m in run if m.ended is not Ended.INTERRUPTED]
+    told = [m for m in run if not m.failed and not math.isnan(limit.worst(m))]
+    if not told:
+        known = [
+            key for key in keys(members) if any(isinstance(m.summary.get(key), float) for m in members)
+        ]
+        raise TouchdownError(
+            f"no drop of the sweep has a figure {limit.figure}; {one_of(limit.figure, known)}"
+        )
+    names = [key for key in keys(run) if key.startswith(FATIGUE)]
+    shares = {
+        name.removeprefix(FATIGUE).strip("_") or "bearing": np.array(
+            [_share(m.summary.get(name)) for m in run]
+        )
+        for name in names
+    }
+    return Survival(limit, sum(limit.broken(m) for m in run), len(run), shares)
+
+
+def _share(drops: object) -> float:
+    """Of a life, by how many such drops take all of it; 0 where that is not told."""
+    return 1.0 / drops if isinstance(drops, float) and drops > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class Driver:
+    """How much the limit's figure follows a setting."""
+
+    setting: str
+    rank: float  # Spearman's correlation, -1 to 1
+    index: float | None  # first-order Sobol index; None: the sample tells none
+
+
+def drivers(definition: Definition, members: Sequence[Member], limit: Limit) -> list[Driver]:
+    """Settings by how much the limit's figure follows them, the strongest first; none of too few drops."""
+    rows = [(m, limit.worst(m)) for m in members if not m.failed]
+    rows = [(m, worst) for m, worst in rows if not math.isnan(worst)]
+    if len(rows) < FEWEST:
+        return []
+    figure = np.array([worst for _, worst in rows])
+    drawn = any(kind in definition.about for kind in DRAWN) and len(rows) >= FEWEST_FOR_INDICES
+    found: list[Driver] = []
+    for k, column in enumerate(definition.columns):
+        values = [definition.values[m.number - 1][k] for m, _ in rows]
+        if (
+            not all(isinstance(v, int | float) for v in values)
+            or len(set(values)) < 2
+            or np.ptp(figure) == 0.0
+        ):
+            continue
+        at = np.array(values, float)
+        rank = float(np.asarray(spearmanr(at, figure))[0])
+        found.append(Driver(column.name, rank, first_order(at, figure) if drawn else None))
+    return sorted(found, key=lambda d: -abs(d.rank if d.index is None else d.index))
+
+
+def first_order(setting: np.ndarray, figure: np.ndarray) -> float:
+    """First-order Sobol index of a setting (n,) for a figure (n,), both drawn: variance of means in bins.
+
+    Less what chance alone makes of them; 0 at least.
+    """
+    order = np.argsort(setting, kind="stable")
+    groups = np.array_split(figure[order], BINS)
+    whole = float(np.var(figure))
+    between = sum(len(g) * (g.mean() - figure.mean()) ** 2 for g in groups) / len(figure)
+    within = sum(((g - g.mean()) ** 2).sum() for g in groups) / (len(figure) - BINS)
+    return float(max(0.0, (between - within * (BINS - 1) / len(figure)) / whole))
+
+
+def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterator[str]:
+    """What is known, for people."""
+    p = found.chance
+    interval = f"{_percent(p.low)} to {_percent(p.high)} with {CONFIDENCE:.0%} confidence"
+    yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({_percent(p.value)}; {interval})"
+    if found.broken == 0:
+        yield f"  one in {found.count / 3.0:.0f} cannot be excluded (3/n); more drops would say more"
+    yield f"{'drops':>6}  survived with probability"
+    for n in drops:
+        one = found.after(n)
+        yield f"{n:>6}  {_percent(one.value)} ({_percent(one.low)} to {_percent(one.high)})"
+    for name, shares in found.shares.items():
+        yield f"life that a drop takes, {name}: {shares.mean():.2g} in the mean, {shares.max():.2g} at most"
+    if by:
+        yield f"what {found.limit.figure} follows, by Spearman's rank correlation:"
+        for one in by:
+            index = "" if one.index is None else f", first-order index {one.index:.2f}"
+            yield f"  {one.setting}: {one.rank:+.2f}{index}"
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.3g} %"
+
+
+def read_limit(text: str, found: Sequence[Member]) -> Limit:
+    """A limit as COLUMN=VALUE, with a unit where the column's name ends in one; of a column of the sweep.
+
+    A safety and a gap must not fall below it, all else not exceed it. Raises TouchdownError.
+    """
+    name, equals, value = (part.strip() for part in text.partition("="))
+    known = [key for key in keys(found) if any(isinstance(m.summary.get(key), float) for m in found)]
+    if not equals or not any(key.startswith(name) for key in known) or not name:
+        raise TouchdownError(f"--limit {text}: write COLUMN=VALUE; {one_of(name, known)}")
+    unit = next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")
+    scale = to_si(f"1 {unit}", SI[unit], text) if unit != "1" else 1.0
+    limit = (
+        to_si(value, SI.get(unit, "1"), f"--limit {name}") / scale if " " in value else _number(value, text)
+    )
+    return Limit(name, limit, at_least=name.startswith((SAFETY, FATIGUE, "least_gap", "gap_")))
+
+
+UNITS = {"_N": "N", "_um": "um", "_GPa": "GPa", "_J": "J", "_s": "s", "_MPa": "MPa", "_Hz": "Hz"}
+SI = {"N": "N", "um": "m", "GPa": "Pa", "J": "J", "s": "s", "MPa": "Pa", "Hz": "Hz"}
+
+
+def _number(value: str, text: str) -> float:
+    try:
+        return float(value)
+    except ValueError:
+        raise TouchdownError(f"--limit {text}: {value!r} is no number") from None

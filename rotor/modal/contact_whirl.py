@@ -1,0 +1,216 @@
+"""Whirl of a rotor round its touchdown bearings, from receptances: how fast, how hard, and what drives it.
+
+The journals press their bearings while the rotor whirls in a circle at W (rad/s), counter-clockwise for
+W > 0. With journals z and carriers v at the seats, x + i y, and forces F on the journals, all turning by
+exp(i W t),
+
+    z = A(W) F        v_j = -a_j(W) F_j        z_j - v_j = (c_j + d_j) exp(i b_j)
+
+where A are receptances of the rotor, free, with its gyroscopic moments, a_j those of carrier and mount, c_j
+the radial clearance and d_j how deep the journal is pressed in. A bearing answers with
+
+    F_j = (-N(d_j) + i s T(d_j)) exp(i b_j)
+
+N pushes inwards; T, along the circle, is what friction and rolling resistance make of it, less what the
+bearing loses as the load goes round. s is how much of T is needed to sustain the circle: at s = 1 it goes
+on, below it is driven and becomes faster. A whirl that starts slowly is driven until then. (After
+H. F. Black, Journal of Mechanical Engineering Science 10, 1968, where T is a sliding journal's friction.)
+
+Left out: gravity, unbalance, anisotropy of the mounts, and how a drop gets into a whirl.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import root
+
+from .modes import Basis
+
+TOLERANCE = 1e-10  # of the equations, in parts of the clearance
+STEP_UP = 1.08  # of the frequency, from circle to circle
+LEAST_STEP = 1e-4  # of it, at which a circle is given up
+REFINEMENTS = 40  # of the frequency at which the drive is just enough
+STROKES, STROKE_TOLERANCE = 200, 1e-9  # repetitions for a stroke that its stiffness hangs on
+DRIVES = (0.5, 0.1, 0.02, 2.0)  # tried where a first circle is looked for
+
+Receptance = Callable[[float], np.ndarray]  # of W (rad/s): (S, S), complex, m/N
+Carrier = Callable[[float, float], complex]  # of W (rad/s) and the force on it (N): m/N
+Bearing = Callable[[float, float], complex]  # of depth (m) and W: -N + i T, N
+
+
+class Seat(NamedTuple):
+    """A touchdown bearing, and what carries it."""
+
+    clearance: float  # m, radial
+    bearing: Bearing
+    carrier: Carrier
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A circular whirl; of each seat in turn."""
+
+    omega: float  # rad/s, counter-clockwise
+    depth: np.ndarray  # (S,), m, that the journal is pressed into its bearing
+    angle: np.ndarray  # (S,), rad, of its place from that of the first
+    force: np.ndarray  # (S,), N, inwards
+    along: np.ndarray  # (S,), N, along the circle, as the bearing gives it
+    stroke: np.ndarray  # (S,), m, of the carrier
+    drive: float  # share of `along` that sustains the circle
+
+    @property
+    def friction(self) -> np.ndarray:
+        """What is needed along the circle over the force inwards (S,)."""
+        return self.drive * np.abs(self.along) / self.force
+
+
+def receptance(basis: Basis, damping_ratio: float, nodes: Sequence[int], spin: float) -> Receptance:
+    """Of a free rotor at its `nodes` (from 1), which spins at `spin` (rad/s, counter-clockwise).
+
+    damping_ratio: of its elastic modes, as in the rotor's model.
+    """
+    shape, square = basis.deflections(list(nodes)), basis.omega**2
+    damping = 2.0 * damping_ratio * basis.omega
+
+    def of(omega: float) -> np.ndarray:
+        stiffness = np.diag(square - omega * omega + 1j * omega * damping)
+        return shape @ np.linalg.solve(stiffness + spin * omega * basis.gyroscopic, shape.T)
+
+    return of
+
+
+class ContactWhirl:
+    """The circles in which a rotor may whirl round its seats."""
+
+    def __init__(self, rotor: Receptance, seats: Sequence[Seat]) -> None:
+        self._rotor, self._seats, self._count = rotor, tuple(seats), len(seats)
+        self._clearance = np.array([seat.clearance for seat in seats])
+
+    def at(self, omega: float, like: Circle | None = None) -> Circle | None:
+        """The circle at `omega` (rad/s) nearest to another; None where none is found."""
+        if like is not None:
+            return self._solved(omega, np.concatenate([np.log(like.depth), like.angle[1:], [like.drive]]))
+        inertia = np.abs(1.0 / np.diag(self._rotor(omega)))
+        depth = [
+            self._depth(seat, force, omega)
+            for seat, force in zip(self._seats, inertia * self._clearance, strict=True)
+        ]
+        for drive in DRIVES:
+            for far in (0.5, 1.0, 2.0):
+                guess = np.concatenate([np.log(far * np.array(depth)), np.zeros(self._count - 1), [drive]])
+                if (found := self._solved(omega, guess)) is not None:
+                    return found
+        return None
+
+    def _depth(self, seat: Seat, force: float, omega: float) -> float:
+        """How deep (m) a journal is pressed by a force (N), to a factor of two."""
+        depth = 1e-9
+        while -seat.bearing(depth, omega).real < force and depth < seat.clearance:
+            depth *= 2.0
+        return depth
+
+    def _solved(self, omega: float, guess: np.ndarray) -> Circle | None:
+        rotor, n = self._rotor(omega), self._count
+
+        def circle(u: np.ndarray) -> tuple[np.ndarray, Circle]:
+            depth, angle = np.exp(np.clip(u[:n], -40.0, 0.0)), np.append(0.0, u[n : 2 * n - 1])
+            turn, drive = np.exp(1j * angle), float(u[-1])
+            given = np.array([s.bearing(d, omega) for s, d in zip(self._seats, depth, strict=True)])
+            force = (np.real(given) + 1j * drive * np.imag(given)) * turn
+            on = np.abs(force)
+            carried = np.array([s.carrier(omega, f) for s, f in zip(self._seats, on, strict=True)]) * force
+            gap = (rotor @ force + carried - (self._clearance + depth) * turn) / self._clearance
+            made = Circle(omega, depth, angle, -np.real(given), np.imag(given), np.abs(carried), drive)
+            return np.concatenate([np.real(gap), np.imag(gap)]), made
+
+        found = root(lambda u: circle(u)[0], guess, tol=TOLERANCE)
+        if not found.success:
+            return None
+        made = circle(found.x)[1]
+        return made if np.all(made.force > 0.0) and made.drive > 0.0 else None
+
+    def faster(self, start: float, end: float) -> Iterator[Circle]:
+        """Circles from `start` to `end` (rad/s, of one sign), each from the one before, where there are.
+
+        They begin at the first frequency at which there is one.
+        """
+        omega, before = start, self.at(start)
+        while before is None and abs(omega) < abs(end):
+            omega *= STEP_UP
+            before = self.at(omega)
+        step = STEP_UP - 1.0
+        while before is not None:
+            yield before
+            if abs(before.omega) >= abs(end):
+                return
+            found = self.at(before.omega * (1.0 + step), before)
+            while found is None and step > LEAST_STEP:
+                step *= 0.5
+                found = self.at(before.omega * (1.0 + step), before)
+            before, step = found, min(1.5 * step, STEP_UP - 1.0)
+
+    def settled(self, start: float, end: float) -> tuple[list[Circle], Circle | None]:
+        """The circles through which a whirl is driven from `start` on, and the one that it settles in.
+
+        None: it is driven beyond `end` (rad/s), or is not driven at all, where there is but one circle.
+        """
+        way: list[Circle] = []
+        for circle in self.faster(start, end):
+            way.append(circle)
+            if circle.drive >= 1.0:
+                break
+        if len(way) < 2 or way[-1].drive < 1.0:
+            return way, None
+        return way, self._balanced(way[-2], way[-1])
+
+    def _balanced(self, below: Circle, above: Circle) -> Circle:
+        """Between two circles the one whose drive is just enough, by halving with the secant."""
+        best = above
+        for _ in range(REFINEMENTS):
+            part = (1.0 - below.drive) / (above.drive - below.drive)
+            part = min(max(part, 0.05), 0.95)
+            found = self.at(below.omega + part * (above.omega - below.omega), below)
+            if found is None:
+                break
+            best = found
+            if abs(found.drive - 1.0) < 1e-6:
+                break
+            below, above = (found, above) if found.drive < 1.0 else (below, found)
+        return best
+
+
+def steady(mass: float, stiffness: float, damping: float) -> Carrier:
+    """A mass (kg) on a spring (N/m) and a damper (N s/m)."""
+    return lambda omega, force: 1.0 / (stiffness - mass * omega * omega + 1j * omega * damping)
+
+
+def circling(stiffness: Callable[[float, float], np.ndarray], mass: float) -> Carrier:
+    """A mass (kg) on what resists with a dynamic stiffness that hangs on its stroke.
+
+    stiffness: (omega (rad/s, above 0), stroke (m)) to (2, 2), complex, N/m, force's direction by motion's.
+    What is not alike in all directions is taken in the mean over the circle.
+    """
+
+    def receptance_of(omega: float, force: float) -> complex:
+        stroke, found = 0.0, 0.0 + 0.0j
+        for _ in range(STROKES):
+            there = stiffness(abs(omega), stroke)
+            there = there if omega > 0.0 else np.conj(there)
+            around = 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
+            found = 1.0 / (around - mass * omega * omega)
+            after = force * abs(found)
+            if abs(after - stroke) <= STROKE_TOLERANCE * after:
+                break
+            stroke = 0.5 * (stroke + after)
+        return found
+
+    return receptance_of
+
+
+def rigid(omega: float, force: float) -> complex:
+    """What does not give way."""
+    return 0.0 + 0.0j

@@ -1,0 +1,178 @@
+"""Magnets and amplifiers of the actuator against closed forms, the journal held in place."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from levitation import AREA, BIAS, GAP, K_I, K_S, L0, MU0, POLE, SATURATED, VOLTAGE, K
+
+from touchdown.bearings.surroundings import amb_actuator
+from touchdown.modelkit.instance import Instance
+from touchdown.modelkit.model import StepSizeError
+
+STEP = 1e-4  # s
+ALONG = 1j**0.5  # the first axis
+
+
+def held(current: float = 0.0, displacement: float = 0.0, steps: int = 200, **settings: float) -> Instance:
+    """The actuator, its journal held on the first axis (m), after `steps` with a control current (A)."""
+    one = Instance(amb_actuator.MODEL)
+    p, u = one.record["p"], one.record["u"]
+    for name, value in settings.items():
+        group, _, last = name.rpartition("__")
+        (p[group] if group else p)[last] = value
+    u["journal"]["x"], u["journal"]["y"] = (displacement * ALONG).real, (displacement * ALONG).imag
+    one.start(0.0)
+    u["axis"][0]["set"] = current
+    for k in range(steps):
+        one.step(k * STEP, STEP)
+    return one
+
+
+def force(one: Instance) -> complex:
+    """Along the first axis, and across (N)."""
+    j = one.record["o"]["journal"]
+    return complex(j["fx"], j["fy"]) * ALONG.conjugate()
+
+
+def textbook(i: float, u: float) -> float:
+    """Force (N) of a pair of magnets in differential driving mode, i (A), u (m)."""
+    return K * ((BIAS + i) ** 2 / (GAP - u) ** 2 - (BIAS - i) ** 2 / (GAP + u) ** 2) * math.cos(POLE)
+
+
+def test_constants_are_the_closed_forms():
+    out = held(steps=0).record["o"]
+    assert out["current_factor"] == pytest.approx(K_I, rel=1e-14)
+    assert out["displacement_factor"] == pytest.approx(K_S, rel=1e-14)
+    assert (
+        pytest.approx(25.7996, abs=1e-4),
+        pytest.approx(-85998.6, abs=0.1),
+        pytest.approx(4.1888e-3, abs=1e-7),
+    ) == (K_I, K_S, L0)
+
+
+def test_stiffnesses_are_those_of_the_force_once_it_has_settled():
+    """By central differences: in current and, the current held, in displacement."""
+    di, du = 1e-3, 1e-7
+    per_current = (force(held(di)) - force(held(-di))).real / (2 * di)
+    per_metre = (force(held(0.0, du)) - force(held(0.0, -du))).real / (2 * du)
+    assert per_current == pytest.approx(K_I, rel=1e-6)
+    assert per_metre == pytest.approx(-K_S, rel=1e-6)
+
+
+@pytest.mark.parametrize(("i", "u"), [(1.0, 0.0), (0.5, 1e-4), (-1.5, 2e-4)])
+def test_settled_force_is_that_of_the_textbook(i: float, u: float):
+    found = force(held(i, u))
+    assert found.real == pytest.approx(textbook(i, u), rel=1e-6)
+    assert abs(found.imag) < 1e-6 * abs(textbook(i, u))
+
+
+def test_a_force_command_is_the_current_that_gives_it_at_the_centre():
+    one = held(steps=0, command=1)
+    one.record["u"]["axis"][0]["force_set"] = 10.0
+    for k in range(200):
+        one.step(k * STEP, STEP)
+    assert force(one).real == pytest.approx(textbook(10.0 / K_I, 0.0), rel=1e-6)
+
+
+def test_saturated_iron_limits_the_force():
+    """The - coil empty, the + coil far beyond saturation: B_s^2 A/mu0 cos(alpha), and what air adds."""
+    one = held(20.0, 0.0, amplifier__current_limit=8.0)
+    limit = SATURATED**2 * AREA / MU0 * math.cos(POLE)
+    assert limit == pytest.approx(105.87, abs=0.01)
+    i, per_flux, iron = 8.0, GAP / (2 * K), 0.1 / (MU0 * 200.0)
+    flux = (i + iron * SATURATED) / (per_flux + iron / (200.0 * AREA))
+    assert force(one).real == pytest.approx(flux**2 / (4 * K) * math.cos(POLE), rel=1e-6)
+    assert 1.0 < force(one).real / limit < 1.02
+
+
+def test_slew_is_limited_by_the_voltage():
+    """Without resistance the flux rises by U: dF/dt = 2 U i0/s0 cos(alpha), di/dt = U/L0."""
+    one = held(steps=1, amplifier__resistance=0.0)
+    one.record["u"]["axis"][0]["set"] = 3.5  # both coils' voltages at their limits for more than 1 us
+    before = force(one).real
+    span = 2e-6
+    one.step(STEP, span)
+    axis = one.record["o"]["axis"][0]
+    assert (axis["voltage_plus"], axis["voltage_minus"]) == (VOLTAGE, -VOLTAGE)
+    slope = (axis["force"] - before) / span
+    assert slope == pytest.approx(2 * VOLTAGE * BIAS / GAP * math.cos(POLE), rel=1e-6)
+    assert (axis["current_plus"] - BIAS) / span == pytest.approx(VOLTAGE / L0, rel=1e-6)
+    assert one.record["o"]["limits"]["voltage_time"] == pytest.approx(span, rel=1e-9)
+
+
+def test_energy_of_the_link_is_heat_and_field():
+    """After a step of the current, at rest: R i^2 over time and lambda^2 s0/(4 K) + ... in the coils."""
+    one = held(1.0, steps=400)
+    taken = one.record["o"]["link_energy"]
+    at_rest = held(0.0, steps=400).record["o"]["link_energy"]
+    assert at_rest == pytest.approx(4 * 0.5 * BIAS**2 * 400 * STEP, rel=1e-6)  # heat of the bias
+    field = 0.5 * L0 * ((BIAS + 1) ** 2 + (BIAS - 1) ** 2 - 2 * BIAS**2)
+    heat = 0.5 * ((BIAS + 1) ** 2 + (BIAS - 1) ** 2 - 2 * BIAS**2) * 399 * STEP
+    assert taken - at_rest == pytest.approx(field + heat, rel=0.01)  # the currents took 80 us to come
+
+
+def test_a_coil_whose_amplifier_failed_is_emptied_by_the_link():
+    one = Instance(amb_actuator.MODEL)
+    event = one.record["p"]["event"][0]
+    event["time"], event["kind"], event["coil"] = 0.25e-3, 1, 2
+    one.start(0.0)
+    for k in range(2):
+        one.step(k * STEP, STEP)
+    assert force(one).real == pytest.approx(0.0, abs=1e-9)
+    one.step(2 * STEP, STEP)
+    flux = L0 * BIAS - (VOLTAGE + 0.5 * BIAS) * 50e-6  # of 8.4 mV s; the current falls little in that time
+    expected = math.cos(POLE) / (4 * K) * ((L0 * BIAS) ** 2 - flux**2)
+    assert one.record["o"]["axis"][0]["force"] == pytest.approx(expected, rel=2e-2)
+    for k in range(3, 12):
+        one.step(k * STEP, STEP)
+    assert one.record["o"]["axis"][0]["current_minus"] == 0.0
+    assert one.record["o"]["axis"][1]["current_minus"] == pytest.approx(BIAS, rel=1e-6)
+
+
+def test_the_link_falls_from_its_time_on():
+    one = Instance(amb_actuator.MODEL)
+    event = one.record["p"]["event"][3]
+    event["time"], event["kind"] = 0.33e-3, 3
+    one.start(0.0)
+    for k in range(20):
+        one.step(k * STEP, STEP)
+    expected = VOLTAGE * math.exp(-(20 * STEP - 0.33e-3) / 0.01)
+    assert one.record["o"]["link"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_noise_is_even_and_told_again():
+    """Within its bound, of the mean and the variance of an even distribution, by seed, tick and axis."""
+    one = held(steps=0, sensing__noise=3e-6)
+    first = one.save()
+    axes = one.record["o"]["axis"]
+    seen = []
+    for k in range(2000):
+        one.step(k * STEP, STEP)
+        seen.append([axes[0]["sensed"], axes[1]["sensed"]])
+    found = np.array(seen)
+    assert np.abs(found).max() <= 3e-6
+    assert np.abs(found.mean(axis=0)).max() < 4 * 3e-6 / math.sqrt(3 * 2000)
+    assert found.std(axis=0) == pytest.approx([3e-6 / math.sqrt(3)] * 2, rel=0.05)
+    assert abs(np.corrcoef(found.T)[0, 1]) < 0.1
+    one.restore(first)
+    one.step(0.0, STEP)
+    assert [axes[0]["sensed"], axes[1]["sensed"]] == seen[0]
+
+
+def test_a_macro_step_beyond_the_sample_time_is_refused():
+    one = held(steps=0)
+    with pytest.raises(StepSizeError, match="longer than sample_time, from sample to sample"):
+        one.step(0.0, 1.5e-4)
+
+
+def test_samples_are_counted_from_zero_whenever_it_starts():
+    """Started at 1.23 ms it takes the samples at 1.3 and 1.4 ms, numbers 13 and 14."""
+    one = Instance(amb_actuator.MODEL)
+    one.start(1.23e-3)
+    assert one.record["o"]["tick"] == 13
+    for k in range(3):
+        one.step(1.23e-3 + k * 60e-6, 60e-6)
+    assert one.record["o"]["tick"] == 15

@@ -1,0 +1,198 @@
+"""Elements of a mount against closed forms, quadrature and the equation of a weight on a string."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from touchdown.bearings.surroundings import mount_law as law
+from touchdown.bearings.surroundings.mount import Parameters
+from touchdown.modelkit.variables import as_record
+
+STIFFNESS, FORCE, REACH = 2e7, 400.0, 60e-6  # N/m, N, m
+
+
+def slides(*pairs: tuple[float, float]) -> Any:
+    """Parameters of slides of these stiffnesses (N/m) and forces (N), and nothing else."""
+    count = law.SLIDES - len(pairs)
+    made = tuple(law.Slide(*pair) for pair in pairs) + (law.Slide(),) * count
+    return as_record(law.Elements(slide=made))
+
+
+def follow(p: Any, path: np.ndarray, h: float = 1e-5) -> tuple[np.ndarray, np.ndarray]:
+    """Mean forces (N), (n, 2), on the legs of a path (m), (n + 1, 2), and the heat of each leg (J)."""
+    z, heat = np.zeros(2 * law.SLIDES), np.zeros(law.HEATS)
+    forces, heats = [], []
+    for (x, y), (dx, dy) in zip(path[:-1], np.diff(path, axis=0), strict=True):
+        forces.append(law.mean_force(p, x, y, dx, dy, h, z))
+        before = heat.sum()
+        law.go(p, x, y, dx, dy, h, z, heat)
+        heats.append(heat.sum() - before)
+    return np.array(forces), np.array(heats)
+
+
+def around(steps: int, turns: int, circle: bool) -> np.ndarray:
+    """A path to and fro, or in a circle, of REACH."""
+    angle = 2.0 * math.pi * np.arange(turns * steps + 1) / steps
+    return REACH * np.stack((np.cos(angle), np.sin(angle) if circle else 0.0 * angle), 1)
+
+
+@pytest.mark.parametrize("steps", [10, 100, 1000])
+def test_the_loop_of_a_slide_to_and_fro(steps: int) -> None:
+    """Heat 4 F (X - F/k) a cycle: exact with steps that end where it turns."""
+    forces, heats = follow(slides((STIFFNESS, FORCE)), around(steps, 3, False))
+    expected = 4.0 * FORCE * (REACH - FORCE / STIFFNESS)
+    assert heats[-steps:].sum() == pytest.approx(expected, rel=1e-12)
+    assert np.max(np.abs(forces)) <= FORCE * (1.0 + 1e-12)
+
+
+def test_a_slide_in_a_circle_is_of_second_order() -> None:
+    """2 pi F sqrt(X^2 - (F/k)^2) a turn, 0.142172 J, and F^2/(k X) = 133.33 N towards the middle."""
+    expected = 2.0 * math.pi * FORCE * math.sqrt(REACH**2 - (FORCE / STIFFNESS) ** 2)
+    assert expected == pytest.approx(0.142172, rel=1e-5)
+    errors, radial = [], []
+    for steps in (100, 200, 1000):
+        path = around(steps, 6, True)
+        forces, heats = follow(slides((STIFFNESS, FORCE)), path)
+        errors.append(abs(heats[-steps:].sum() / expected - 1.0))
+        middle = 0.5 * (path[1:] + path[:-1])[-steps:]
+        radial.append(np.mean(np.sum(forces[-steps:] * middle, 1) / np.hypot(*middle.T)))
+    assert errors[0] < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+    assert errors[2] < 2e-5
+    assert radial[2] == pytest.approx(FORCE**2 / (STIFFNESS * REACH), rel=2e-4)
+
+
+def test_four_slides_follow_masing() -> None:
+    """Unloading is the first loading, doubled in force and way."""
+    pairs = [(1e7, 100.0), (8e6, 200.0), (6e6, 300.0), (4e6, 400.0)]
+    way = np.linspace(0.0, REACH, 4001)
+    path = np.concatenate((way, REACH - 2.0 * way[1:]))
+    forces, _ = follow(slides(*pairs), np.stack((path, 0.0 * path), 1))
+    up, down = forces[:4000, 0], forces[4000:, 0]
+    top = sum(min(k * REACH, force) for k, force in pairs)
+    assert np.max(np.abs(top - down - 2.0 * up)) < 1e-12 * top
+    loop = sum(4.0 * force * max(REACH - force / k, 0.0) for k, force in pairs)
+    _, heats = follow(slides(*pairs), around(1000, 2, False))
+    assert heats[-1000:].sum() == pytest.approx(loop, rel=1e-12)
+
+
+def test_a_slide_is_dragged_like_a_weight_on_a_string() -> None:
+    """Its equation, integrated by scipy: the foot moves along the string, by the pull's part along it."""
+    k, force = STIFFNESS, FORCE
+    r, generator = force / k, np.random.default_rng(3)
+    record = as_record(law.Slide(k, force))
+    for _ in range(40):
+        z = r * math.sqrt(generator.uniform()) * np.array(_unit(generator.uniform(0.0, 7.0)))
+        d = generator.uniform(0.1, 5.0) * r * np.array(_unit(generator.uniform(0.0, 7.0)))
+        fx, fy, ex, ey, slid = law.slide(record, *z, *d)
+        assert math.hypot(ex, ey) <= r * (1.0 + 1e-12)
+        gained = 0.5 * k * (ex**2 + ey**2 - z @ z)
+        assert fx * d[0] + fy * d[1] == pytest.approx(gained + force * slid, abs=1e-13 * force * r)
+        mean, end = _dragged(z, d, r)
+        np.testing.assert_allclose((ex, ey), end, atol=1e-7 * r)
+        np.testing.assert_allclose((fx, fy), k * mean, atol=1e-6 * force)
+
+
+def _unit(angle: float) -> tuple[float, float]:
+    return math.cos(angle), math.sin(angle)
+
+
+def _dragged(z: np.ndarray, d: np.ndarray, r: float) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and last stretch (m) of a string of length `r` whose end goes `d`: slack first, then taut."""
+    free = min(1.0, float(np.max(np.roots([d @ d, 2.0 * z @ d, z @ z - r * r]).real)))
+    state = np.array([*(z + free * d), *(free * (z + 0.5 * free * d))])
+    if free < 1.0:
+        state = solve_ivp(_taut, (free, 1.0), state, args=(d,), rtol=1e-10, atol=1e-16).y[:, -1]
+    return state[2:], state[:2]
+
+
+def _taut(_: float, state: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """A string that is taut gives way across itself only; its stretch, summed up, is behind it."""
+    place = state[:2]
+    return np.concatenate((d - (place @ d) / (place @ place) * place, place))
+
+
+S = 0.01 * 0.03 * (0.012 / 1e-4) ** 3  # N s/m
+
+
+def film(cavitation: int) -> Any:
+    """A film whose unit of resistance is S."""
+    return as_record(law.Film(0.03, 0.012, 1e-4, 0.01, cavitation))
+
+
+@pytest.mark.parametrize("e", [0.0, 0.2, 0.5, 0.8])
+def test_films_on_the_axes(e: float) -> None:
+    """Closed forms of a short bearing: whole, and torn while it circles."""
+    radial, _, across = law.film_matrix(film(0), e * 1e-4, 0.0, 0.0, 1.0)
+    assert across == pytest.approx(math.pi * S * (1 - e * e) ** -1.5, rel=1e-11)
+    assert radial == pytest.approx(math.pi * (1 + 2 * e * e) * S * (1 - e * e) ** -2.5, rel=1e-11)
+    _, mixed, across = law.film_matrix(film(1), e * 1e-4, 0.0, 0.0, 1.0)
+    assert across == pytest.approx(0.5 * math.pi * S * (1 - e * e) ** -1.5, rel=1e-11)
+    assert mixed == pytest.approx(2.0 * S * e / (1 - e * e) ** 2, rel=1e-11, abs=1e-9)
+
+
+def test_a_torn_film_in_any_direction() -> None:
+    """Against quadrature of n n^T/H^3 over the half that is squeezed."""
+    generator = np.random.default_rng(4)
+    for _ in range(20):
+        e, place, way = generator.uniform(0.0, 0.95), *generator.uniform(-math.pi, math.pi, 2)
+        x, y = 1e-4 * e * math.cos(place), 1e-4 * e * math.sin(place)
+        found = law.film_matrix(film(1), x, y, math.cos(way), math.sin(way))
+        for value, part in zip(found, ((2, 0), (1, 1), (0, 2)), strict=True):
+            expected, _ = quad(
+                _squeezed, way - 0.5 * math.pi, way + 0.5 * math.pi, (e, place, *part), limit=400
+            )
+            assert value == pytest.approx(S * expected, abs=1e-9 * S * (1 - e) ** -3)
+
+
+def _squeezed(angle: float, e: float, place: float, cosines: int, sines: int) -> float:
+    return math.cos(angle) ** cosines * math.sin(angle) ** sines / (1 - e * math.cos(angle - place)) ** 3
+
+
+def test_a_stop_gives_back_what_it_takes_but_for_its_damping() -> None:
+    stop = as_record(law.Stop(1e-4, 1e10, 1.5, 0.0))
+    lossy = as_record(law.Stop(1e-4, 1e10, 1.5, 0.5))
+    for before, after in ((0.9e-4, 1.2e-4), (1.5e-4, 1.1e-4), (1.2e-4, 1.2e-4 + 1e-11)):
+        work = law.stop_mean(stop, before, after, 1e-5) * (after - before)
+        gained = law.stop_energy(stop, after) - law.stop_energy(stop, before)
+        assert work == pytest.approx(gained, rel=1e-6)
+        assert law.stop_mean(lossy, before, after, 1e-5) * (after - before) >= gained
+    assert law.stop_mean(lossy, 1.5e-4, 1.1e-4, 1e-6) == 0.0  # it never pulls
+
+
+def test_dynamic_stiffness_of_circles() -> None:
+    """What force does in a circle, over the amplitude: of slides and torn film as they are stepped."""
+    omega, steps = 900.0, 2000
+    p = law.Elements(
+        slide=(law.Slide(STIFFNESS, FORCE), *(law.Slide(),) * 3), film=law.Film(0.03, 0.012, 1e-4, 0.01)
+    )
+    path = around(steps, 4, True)
+    h = 2.0 * math.pi / omega / steps
+    forces, _ = follow(as_record(p), path, h)
+    middle = (0.5 * (path[1:] + path[:-1]) @ [1.0, 1.0j])[-steps:]
+    found = np.mean((forces @ [1.0, 1.0j])[-steps:] / middle)
+    expected = law.dynamic_stiffness(p, omega, REACH)
+    assert found == pytest.approx(expected[0, 0], rel=1e-4)
+    assert expected[0, 0] == expected[1, 1]
+    assert expected[0, 1] == expected[1, 0] == 0.0
+    still = law.dynamic_stiffness(p, omega)
+    assert still[0, 0] == pytest.approx(STIFFNESS + 0.5j * omega * math.pi * S, rel=1e-12)
+
+
+def test_dynamic_stiffness_of_what_is_linear() -> None:
+    """Tensors and branches: k (W tau)^2/(1 + (W tau)^2) and k W tau/(1 + (W tau)^2)."""
+    k, tau, omega = 5e6, 1e-3, 700.0
+    p = Parameters(
+        spring=law.Stiffness(1e7, 2e7, 1e5, -2e5), damper=law.Damping(10.0, 20.0, 1.0, 2.0),
+        branch=(law.Branch(k, tau), *(law.Branch(),) * 2),
+    )  # fmt: skip
+    found = law.dynamic_stiffness(p, omega)
+    turn = omega * tau
+    branch = k * (turn * turn + 1j * turn) / (1.0 + turn * turn)
+    expected = np.array([[1e7, 1e5], [-2e5, 2e7]]) + 1j * omega * np.array([[10.0, 1.0], [2.0, 20.0]])
+    np.testing.assert_allclose(found, expected + branch * np.eye(2), rtol=1e-12)

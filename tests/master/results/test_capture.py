@@ -1,0 +1,74 @@
+"""Captured, lost or undecided: of made motions, and of a disk whose magnets can lift it or not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from systems import run_to_end
+
+from touchdown.master.results.capture import HOLD, WITHIN, Capture, judge
+from touchdown.master.scene.file import load_scene
+
+CLEARANCE = 0.3e-3  # m
+END = 1.0  # s
+TIME = np.linspace(-0.2, END, 12_001)
+
+
+def verdict(free: float, inside: float, end: float = END, lost: str = "", again: float = 9.0) -> Capture:
+    """In contact up to `free`, beyond half the clearance up to `inside`; in contact `again` (s)."""
+    here = end >= TIME
+    radius = np.where(inside > TIME, 0.9 * CLEARANCE, 0.2 * CLEARANCE)
+    force = np.where((free > TIME) | (np.abs(TIME - again) < 1e-3), 50.0, 0.0)
+    return judge(TIME[here], radius[here], force[here], CLEARANCE, HOLD, lost)
+
+
+def test_captured_from_when_it_stays():
+    found = verdict(0.02, 0.03)
+    assert (found.words, found.peak_force) == ("captured", 50.0)
+    assert found.after == pytest.approx(0.03, abs=2e-4)
+    assert found.last_contact == pytest.approx(0.02, abs=2e-4)
+
+
+def test_without_any_contact_after_the_command():
+    found = verdict(-0.1, 0.01)
+    assert (found.words, found.last_contact, found.peak_force) == ("captured", None, 0.0)
+
+
+def test_a_contact_at_the_end_undoes_it():
+    assert verdict(0.02, 0.03, again=0.9).words == "lost: rebounds"
+
+
+def test_a_late_capture_is_none():
+    assert verdict(0.02, WITHIN - 0.01).words == "captured"
+    assert verdict(0.02, WITHIN + 0.01).words == "lost: rebounds"
+
+
+def test_why_it_is_lost():
+    assert verdict(9.0, 9.0).words == "lost: not lifted"
+    assert verdict(0.5, 9.0, lost="whirl").words == "lost: whirl"
+    assert verdict(0.02, 0.03, lost="through the gap").words == "captured"
+
+
+def test_a_run_that_ends_early_is_undecided():
+    assert verdict(0.02, 9.0, end=WITHIN).words == "undecided: the run ends too early"
+    assert verdict(0.02, 0.03, end=0.03 + HOLD / 2).words.startswith("undecided")
+
+
+@pytest.mark.parametrize(("limit", "words"), [(6.0, "captured"), (2.0, "lost")])
+def test_a_disk_that_its_magnets_can_lift_or_not(tmp_path: Path, limit: float, words: str):
+    """2.55 A in the upper coils lift it; it is asked for 40 ms after the drop."""
+    scene = load_scene("disk-caged-relevitated").set(
+        {"amb.amplifier.current_limit": limit, "controller.event[2].time": "45 ms", "run.duration": "0.6 s"}
+    )
+    summary = run_to_end(scene, tmp_path)
+    assert str(summary["capture_A"]).partition(":")[0] == words
+    assert summary["capture_command_time_s"] == pytest.approx(0.04)
+    assert 0.0 < float(str(summary["largest_coil_current_A"])) < 8.0
+    assert (float(str(summary["time_at_current_limit_s"])) > 0.1) == (limit < 2.5)
+
+
+def test_a_drop_without_a_command_says_nothing_of_it(tmp_path: Path):
+    scene = load_scene("disk-caged-simplified").set({"run.duration": "20 ms"})
+    assert not any("capture" in key for key in run_to_end(scene, tmp_path))

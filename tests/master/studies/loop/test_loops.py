@@ -1,0 +1,167 @@
+"""Loops of scenes: against closed forms, against other equations, and against what the rotor does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from levitation import (
+    AMPLIFIER,
+    BIAS,
+    FILTER,
+    GAP,
+    K_I,
+    KD,
+    KI,
+    KP,
+    L0,
+    LOW_PASS,
+    MASS,
+    PERIOD,
+    POLE,
+    K,
+    Loop,
+)  # fmt: skip
+from scipy.linalg import expm
+from systems import history
+
+from touchdown.master.cli import main
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.scene import Scene
+from touchdown.master.studies.loop.loops import Sampled, loops_of
+from touchdown.master.studies.loop.over_speed import loops_in
+
+DISK = "disk-caged-relevitated"
+
+
+def by_hand(omega: float) -> complex:
+    """S of the disk's axis: u, u', half the flux difference, the signal; held set points; C(z)."""
+    a = np.array(
+        [
+            [0, 1, 0, 0],
+            [0, 0, L0 * BIAS / K * math.cos(POLE) / MASS, 0],
+            [AMPLIFIER * L0 * BIAS / GAP, 0, -AMPLIFIER, 0],
+            [LOW_PASS, 0, 0, -LOW_PASS],
+        ]
+    )
+    whole = np.zeros((5, 5))
+    whole[:4, :4], whole[2, 4] = a, AMPLIFIER * L0
+    ahead = expm(whole * PERIOD)
+    z = np.exp(1j * omega * PERIOD)
+    plant = np.linalg.solve(z * np.eye(4) - ahead[:4, :4], ahead[:4, 4])[3]
+    law = KP + KI * PERIOD * z / (z - 1) + KD * FILTER * (z - 1) / ((1 + FILTER * PERIOD) * z - 1)
+    return complex(1 / (1 + law * plant / z))
+
+
+def test_the_disk_by_hand():
+    """And the slowest poles and the peak that an independent model of the same loop has."""
+    found = loops_in(load_scene(DISK), [0.0])
+    loops, own = found.loops, found.own
+    for hz in (20.0, 56.0, 300.0, 2000.0):
+        omega = 2 * math.pi * hz
+        s = loops.sensitivity(omega, loops.speed)
+        assert np.diag(s) == pytest.approx([by_hand(omega)] * 2, rel=1e-9)
+        assert abs(s[0, 1]) < 1e-9
+    assert own.margins[0].peak == pytest.approx(2.4990, abs=1e-4)
+    assert own.margins[0].at / (2 * math.pi) == pytest.approx(55.6, abs=0.1)
+    for pole in (-6.373285, -111.77778 + 314.18593j):
+        assert np.abs(own.poles - pole).min() < 1e-6 * abs(pole)
+    assert isinstance(loops, Sampled)
+    (bearing,) = loops.bearings
+    assert bearing.actuator.current_factor == pytest.approx(K_I, rel=1e-12)
+    assert bearing.load == pytest.approx(MASS * 9.81, rel=1e-9)
+    lifting = (GAP + 0.3e-3 / math.sqrt(2)) * math.sqrt(MASS * 9.81 / (math.sqrt(2) * K * math.cos(POLE)))
+    assert bearing.actuator.lifting_current(bearing.load, 0.3e-3, math.pi / 4) == pytest.approx(lifting)
+    assert lifting == pytest.approx(2.550, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("changes", "peak"),
+    [
+        ({"controller.gain.derivative": KD / 2}, 6.22),
+        ({"controller.gain.derivative": 2 * KD}, 1.34),
+        ({"amb.sample_time": 2e-4, "run.macro_step": 1e-4}, 2.90),
+        ({"amb.amplifier.bandwidth": 1000 * math.pi}, 2.93),
+        ({"amb.amplifier.bias": 3.0}, 2.29),
+    ],
+)
+def test_peaks_move_as_they_do_in_an_independent_model(changes: dict[str, float], peak: float):
+    found = loops_in(load_scene(DISK).set(changes), [0.0])
+    assert found.own.margins[0].peak == pytest.approx(peak, abs=6e-3)
+
+
+def test_todays_magnetic_bearing_is_a_loop_too():
+    """5 kg on 2e5 N/m and 400 N s/m, with and without an amplifier of 500 Hz."""
+    scene = load_scene("disk-caged-simplified").set({"rotor.mass": 5.0})
+    own = loops_in(scene, [0.0]).own
+    assert own.margins[0].peak == pytest.approx(2.55155, abs=6e-6)
+    assert own.margins[1].delay == pytest.approx(1.8951623e-3, abs=1e-9)
+    assert np.abs(own.poles - (-40 + 195.959179j)).min() < 1e-5
+    slower = loops_in(scene.set({"amb.bandwidth": 1000 * math.pi}), [0.0]).own
+    assert slower.margins[0].peak == pytest.approx(3.06280, abs=6e-6)
+
+
+def ring(scene: Scene, until: float) -> np.ndarray:
+    """x of the rotor at the ticks (m), let loose 1 um beside the centre of magnets without weight."""
+    scene = scene.set({"rotor.x": 1e-6, "rotor.gravity": 0.0, "rotor.speed": 0.0})
+    times, values, _ = history(scene.set({"run.duration": until}), ["rotor.A.x"])
+    at = np.rint(np.arange(1, round(until / PERIOD)) * PERIOD / scene.run.macro_step).astype(int) - 1
+    assert np.allclose(times[at] / PERIOD, np.rint(times[at] / PERIOD), atol=1e-6)
+    return values["rotor.A.x"][at]
+
+
+def nearest_root(x: np.ndarray, pole: complex, order: int) -> float:
+    """Of a matrix pencil on samples x, how near its roots come to a pole (1/s), over the pole's size."""
+    rows = np.array([x[i : i + len(x) // 3] for i in range(len(x) - len(x) // 3)])
+    v = np.linalg.svd(rows, full_matrices=False)[2][:order]
+    roots = np.log(np.linalg.eigvals(v[:, 1:] @ np.linalg.pinv(v[:, :-1])).astype(complex)) / PERIOD
+    return float(np.abs(roots - pole).min() / abs(pole))
+
+
+def test_the_rotor_rings_down_at_the_poles():
+    scene = Loop().scene(60e-3, 20e-6)
+    x = ring(scene, 60e-3)[30:430]
+    assert nearest_root(x, -111.77778 + 314.18593j, 4) < 1e-5
+
+
+def test_a_delay_too_many_makes_the_loop_unstable_and_the_rotor_grow_at_its_pole():
+    """A third of the damping, an amplifier of 60 Hz, one more sample: it grows as the pole says."""
+    slow = {"controller.gain.derivative": KD / 3, "amb.amplifier.bandwidth": 120 * math.pi}
+    scene = Loop().scene(60e-3, 20e-6).set({"controller.delay": 1, **slow})
+    loops = loops_of(scene)
+    poles = loops.poles(0.0)
+    grows = poles[np.argmax(poles.real + (poles.imag < 0.0) * -1e-9)]
+    assert grows.real > 20.0
+    assert nearest_root(ring(scene, 60e-3)[100:500], grows, 6) < 1e-2
+
+
+def test_translation_and_tilt_with_equal_gains_are_the_same_loops():
+    """Rotor I with one controller of four axes."""
+    apart = load_scene("rotor1-relevitated")
+    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
+    control = (("controller_A", "amb_A"), ("controller_A", "amb_B"))
+    both = replace(apart, components=kept, control=control)
+    two, one = loops_of(apart), loops_of(both.set({"controller_A.structure": "translation_tilt"}))
+    for hz in (30.0, 200.0, 1500.0):
+        found, expected = (x.sensitivity(2 * math.pi * hz, x.speed) for x in (one, two))
+        assert found == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["loop", DISK, "--speeds", "0 rpm, 9000 rpm", "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "k_i 25.8 N/A, k_s -86 kN/m, slew 615.9 kN/s; 2.55 A in its coils lift 16.19 N" in said
+    assert "amb.axis[1]         2.4990   7.96  A         55.55        56.75            1.132" in said
+    assert (tmp_path / "loop.png").stat().st_size > 10_000
+
+
+def test_scenes_without_a_known_loop_are_refused():
+    scene = load_scene(DISK)
+    with pytest.raises(TouchdownError, match="must sample after the same time; sample_time is 0 s"):
+        loops_of(scene.set({"amb.sample_time": 0.0}))
+    with pytest.raises(TouchdownError, match="has no magnetic bearing"):
+        loops_of(replace(scene, control=()))

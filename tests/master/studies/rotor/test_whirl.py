@@ -1,0 +1,132 @@
+"""A whirl foretold: bearings on the rig, the answer for people, maps over mounts."""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import touchdown
+from touchdown.master.cli import main
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.studies.rotor.whirl import (
+    BACKWARD,
+    FORWARD,
+    HERTZ,
+    LASTING,
+    Machine,
+    lines,
+    machine,
+    with_mounts,
+)
+
+SCENE = "rotor1-18000-225um"
+
+
+@pytest.fixture(scope="module")
+def known() -> Machine:
+    """Rotor I at the speed that it has once a drop of this scene whirls steadily."""
+    return machine(touchdown.load(SCENE), 12_000.0 * HERTZ / 60.0)
+
+
+def test_it_is_where_drops_are(known: Machine) -> None:
+    """Plateaus of drops: 644 to 647 Hz with 13.0 and 17.1 kN; with damped housings 500 Hz, 5.85, 7.71 kN.
+
+    The first within 1 %, as far as drops repeat; asked are 10 % and 20 %, of which half is left for others.
+    """
+    damped = with_mounts(known, touchdown.load(SCENE).set({"housing_*.damping": 1e4}))
+    for made, hertz, forces in ((known, 645.5, (13.1e3, 17.15e3)), (damped, 500.0, (5.85e3, 7.71e3))):
+        found = made.foretold()
+        assert found.settled is not None
+        assert found.frequency == pytest.approx(hertz, rel=0.05)
+        assert found.settled.force == pytest.approx(forces, rel=0.1)
+        assert found.settled.omega < 0.0
+        assert found.margin > 10.0
+    assert "and lasts once it has begun" in next(lines(found))
+
+
+def test_the_bearing_on_its_rig(known: Machine) -> None:
+    """Two alike are measured once; forces along the circle drive backwards and brake forwards."""
+    first, second = known.journals
+    assert first.measured is second.measured
+    backward, forward = first.measured[BACKWARD], first.measured[FORWARD]
+    assert np.all(np.imag(backward.force) > 0.0)
+    assert np.all(np.imag(forward.force) < 0.0)
+    assert np.all(np.diff(np.real(backward.force), axis=1) < 0.0)
+    # between the points measured, and beyond them, as a power law
+    omega = -float(backward.omega[0])
+    assert backward(float(backward.depth[3]), omega) == pytest.approx(
+        complex(backward.force[0, 3].real, -backward.force[0, 3].imag), rel=1e-9
+    )
+    assert backward(1e-3, omega).real < backward.force[0, -1].real
+    # of balls between rigid rings without play, Stribeck's 4.37/Z of the load, and the ring's inertia
+    share = backward.loaded(20e-6, omega) / abs(backward(20e-6, omega))
+    assert share == pytest.approx(4.37 / 17.0, rel=0.02)
+    assert first.ball_limit == pytest.approx(1695.0, rel=1e-3)
+
+
+def test_nothing_drives_it_forwards(known: Machine) -> None:
+    found = known.foretold(FORWARD)
+    assert found.settled is None
+    assert math.isnan(found.frequency)
+    assert list(lines(found)) == ["forward whirl: none; the bearings' forces brake it"]
+
+
+def test_gravity_ends_slow_whirls(known: Machine) -> None:
+    """The margin is W^2 c over ten times gravity; on soft mounts the whirl is slow."""
+    soft = with_mounts(known, touchdown.load(SCENE).set({"housing_*.stiffness": 6e5})).foretold()
+    assert soft.settled is not None
+    clearance = known.journals[0].clearance
+    assert soft.margin == pytest.approx(soft.settled.omega**2 * clearance / (LASTING * 9.81), rel=1e-3)
+    assert "too slow to last against gravity" in next(lines(soft))
+
+
+def test_a_map_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two settings make a table and a picture."""
+    asked = ["whirl", SCENE, "-o", str(tmp_path), "--quiet"]
+    asked += [
+        "--vary",
+        "housing_*.stiffness=2:200:3:log MN/m",
+        "--vary",
+        "housing_*.damping=300,3000 N.s/m",
+    ]
+    assert main(asked) == 0
+    assert "backward whirl: 64" in capsys.readouterr().out
+    with (tmp_path / "whirl.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["housing_*.stiffness"] for row in rows[::2]] == ["2 MN/m", "20 MN/m", "200 MN/m"]
+    hertz = [float(row["frequency_Hz"]) for row in rows]
+    assert hertz[0] < hertz[2] < hertz[4]
+    assert (tmp_path / "whirl.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("scene", "words", "message"),
+    [
+        (SCENE, ["--set", "rotor.speed=0"], "its rotor does not spin, and drives no whirl; give --speed"),
+        (SCENE, ["--vary", "housing_*.mass=-1:1:3:log kg"], "START and STOP must be above 0"),
+        ("disk-caged-simplified", [], "no rotor of beam elements"),
+    ],
+)
+def test_what_cannot_be_foretold(
+    scene: str, words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["whirl", scene, *words]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_scene_without_touchdown_bearings_is_refused() -> None:
+    with pytest.raises(TouchdownError, match="no touchdown bearing to whirl in"):
+        machine(_without_touchdown(touchdown.load(SCENE)))
+
+
+def _without_touchdown(scene: touchdown.Scene) -> touchdown.Scene:
+    """The scene on its magnetic bearings alone."""
+    gone = ("bearing_A", "bearing_B", "housing_A", "housing_B")
+    components = {name: spec for name, spec in scene.components.items() if name not in gone}
+    attach = tuple(pair for pair in scene.attach if not any(p.partition(".")[0] in gone for p in pair))
+    return replace(scene, components=components, attach=attach, energy_scale=("rotor.mass",))

@@ -1,0 +1,114 @@
+"""Whirl round touchdown bearings from receptances, against closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from touchdown.rotor.file import find
+from touchdown.rotor.modal.contact_whirl import (
+    ContactWhirl,
+    Seat,
+    circling,
+    receptance,
+    rigid,
+    steady,
+)
+from touchdown.rotor.modal.modes import basis
+
+CLEARANCE = 0.2e-3
+
+
+def spring(stiffness: float, ratio: float) -> Seat:
+    """A rigid stator behind a contact, whose force along the circle is a `ratio` of the one inwards."""
+
+    def bearing(depth: float, omega: float) -> complex:
+        return complex(-stiffness * depth, math.copysign(ratio * stiffness * depth, omega))
+
+    return Seat(CLEARANCE, bearing, rigid)
+
+
+@pytest.mark.parametrize("beta", [1.0, 10.0, 40.0])
+def test_the_threshold_of_dry_whip(beta: float) -> None:
+    """Jeffcott's rotor on a rigid stator: least friction 2 zeta sqrt(1 + beta)/beta, beta = k_contact/k."""
+    mass, k, zeta = 1.0, 1e6, 0.05
+    damping = 2.0 * zeta * math.sqrt(k * mass)
+
+    def rotor(omega: float) -> np.ndarray:
+        return np.array([[1.0 / (k - mass * omega**2 + 1j * omega * damping)]])
+
+    whirl = ContactWhirl(rotor, [spring(beta * k, 1.0)])
+    end = 2.0 * math.sqrt((1.0 + beta) * k / mass)
+    circles = list(whirl.faster(-100.0, -end))
+    assert min(c.drive for c in circles) == pytest.approx(
+        2.0 * zeta * math.sqrt(1.0 + beta) / beta, rel=1e-3
+    )
+    assert abs(circles[-1].omega) < end  # where the rotor on its contact runs away
+
+
+def test_a_free_mass_on_a_damped_carrier() -> None:
+    """N = m W^2 (c + X + d): drive by hand from the carrier's loss, N T = c_d W^2 X^2 over W r."""
+    mass, k, damping, contact, mu = 20.0, 1e7, 2000.0, 1e9, 0.02
+    seat = spring(contact, mu)._replace(carrier=steady(1.0, k, damping))
+    whirl = ContactWhirl(lambda omega: np.array([[-1.0 / (mass * omega**2 + 0j)]]), [seat])
+    way, settled = whirl.settled(-30.0, -5000.0)
+    assert settled is not None
+    assert len(way) > 3
+    assert settled.drive == pytest.approx(1.0, abs=1e-5)
+    for circle in (way[1], settled):
+        (force,), (along,), (stroke,) = circle.force, np.abs(circle.along), circle.stroke
+        journal = np.hypot(force, circle.drive * along) / (mass * circle.omega**2)  # m, of its circle
+        loss = damping * circle.omega**2 * stroke**2
+        # what drives it acts on the journal and, the other way, on the carrier: over their motion along it
+        power = circle.drive * along * abs(circle.omega) * (CLEARANCE + circle.depth[0])
+        assert power == pytest.approx(loss, rel=1e-6)
+        assert journal > CLEARANCE
+    assert settled.friction == pytest.approx([mu], rel=1e-5)
+
+
+def test_a_whirl_that_nothing_stops_goes_on() -> None:
+    """A free mass round a rigid stator without a loss: no circle needs any drive."""
+    whirl = ContactWhirl(lambda omega: np.array([[-1.0 / (20.0 * omega**2 + 0j)]]), [spring(1e9, 0.02)])
+    way, settled = whirl.settled(-30.0, -300.0)
+    assert settled is None
+    assert way[-1].drive < 1e-6
+    assert abs(way[-1].omega) >= 300.0
+
+
+def test_receptances_of_a_rotor_are_those_of_its_mass_at_low_frequencies() -> None:
+    """Translation and tilt of a free rotor that does not spin, at two nodes; with a spin they couple."""
+    shaft = find("rotor_I")
+    nodes = [shaft.node("A"), shaft.node("B")]
+    modes = basis(shaft, 6)
+    omega = 2.0
+    found = receptance(modes, 0.003, nodes, 0.0)(omega)
+    places = shaft.positions()[np.array(nodes) - 1] - shaft.centre_of_mass
+    rigid_body = -(1.0 / shaft.mass + np.outer(places, places) / shaft.diametral_inertia) / omega**2
+    np.testing.assert_allclose(np.real(found), rigid_body, rtol=1e-4)
+    spun = receptance(modes, 0.003, nodes, 1000.0)
+    assert not np.allclose(spun(omega), spun(-omega), rtol=1e-3)
+    np.testing.assert_allclose(spun(omega), spun(omega).T, rtol=1e-9)
+
+
+def test_a_mount_that_slides_and_one_that_couples_its_directions() -> None:
+    """Its stroke under a force that goes round, by hand; and what cross-coupling is to either sense."""
+    k, slide, mass, omega = 1e7, 100.0, 0.5, 800.0
+
+    def sliding(omega: float, stroke: float) -> np.ndarray:
+        return (k + (1j * slide / stroke if stroke > 0.0 else 0.0)) * np.eye(2)
+
+    for sense in (1.0, -1.0):
+        found = circling(sliding, mass)(sense * omega, 500.0)
+        # |k - m W^2 + i F/X| X = force
+        stroke = math.sqrt(500.0**2 - slide**2) / (k - mass * omega**2)
+        assert abs(found) * 500.0 == pytest.approx(stroke, rel=1e-7)
+        assert np.sign(np.imag(found)) == -sense
+
+    def coupled(omega: float, stroke: float) -> np.ndarray:
+        return np.array([[k, 2e5], [-2e5, k]], complex)
+
+    forward, backward = (circling(coupled, 0.0)(sense * omega, 1.0) for sense in (1.0, -1.0))
+    assert forward == pytest.approx(1.0 / complex(k, -2e5))
+    assert backward == pytest.approx(forward)

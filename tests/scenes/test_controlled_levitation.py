@@ -1,0 +1,180 @@
+"""A rotor on magnets with a controller: against one system of equations, and the same however it is run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from levitation import LIMIT, PERIOD, Loop, Solution, solve
+from places import ROOT
+from pythonfmu import FmuBuilder
+from systems import history
+
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.interop.scenes import find_scene
+from touchdown.master.interop.ssp.write import write_package
+from touchdown.master.scene.file import load_scene, read_names
+
+LEVITATED = Loop(eccentricity=10e-6)
+RELEVITATED = Loop(eccentricity=2e-6, off=2e-3, on=22e-3)
+EVERY = 10e-6  # s, times of the one system
+CENTRE = ["rotor.A.x", "rotor.A.y"]
+# um, largest distance from the one system, levitated, by macro step in us
+FOUND = {20: 2.2e-6, 30: 6.2e-6, 50: 4.5e-5, 70: 7.7e-5, 100: 5.0e-4}
+FOUND_DROPPED = {20: 2.9e-4, 30: 7.5e-3, 50: 4.1e-2, 70: 1.9e-2, 100: 3.8e-2}  # um, through a drop
+
+
+@cache
+def exact(loop: str) -> Solution:
+    """Up to 50 ms after the beginning."""
+    return solve(LOOPS[loop], 52e-3 if loop == "relevitated" else 50e-3, EVERY)
+
+
+WITHIN = {"coil": 1e-13, "link": 1e-8}  # m; the rotor of the second falls into the bore
+
+
+LOOPS = {
+    "levitated": LEVITATED,
+    "relevitated": RELEVITATED,
+    "coil": Loop(failed=(5.03e-3, 1)),
+    "link": Loop(eccentricity=2e-6, link_off=5.03e-3, decay=1e-3),
+}
+
+
+def distance(name: str, macro_step: float, **run: object) -> float:
+    """Of the co-simulated rotor from that of the one system, at most (m), where both have a time."""
+    solution = exact(name)
+    scene = LOOPS[name].scene(float(solution.times[-1]), macro_step, impact_step=0.0, **run)
+    times, values, _ = history(scene, CENTRE)
+    steps = np.rint(times / EVERY).astype(int)
+    both = (np.abs(times - steps * EVERY) < 1e-9) & (steps > 0) & (steps <= len(solution.centre))
+    found = values["rotor.A.x"] + 1j * values["rotor.A.y"]
+    assert both.sum() > 100
+    return float(np.abs(found[both] - solution.centre[steps[both] - 1]).max())
+
+
+@pytest.mark.parametrize("microseconds", FOUND)
+def test_levitated_as_one_system(microseconds: int):
+    """Macro steps that divide the sample time are as good as others; twice what was found."""
+    assert np.abs(exact("levitated").centre).max() > 30e-6
+    assert distance("levitated", microseconds * 1e-6) < 2e-6 * FOUND[microseconds]
+
+
+def test_third_order_in_the_macro_step():
+    orders = np.diff(np.log([FOUND[20], FOUND[50], FOUND[100]])) / np.diff(np.log([20, 50, 100]))
+    assert np.all(orders > 2.9)
+    coarse, fine = (distance("levitated", step) for step in (100e-6, 50e-6))
+    assert math.log2(coarse / fine) > 2.5
+
+
+@pytest.mark.parametrize("microseconds", FOUND_DROPPED)
+def test_dropped_and_levitated_again_as_one_system(microseconds: int):
+    """Impacts included, whose beginnings neither side locates; twice what was found."""
+    assert np.abs(exact("relevitated").centre).max() > 0.3e-3  # it was in the bore
+    assert np.abs(exact("relevitated").centre[-1]) < 60e-6  # and is back
+    assert distance("relevitated", microseconds * 1e-6) < 2e-6 * FOUND_DROPPED[microseconds]
+
+
+@pytest.mark.parametrize("name", ["coil", "link"])
+def test_failures_within_a_macro_step_as_one_system(name: str):
+    """At 5.03 ms, between two ticks: the lower coil of an axis fails; the link falls with 1 ms."""
+    held = solve(Loop(LOOPS[name].eccentricity), 50e-3, EVERY).centre
+    assert np.abs(exact(name).centre - held).max() > 2e-6  # it is felt
+    assert distance(name, 20e-6) < WITHIN[name]
+
+
+def test_no_sample_is_missed_and_the_limits_are_told():
+    scene = RELEVITATED.scene(52e-3, 30e-6)
+    names = ["controller.missed", "controller.samples", "controller.state", "amb.limits.current_time"]
+    names += ["amb.peak_current", "amb.least_gap", "controller.axis[1].set"]
+    times, values, _ = history(scene.set({"amb.amplifier.current_limit": 3.0}), names)
+    assert values["controller.missed"][-1] == 0
+    assert values["controller.samples"][-1] == math.ceil(round(times[-1] / PERIOD, 6))
+    assert set(values["controller.state"]) == {0, 1, 2}
+    assert np.abs(values["controller.axis[1].set"]).max() <= LIMIT
+    assert (
+        2.99 < values["amb.peak_current"][-1] < 3.1
+    )  # back-EMF of the approaching rotor lets it swing over
+    assert 0.0 < values["amb.limits.current_time"][-1] < 30e-3
+    assert 0.2e-3 < values["amb.least_gap"][-1] < 0.3e-3
+
+
+def test_a_macro_step_beyond_the_sample_time_ends_the_run():
+    system = open_system(LEVITATED.scene(1e-2, 150e-6), in_process=True)
+    try:
+        outcome = simulate(LEVITATED.scene(1e-2, 150e-6), system)
+    finally:
+        system.close()
+    assert "longer than sample_time" in outcome.reason
+
+
+def test_the_same_through_fmus(unpacked: Mapping[str, Path]):
+    """To the last bit, with noise."""
+    scene = RELEVITATED.scene(30e-3, 30e-6).set({"amb.sensing.noise": 1e-6})
+    _, within, _ = history(scene, [*CENTRE, "controller.axis[2].set"], in_process=True)
+    _, through, _ = history(scene, [*CENTRE, "controller.axis[2].set"], in_process=False)
+    for name, values in within.items():
+        assert np.array_equal(values, through[name])
+
+
+@pytest.mark.native
+def test_the_same_through_native_fmus():
+    """Of actuator and controller, to the last bit, with noise."""
+    scene = RELEVITATED.scene(30e-3, 30e-6).set({"amb.sensing.noise": 1e-6})
+    native = scene.set({"amb.native": True, "controller.native": True})
+    _, within, _ = history(scene, CENTRE, in_process=True)
+    _, through, _ = history(native, CENTRE, in_process=False)
+    for name, values in within.items():
+        assert np.array_equal(values, through[name])
+
+
+def test_a_controller_that_is_not_there_is_said():
+    scene = LEVITATED.scene(1e-3, 20e-6)
+    for pairs, said in (
+        ((("control", "amb"),), "control: there is no component control; did you mean controller"),
+        ((("rotor", "amb"),), "has no variable axis[1].sensed"),
+        ((("controller", "bearing"),), "has no variable axis[1].sensed"),
+        ((("controller", "amb"),) * 3, "has no variable axis[5].sensed"),
+    ):
+        with pytest.raises(TouchdownError, match=said.replace("[", r"\[").replace("]", r"\]")):
+            open_system(replace(scene, control=pairs), in_process=True)
+
+
+def test_a_controller_of_others_with_the_same_law_gives_the_same_trajectory(tmp_path: Path):
+    """The example, built by pythonfmu without this project, stepped once per sample."""
+    FmuBuilder.build_FMU(ROOT / "examples" / "pid_controller.py", dest=tmp_path)
+    own = LEVITATED.scene(30e-3, 20e-6)
+    swapped = own.swap(controller=str(tmp_path / "PidController.fmu"))
+    swapped = swapped.with_names("controller", read_names(ROOT / "examples" / "pid_controller.toml"))
+    _, expected, _ = history(own, CENTRE)
+    _, found, _ = history(swapped.set({"controller.sampled": "100 us"}), CENTRE)
+    for name in CENTRE:
+        assert np.abs(expected[name]).max() > 10e-6
+        assert np.abs(found[name] - expected[name]).max() < 1e-12  # sums in another order
+
+
+def test_a_sample_time_that_no_macro_steps_fill_is_refused():
+    scene = LEVITATED.scene(1e-3, 30e-6).set({"controller.sampled": "100 us"})
+    with pytest.raises(TouchdownError, match="is no multiple of the macro step 3e-05 s"):
+        open_system(scene, in_process=True)
+
+
+def test_a_package_carries_the_loop(tmp_path: Path):
+    """Control, events and a zero that is a time: the same motion from an SSP package, to the last bit."""
+    scene = load_scene("disk-caged-relevitated").set({"run.duration": "30 ms"})
+    scene = scene.set({"controller.event[2].time": "20 ms"})
+    package = tmp_path / "loop.ssp"
+    write_package(scene, package)
+    names = ["rotor.A.x", "rotor.A.y", "controller.state"]
+    times, expected, _ = history(scene, names)
+    again, found, _ = history(find_scene(str(package)), names)
+    assert np.array_equal(times, again)
+    assert set(expected["controller.state"]) == {0, 1, 2}
+    for name in names:
+        assert np.array_equal(expected[name], found[name])
