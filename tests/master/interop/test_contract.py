@@ -23,14 +23,14 @@ WITHOUT_PORTS = ("amb_controller",)  # it takes signals alone
 
 
 def test_the_bearings_are_known() -> None:
-    assert BEARINGS == [
+    assert [
         *MAGNETS,
         "bushing",
         "detailed_caged",
         "detailed_cageless",
         "simplified_caged",
         "simplified_cageless",
-    ]
+    ] == BEARINGS
 
 
 @pytest.mark.parametrize("name", names())
