@@ -178,7 +178,7 @@ def _validity(exposed: Sequence[Slot]) -> Iterator[str]:
     )
     if "journal.x" in names:
         yield (
-            "<li>It is stepped before the bodies it bears, from their motion at the beginning of the step; "
+            "<li>It is stepped before the bodies it carries, from their motion at the step's beginning; "
             "loads are means over the step, and their slopes. <code>*_free</code>, <code>inv_m</code> and "
             "the like let it carry copies of the bodies through the step; left at 0 the motion is taken as "
             "given and extrapolated, and the step must be short beside the contact.</li>"

@@ -59,7 +59,7 @@ def register_scheme(scheme: Scheme, stepper: type[Stepper] | None = None) -> Non
 
     >>> mean_and_slope = touchdown.Scheme(
     ...     name="velocity-slope", title="velocity extrapolated, mean and slope",
-    ...     order=1, slopes=True, modes=False, error_order=2, bears=0.08,
+    ...     order=1, slopes=True, modes=False, error_order=2, angle_limit=0.08,
     ... )
     >>> touchdown.register_scheme(mean_and_slope)
     >>> scene = touchdown.load("disk-caged-simplified")

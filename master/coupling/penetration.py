@@ -56,7 +56,7 @@ class Penetration(Observer):
 
 
 def _stated(system: System, bearing: str) -> bool:
-    """Whether a bearing states its clearance; what the master heard begins at the first force."""
+    """Whether a bearing states its clearance; what the master estimates begins at the first force."""
     variable = system.components[bearing].variables.get(CLEARANCE)
     return variable is not None and not estimated_by_master(variable)
 

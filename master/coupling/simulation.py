@@ -18,7 +18,7 @@ from ..scene.scene import Scene
 from .assembly import assemble
 from .bonds.description import exchange, uncoupled_warning
 from .ledger import Balance, Judge, Ledger, MountSwing, Shortening
-from .ledger.auditor import heard
+from .ledger.auditor import with_estimates
 from .loop.compiled import MacroSteps, Stretches
 from .loop.span import Retirement, Values, named_zero, span, swapped_away
 from .loop_gain import LoopGain
@@ -99,7 +99,7 @@ class Outcome:
 def open_system(scene: Scene, in_process: bool = False, listening: bool = True) -> System:
     """Load the scene's components, as FMUs or in process, and wire them up.
 
-    listening: bearings of others' that report no contact tell what is heard of it.
+    listening: bearings of others' that report no contact tell what is estimated of it.
     """
 
     def load_one(name: str, fmu: str) -> Component:
@@ -107,7 +107,7 @@ def open_system(scene: Scene, in_process: bool = False, listening: bool = True) 
         stepping = Stepping(in_process, spec.isolate, scene.run.call_timeout, spec.native)
         return load_component(name, fmu, scene.folder, stepping)
 
-    return assemble(scene, load_one, heard if listening else _as_they_are)
+    return assemble(scene, load_one, with_estimates if listening else _as_they_are)
 
 
 def _as_they_are(components: Mapping[str, Component], _: object) -> dict[str, Component]:
@@ -177,7 +177,7 @@ def simulate(
 
 
 def _seen(now: Moment, ledger: Ledger, judge: Judge, shortening: Shortening) -> Outcome:
-    """Where the run ended, what the ledger heard, and what came of it."""
+    """Where the run ended, what the ledger found, and what came of it."""
     return Outcome(
         steps=now.done,
         start=now.start,

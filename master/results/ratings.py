@@ -157,7 +157,7 @@ class Rated:
         if self.safety < 1.0:
             return (
                 "a dent",
-                f"in this drop: it bears {self.safety:.2g} of the largest ball load without one",
+                f"in this drop: it stands {self.safety:.2g} of the largest ball load without one",
             )
         if self.drops < FEW_DROPS:
             return "fatigue", f"in one bearing of ten after {self.drops:.2g} such drops"

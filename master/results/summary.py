@@ -81,7 +81,7 @@ def touchdown_seats(system: Readable) -> list[Attachment]:
     return [a for a in system.attachments if f"{a.bearing}.contact.first_time" in system and a.on_journal]
 
 
-def is_heard(system: Readable, a: Attachment) -> bool:
+def is_estimated(system: Readable, a: Attachment) -> bool:
     """Whether it is the master that tells of contact in the bearing, which tells nothing of it."""
     return estimated_by_master(system.components[a.bearing].variables["contact.first_time"])
 
@@ -126,8 +126,8 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         seat = next(a for a in seats if a.body == name)
         speed = seat.motion("omega")
         figures[f"rotor_speed_end_rpm{tail}"] = RPM * system.value(speed) if speed in system else None
-    if by_master := [a.bearing for a in seats if is_heard(system, a)]:
-        figures["contact_heard_by_master"] = ", ".join(by_master)
+    if by_master := [a.bearing for a in seats if is_estimated(system, a)]:
+        figures["contact_estimated_by_master"] = ", ".join(by_master)
     figures |= gap_figures(scene, recording)
     for a in seats:
         tail = f"_{a.bearing}" if len(seats) > 1 else ""

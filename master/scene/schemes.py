@@ -32,7 +32,7 @@ class Scheme:
     the first moment of its load crosses beside the mean; with `modes` it carries a flexible rotor's
     elastic modes; with `lead` it hands over the load of the step to come. `sequence` names the stepper.
     The errors of motion and ledger fall with macro step ** `error_order` (0: a tolerance sets them),
-    from which a shorter step is proposed when the ledger stops a run; `bears` is how many radians the
+    from which a shorter step is proposed when the ledger stops a run; `angle_limit` is how many radians the
     journal may swing on its contact within a macro step, from which `touchdown advise` takes its step.
     `compare` and `stability` fit the last two.
 
@@ -46,7 +46,9 @@ class Scheme:
     slopes: bool  # whether dfx, dfy, dmz are exchanged
     modes: bool  # whether the bearings carry the rotor's elastic modes
     error_order: int  # of motion and of the ledger in the macro step; 0: a tolerance sets the error
-    bears: float  # rad, of the journal's swing on its contact in a macro step (`studies.schemes.advisor`)
+    angle_limit: (
+        float  # rad, of the journal's swing on its contact in a macro step (`studies.schemes.advisor`)
+    )
     sequence: str = "gauss-seidel"
     lead: bool = False  # whether bearings hand over the load of the step to come
 
@@ -82,8 +84,8 @@ def register(scheme: Scheme) -> None:
     orders = (HOLD, VELOCITY, ACCELERATION, MODEL)
     if scheme.order not in orders:
         raise TouchdownError(f"scheme {scheme.name}: order = {scheme.order} must be one of {orders}")
-    if not scheme.bears > 0.0:
-        raise TouchdownError(f"scheme {scheme.name}: bears = {scheme.bears} must be above 0")
+    if not scheme.angle_limit > 0.0:
+        raise TouchdownError(f"scheme {scheme.name}: angle_limit = {scheme.angle_limit} must be above 0")
     _schemes[scheme.name] = scheme
 
 

@@ -54,13 +54,14 @@ def _execute_advise(options: argparse.Namespace) -> int:
     print("within about 1 %; what longer steps do is in the ledger of a run.")
     for name, advised in advice.items():
         scheme = SCHEMES[name]
-        print(f"  {name:<18}{1e6 * advised.macro_step:>10g} us   {scheme.bears:>5g} rad   {scheme.title}")
+        step, limit = f"{1e6 * advised.macro_step:>10g} us", f"{scheme.angle_limit:>5g} rad"
+        print(f"  {name:<18}{step}   {limit}   {scheme.title}")
     return 0
 
 
 ADVISE = Verb(
     "advise",
-    "which macro step each coupling scheme bears in a scene",
+    "the largest macro step of each coupling scheme in a scene",
     ADVISE_EXAMPLES,
     _declare_advise,
     _execute_advise,

@@ -85,10 +85,10 @@ class BondAccount(Account):
         return self.turned
 
     def fetch(self) -> None:
-        """Take over, for judgement, what was heard so far."""
-        heard = self.crossing.past.audit
-        if heard.loaded >= MIN_WORKING_STEPS:
-            self.record["total"], self.record["turned"] = heard.share * heard.turned, heard.turned
+        """Take over, for judgement, what was estimated so far."""
+        estimate = self.crossing.past.audit
+        if estimate.loaded >= MIN_WORKING_STEPS:
+            self.record["total"], self.record["turned"] = estimate.share * estimate.turned, estimate.turned
             self.record["wrong"] = (
-                heard.share * LASTING_CONTACT_SHARE / FORCE_PER_ENERGY * heard.turned
+                estimate.share * LASTING_CONTACT_SHARE / FORCE_PER_ENERGY * estimate.turned
             )  # to be that share again

@@ -32,7 +32,7 @@ from .account import Account, BondAccount, SeatAccount
 from .accounts import Ledger
 
 MICRO_STEP, TOLERANCE = "micro_step", "interface.tolerance"
-MACRO_STEP_BLAME = 3.0  # times what a scheme bears; there the macro step alone is to blame
+MACRO_STEP_BLAME = 3.0  # times what a scheme can take; there the macro step alone is to blame
 
 
 class Judge(Observer):
@@ -78,7 +78,7 @@ class Judge(Observer):
 def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
     """What to change where the residual of `account` is too large a share of the turnover.
 
-    The coupling is to blame where the contact swings farther in a macro step than the scheme bears; the
+    The coupling is to blame where the contact swings farther in a macro step than the scheme can take; the
     steps inside the bearing, where it does not.
     """
     if run.scheme.error_order == 0:
@@ -88,8 +88,8 @@ def remedy(run: RunSpec, system: System, account: Account, share: float) -> str:
         return _shorter_for_bond(run, share)
     bearing = account.attachment.bearing
     swing = _swing(run, system, bearing)
-    inside = finer(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.bears else ""
-    if inside and swing <= run.scheme.bears:
+    inside = finer(system, bearing) if swing < MACRO_STEP_BLAME * run.scheme.angle_limit else ""
+    if inside and swing <= run.scheme.angle_limit:
         return (
             f"the macro step of {run.macro_step:g} s is short enough, the steps inside the bearing are "
             f"not, try {inside}"
@@ -113,8 +113,8 @@ def too_long(run: RunSpec, share: float, either: str = "try") -> str:
 
 
 def swings_too_far(run: RunSpec, system: System, bearing: str) -> bool:
-    """Whether the journal swings farther on its contact in a macro step than the scheme bears."""
-    return run.scheme.bears < _swing(run, system, bearing) < float("inf")
+    """Whether the journal swings farther on its contact in a macro step than the scheme can take."""
+    return run.scheme.angle_limit < _swing(run, system, bearing) < float("inf")
 
 
 def _shorter_for_bond(run: RunSpec, share: float) -> str:

@@ -4,7 +4,7 @@ What the master hears of contact in a bearing that reports none: from the motion
 
 Such a bearing gets the variables of a report beside its own, so that summary, pictures and comparisons
 find them as they find those of the project's bearings. They come of means over macro steps: a contact
-shorter than a few of these is heard too low.
+shorter than a few of these is estimated too low.
 
 The loads that such a bearing hands over do not tell what the coupling made: a mean force over a step in
 which the contact opens and closes is consistent with any loss. So a second instance of its FMU is told, in
@@ -135,7 +135,7 @@ class Spin:
             inputs[acceleration] = gain * (end - begin) / span
 
 
-ESTIMATED_BY_MASTER = "heard by the master from what crosses"
+ESTIMATED_BY_MASTER = "estimated by the master from forces and motions that it passes on"
 REPORT = "contact.first_time"  # what a bearing that reports its contact has
 POWERED = ("shutdown_time", "active")  # what a magnetic bearing has
 CLEARANCE = "clearance"
@@ -176,7 +176,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Contact:
-    """What was heard so far."""
+    """What was estimated so far."""
 
     force: Row = field(default_factory=Row)  # means over macro steps
     first_time: float = -1.0  # s
@@ -192,7 +192,7 @@ class Saved(NamedTuple):
     contact: Contact
 
 
-class Heard(Component):
+class Estimating(Component):
     """A bearing with what the master hears at its `port`."""
 
     def __init__(self, bearing: Component, port: str) -> None:
@@ -204,7 +204,7 @@ class Heard(Component):
         self._contact = Contact()
         self._began: float | None = None  # s, of the step that is not heard yet
 
-    # -- heard -----------------------------------------------------------------------------------------
+    # -- estimates -----------------------------------------------------------------------------------------
 
     def bind(self, inputs: Sequence[str], outputs: np.ndarray, names: Sequence[str]) -> None:
         self._bearing.bind(inputs, outputs, names)
@@ -258,15 +258,15 @@ class Heard(Component):
     def reader(self, names: Sequence[str]) -> Callable[[], np.ndarray]:
         own = [name for name in names if name in self._bearing.variables]
         at = np.array([name in self._bearing.variables for name in names], dtype=bool)
-        heard = [name for name in names if name not in self._bearing.variables]
-        if not heard:
+        estimated = [name for name in names if name not in self._bearing.variables]
+        if not estimated:
             return self._bearing.reader(own)
         fetch, values = self._bearing.reader(own), np.zeros(len(names))
 
         def read() -> np.ndarray:
             values[at] = fetch()
             told = self._values()
-            values[~at] = [told[name] for name in heard]
+            values[~at] = [told[name] for name in estimated]
             return values
 
         return read
@@ -323,19 +323,21 @@ def _variable(name: str) -> Variable:
     )
 
 
-def heard(components: Mapping[str, Component], attachments: Sequence[Attachment]) -> dict[str, Component]:
-    """`components`, with what is heard of bearings of others' on a journal that report no contact."""
-    listened = dict(components)
+def with_estimates(
+    components: Mapping[str, Component], attachments: Sequence[Attachment]
+) -> dict[str, Component]:
+    """`components`, with what is estimated of foreign bearings on a journal that report no contact."""
+    known = dict(components)
     for a in attachments:
-        bearing = listened[a.bearing]
+        bearing = known[a.bearing]
         silent = REPORT not in bearing.variables and not any(p in bearing.variables for p in POWERED)
         if bearing.foreign and silent and a.on_journal:
-            listened[a.bearing] = Heard(bearing, a.bearing_port)
-    return listened
+            known[a.bearing] = Estimating(bearing, a.bearing_port)
+    return known
 
 
 def estimated_by_master(variable: Variable) -> bool:
-    """Whether it is what the master heard."""
+    """Whether it is what the master estimates."""
     return variable.description.endswith(ESTIMATED_BY_MASTER)
 
 

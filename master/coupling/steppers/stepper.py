@@ -100,7 +100,7 @@ class Stepper(ABC):
     ...         return {"steps_counted": self.count}
     >>> scheme = touchdown.Scheme(
     ...     name="counting", title="interface, steps counted", order=3, slopes=True, modes=True,
-    ...     error_order=3, bears=1.0, sequence="counting",
+    ...     error_order=3, angle_limit=1.0, sequence="counting",
     ... )
     >>> touchdown.register_scheme(scheme, Counting)
     >>> scene = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})

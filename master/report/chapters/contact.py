@@ -13,7 +13,7 @@ from ...results.figures.stress import has_stress, stress
 from ...results.recording import NotRecordedError
 from ...results.spectra import WINDOW_S, WINDOW_START_S
 from ...results.stresses import stressed
-from ...results.summary import is_heard, relative_orbit
+from ...results.summary import is_estimated, relative_orbit
 from ..blocks import Absent, Block, Lacking, Picture, Table
 from ..charts import inline, series
 from ..drawings import SECTORS, Presses, contact_map
@@ -36,8 +36,10 @@ def forces(subject: Subject) -> list[Block]:
         Line(subject.name(a), COLOURS[k % len(COLOURS)], subject.values(a, FORCE))
         for k, a in enumerate(recorded)
     ]
-    heard = [a.bearing for a in recorded if is_heard(subject.run.system, a)]
-    means = f" Forces of {', '.join(heard)} are heard from means over macro steps." if heard else ""
+    estimated = [a.bearing for a in recorded if is_estimated(subject.run.system, a)]
+    means = (
+        f" Forces of {', '.join(estimated)} are estimated from means over macro steps." if estimated else ""
+    )
     chart = subject.chart("force", "Contact force of the journal", "contact force [N]", lines)
     blocks: list[Block] = [
         series(

@@ -15,7 +15,7 @@ from ...coupling.connections import Attachment
 from ...coupling.loop.span import origin_of, zero_of
 from ..ending import Finished, Readable, housing_port
 from ..recording import Recording
-from ..summary import is_heard
+from ..summary import is_estimated
 from .style import (
     BLACK,
     BLUE,
@@ -82,7 +82,7 @@ def forces(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
             _first_impact(row[0], time, shown, first)
     _label_columns(grid[0], grid[-1], spans, (beginning(time), float(time[-1])))
     peak = run.system.value(f"{a.bearing}.contact.peak_force")
-    by = ", heard from means over macro steps" if is_heard(run.system, a) else ""
+    by = ", estimated from means over macro steps" if is_estimated(run.system, a) else ""
     figure.suptitle(f"{run.scene.title}\nlargest contact force {peak:.1f} N{by}{_which(recording, a)}")
     return list(grid.flat)
 

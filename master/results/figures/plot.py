@@ -17,7 +17,7 @@ from ...coupling.connections import Attachment
 from ..ending import Finished
 from ..recording import NotRecordedError
 from ..stresses import stressed
-from ..summary import energy_total, is_heard, touchdown_seats
+from ..summary import energy_total, is_estimated, touchdown_seats
 from .energy import energy
 from .forces import contacts, forces, has_contacts
 from .gaps import gaps_left
@@ -51,8 +51,8 @@ OF_BEARING = [
     OfBearing("orbit", paths),
     OfBearing("force", forces, lambda run, a: f"{a.bearing}.contact.force" in run.recording),
     OfBearing("speeds", speeds, lambda run, a: f"{a.bearing}.speed.ring" in run.recording),
-    OfBearing("distance", distance, lambda run, a: is_heard(run.system, a)),
-    OfBearing("slowing", slowing, lambda run, a: is_heard(run.system, a)),
+    OfBearing("distance", distance, lambda run, a: is_estimated(run.system, a)),
+    OfBearing("slowing", slowing, lambda run, a: is_estimated(run.system, a)),
     OfBearing("contacts", contacts, lambda run, a: has_contacts(run.system, a)),
     OfBearing("spectrum", spectrum, lambda run, a: has_spectrum(run.recording, a)),
     OfBearing("waterfall", motion_waterfall, lambda run, a: has_waterfall(run.recording, a)),

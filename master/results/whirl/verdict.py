@@ -27,7 +27,7 @@ Of what is no whirl a remark may say more, the first of these that holds (`remar
 
 creeps along the bore   contacts march by a turn or more, at less than CREEP_SHARE of the pendulum's
                         frequency
-near miss               contacts march one way by less than a turn, but MAX_FREE_SWING or more
+short of one turn       contacts march one way by less than a turn, but MAX_FREE_SWING or more
 partial rub             an orbit circles one way, MIN_WHIRL_TURN or more, and contacts do not march: it
                         touches in places, as an ellipse does, or a circle off the centre
 orbits without contact  the same, and never touches
@@ -238,7 +238,7 @@ def on_turnings(turnings: Sequence[Turning], spin: float) -> str:
     best = max((t for t in turnings if not t.creeps), key=lambda t: t.turns, default=None)
     if best is None:
         return ""
-    return f"near miss: {short_of_one(best.turns)} turn {best.direction(spin)}"
+    return f"short of one turn: {short_of_one(best.turns)} turn {best.direction(spin)}"
 
 
 def on_circling(orbit: Orbit, marches: Sequence[March]) -> str:

@@ -5,11 +5,11 @@ unless asked otherwise. Motion is measured against the monolithic reference. The
 impact (contact, worst ball, side of a ball), which bearings report from inside their steps, are measured
 against fine steps of the co-simulation, adaptive inside bearings, whose motion stands beside it.
 
-Which macro step a scheme bears, told before a run.
+Which macro step suits a scheme, told before a run.
 
 A touchdown bearing says at which rate the journal swings on its contact: from the contact's stiffness, and
-from the masses and elastic modes that the journal moves with (`contact.rate`, rad/s). A scheme bears so
-many radians of that swing in a macro step (`Scheme.bears`, measured: docs/coupling.md).
+from the masses and elastic modes that the journal moves with (`contact.rate`, rad/s). A scheme takes so
+many radians of that swing in a macro step (`Scheme.angle_limit`, measured: docs/coupling.md).
 """
 
 from __future__ import annotations
@@ -356,7 +356,7 @@ class Advice:
 
 
 def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice]:
-    """The macro step that each of the schemes `names` bears in `scene`; without names, the scene's own.
+    """The macro step that each of the schemes `names` can take in `scene`; without names, the scene's own.
 
     Raises TouchdownError where the scene cannot be assembled, or no bearing states its contact's rate.
     """
@@ -368,8 +368,8 @@ def advise(scene: Scene, names: Iterable[str] | None = None) -> dict[str, Advice
 
 def _for(chosen: Scheme, bearing: str, rate: float) -> Advice:
     return Advice(
-        tidy(min(chosen.bears / rate, LONGEST_MACRO_STEP)),
+        tidy(min(chosen.angle_limit / rate, LONGEST_MACRO_STEP)),
         f"the journal swings at {rate / (2.0 * math.pi):.3g} Hz on the contact of {bearing}, and scheme "
-        f"{chosen.name} bears {chosen.bears:g} rad of that in a macro step, "
+        f"{chosen.name} takes {chosen.angle_limit:g} rad of that in a macro step, "
         f"up to {1e6 * LONGEST_MACRO_STEP:g} us",
     )

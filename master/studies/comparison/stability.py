@@ -1,4 +1,4 @@
-"""How long a macro step the coupling bears in hard cases.
+"""How long a macro step the coupling can take in hard cases.
 
 A case is a scene, figures read at the end of its run, and what is right: from theory, or from a run at
 REFERENCE_STEP with the default scheme. A run is

@@ -160,7 +160,7 @@ def _at_stable(finding: Finding, shown: Callable[[Attempt], str]) -> str:
 
 def _swings(study: Study) -> list[str]:
     least = ["least", *(_least(study, scheme) for scheme in study.schemes)]
-    advised = ["advised", *(f"{SCHEMES[scheme].bears:g}" for scheme in study.schemes)]
+    advised = ["advised", *(f"{SCHEMES[scheme].angle_limit:g}" for scheme in study.schemes)]
     return _table(study, lambda finding: _swing(finding, study.rights[finding.case]), [least, advised])
 
 

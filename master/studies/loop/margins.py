@@ -28,7 +28,7 @@ class Margins:
     peak: float  # of |S|
     at: float  # rad/s, where it is
     crossings: tuple[float, ...]  # rad/s, where |L| = 1
-    delay: float  # s, that the loop bears beyond its own; inf: any
+    delay: float  # s, that the loop stands beyond its own; inf: any
 
     @property
     def zone(self) -> str:

@@ -33,7 +33,7 @@ MAX_MODES_KEPT = 8  # modes per plane, the two rigid ones included
 
 @dataclass(frozen=True)
 class Support:
-    """A magnetic or a touchdown bearing: its name, its place on the rotor, what it bears at rest."""
+    """A magnetic or a touchdown bearing: its name, its place on the rotor, what it carries at rest."""
 
     component: str
     station: str
@@ -68,12 +68,12 @@ class Design:
 
     @property
     def levitated_mass(self) -> float:
-        """On the magnetic bearing that bears most (kg)."""
+        """On the magnetic bearing that carries most (kg)."""
         return max(abs(support.load) for support in self.magnetic) / GRAVITY
 
     @property
     def landed_mass(self) -> float:
-        """On the touchdown bearing that bears most (kg)."""
+        """On the touchdown bearing that carries most (kg)."""
         return max(abs(support.load) for support in self.touchdown) / GRAVITY
 
     def notes(self) -> list[str]:
@@ -82,8 +82,8 @@ class Design:
         for s, bearing in zip(self.touchdown, self.bearings, strict=True):
             if abs(s.load) > (limit := bearing.capacity().static):
                 told.append(
-                    f"{s.component} bears {1e-3 * abs(s.load):.3g} kN at rest, more than the static rating "
-                    f"of {bearing.designation}, C0 = {1e-3 * limit:.3g} kN"
+                    f"{s.component} carries {1e-3 * abs(s.load):.3g} kN at rest, more than the static "
+                    f"rating of {bearing.designation}, C0 = {1e-3 * limit:.3g} kN"
                 )
         usual = sensible_speed(self.bending, self.bearings)
         if self.speed > SPEED_RATIO_LIMIT * usual:
@@ -95,7 +95,7 @@ class Design:
 
 
 def supports(shaft: Shaft, prefix: str, stations: Sequence[str], option: str) -> tuple[Support, ...]:
-    """Bearings at these stations of a rotor, and what each bears. Raises TouchdownError."""
+    """Bearings at these stations of a rotor, and what each carries. Raises TouchdownError."""
     known = [station.name for station in shaft.stations]
     for name in stations:
         if name not in known:

@@ -78,12 +78,12 @@ def _speed_rule(d: Design) -> str:
 def _bearings(d: Design) -> Iterator[str]:
     """The components themselves, and of the touchdown bearings what is not the same in all."""
     for s in d.magnetic:
-        yield from ("", f"[components.{s.component}]", f'fmu = "amb"  # bears {s.load:.4g} N at rest')
+        yield from ("", f"[components.{s.component}]", f'fmu = "amb"  # carries {s.load:.4g} N at rest')
     for s, bearing, preset in zip(d.touchdown, d.bearings, d.presets, strict=True):
         yield from (
             "",
             f"[components.{s.component}]",
-            f'fmu = "simplified_caged"  # bears {s.load:.4g} N once the rotor lies',
+            f'fmu = "simplified_caged"  # carries {s.load:.4g} N once the rotor lies',
         )
         if not _alike(d):
             yield f"preset = {_quoted(preset)}"
@@ -101,14 +101,14 @@ def _magnetic(d: Design) -> Iterator[str]:
     force = rounded(FORCE_LIMIT_RATIO * mass * GRAVITY)
     yield from (
         "",
-        f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that bears most",
+        f"# -- the magnetic bearings: a mass of {mass:.4g} kg on the one that carries most",
         "",
         heading([s.component for s in d.magnetic]),
         'shutdown_time = "20 ms"',
         f"stiffness = {stiffness_text(stiffness)}  # that mass swings with "
         f"{LEVITATION_FREQUENCY / HERTZ:.3g} Hz",
         f'damping = "{damping:g} N.s/m"  # {LEVITATION_DAMPING:g} of critical',
-        f'force_limit = "{force:g} N"  # {FORCE_LIMIT_RATIO:g} times what it bears at rest',
+        f'force_limit = "{force:g} N"  # {FORCE_LIMIT_RATIO:g} times what it carries at rest',
         'bandwidth = "12566 rad/s"  # of the amplifier: 2 kHz',
     )
 

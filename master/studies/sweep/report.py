@@ -51,7 +51,7 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
     lines = []
     for key in verdict_keys(members):
         words = (str(m.summary[key]) for m in members if m.summary.get(key) is not None)
-        counts = Counter(map(verdict_class, words))  # whatever near misses miss by
+        counts = Counter(map(verdict_class, words))  # however near to a turn they came
         lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
     return lines
 

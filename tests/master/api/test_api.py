@@ -141,7 +141,7 @@ class Twice(GaussSeidel):
 
 TWICE = touchdown.Scheme(
     name="twice", title="interface, every step in two", order=3, slopes=True, modes=True,
-    error_order=3, bears=1.0, sequence="twice",
+    error_order=3, angle_limit=1.0, sequence="twice",
 )  # fmt: skip
 
 
@@ -166,7 +166,7 @@ def test_a_scheme_of_one_s_own_runs_a_scene() -> None:
         ({"sequence": "jacoby"}, None, "there is no sequence jacoby; did you mean jacobi"),
         ({}, 5, "5 is no subclass of Stepper"),
         ({"order": 7}, Twice, "order = 7 must be one of"),
-        ({"bears": 0.0}, Twice, "bears = 0.0 must be above 0"),
+        ({"angle_limit": 0.0}, Twice, "angle_limit = 0.0 must be above 0"),
     ],
 )
 def test_a_scheme_that_cannot_be_is_refused_whole(
@@ -191,7 +191,7 @@ def test_a_scheme_may_be_registered_again_as_a_notebook_s_cell_does() -> None:
     with pytest.raises(touchdown.TouchdownError, match="there is a sequence twice already"):
         touchdown.register_scheme(TWICE, Refusing)
     with pytest.raises(touchdown.TouchdownError, match="there is a scheme twice already"):
-        touchdown.register_scheme(replace(TWICE, bears=0.5), Twice)
+        touchdown.register_scheme(replace(TWICE, angle_limit=0.5), Twice)
 
 
 @pytest.mark.usefixtures("registries")
@@ -215,7 +215,7 @@ class Mine(GaussSeidel):
 
 if __name__ == "__main__":
     scheme = touchdown.Scheme(
-        name="mine", title="own", order=3, slopes=True, modes=True, error_order=3, bears=1.0,
+        name="mine", title="own", order=3, slopes=True, modes=True, error_order=3, angle_limit=1.0,
         sequence="mine",
     )
     touchdown.register_scheme(scheme, Mine)

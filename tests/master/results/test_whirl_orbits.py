@@ -146,7 +146,9 @@ def short_of_a_whirl() -> list[Case]:
     """Near misses, what creeps, bounces or rests."""
     cases = [
         Case(
-            f"{count:g} turn at {f:g} Hz", turns(count, f), f"no whirl, near miss: {said:.2f} turn {sense}"
+            f"{count:g} turn at {f:g} Hz",
+            turns(count, f),
+            f"no whirl, short of one turn: {said:.2f} turn {sense}",
         )
         for count, said in ((0.82, 0.82), (0.88, 0.88), (0.91, 0.91), (0.95, 0.95))
         for f, sense in ((50.0, "forward"), (-80.0, "backward"))

@@ -299,7 +299,7 @@ def test_a_mistake_is_one_line(
         ),
         (
             ["--mass", "12000 kg", "--bearings", "6004"],
-            "note: bearing bears 118 kN at rest, more than the static rating of 6004, C0 = ",
+            "note: bearing carries 118 kN at rest, more than the static rating of 6004, C0 = ",
         ),
         (["--mass", "2 kg", "--bearings", "6004", "--speed", "20000"], "note: speed = 190986 rpm"),
     ],

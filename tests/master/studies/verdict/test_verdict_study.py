@@ -198,7 +198,7 @@ def test_tables_have_every_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, 
     [
         (summary(WHIRL, 20.0), WHIRL),
         (summary("pendulum", 0.0), ""),
-        (summary("no whirl, near miss: 0.9 turn backward", 0.0), ""),
+        (summary("no whirl, short of one turn: 0.9 turn backward", 0.0), ""),
         (summary("transient forward whirl", 2.0) | {"whirl_B": WHIRL, "whirl_B_revolutions": 1.5}, WHIRL),
         (summary(WHIRL, 2.0) | {"whirl_B": "transient forward whirl", "whirl_B_revolutions": 9.0}, WHIRL),
         ({"whirl_A": None, "whirl_A_revolutions": None}, ""),
