@@ -301,7 +301,7 @@ def advance(words, work, time, step):
     u = m.u
     total = u.tick + u.period
     for k in range(AXES):
-        total += u.axis[k].sensed
+        total += u.axis[k].sensed + u.axis[k].hold
     if not math.isfinite(total):
         return BAD_INPUT
     period, tick = m.p.sample_time, u.tick

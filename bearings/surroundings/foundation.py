@@ -472,8 +472,7 @@ def _step(m, time, h, since):
 def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given forces; returns a status."""
     m = words.view(MEMORY)[0]
-    for j in range(m.p.seats):
-        u = m.u.seat[j]
+    for u in m.u.seat:  # those without a carrier, too: what is wrong is said where it is set
         if not math.isfinite(u.fx + u.fy + u.dfx + u.dfy):
             return BAD_INPUT
     m.time = time

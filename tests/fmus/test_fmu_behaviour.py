@@ -15,7 +15,6 @@ import sys
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -459,11 +458,10 @@ ALL_TOGETHER = 5  # every which of them has all FMUs loaded
 
 
 def leaving(folders: list[Path], k: int) -> list[Path]:
-    """FMUs of the k-th process: all of them, or a pair, each FMU in its turn beside each other one."""
+    """FMUs of the k-th process: all of them, or a pair, each FMU in its turn beside the next one."""
     if k % ALL_TOGETHER == 0:
         return folders
-    pairs = list(combinations(folders, 2))
-    return list(pairs[k % len(pairs)])
+    return [folders[k % len(folders)], folders[(k + 1) % len(folders)]]
 
 
 @pytest.mark.long

@@ -28,7 +28,9 @@ TOUCHING = {
     "journal.inv_m": 1 / 1.65,
     "journal.ay_free": -9.81,
     "journal.omega": 900.0,
-}  # inputs of a bearing of 0.3 mm clearance with its journal 10 um inside
+    "axis[1].sensed": 1e-4,
+    "clock": 1,
+}  # of a bearing of 0.3 mm clearance with its journal 10 um inside; of a controller that samples by itself
 
 
 @cache
@@ -79,7 +81,7 @@ class Slave:
         """Set variables by name; those it does not have, or computes itself, are left out."""
         for name, value in values.items():
             variable = self.variables.get(name)
-            if variable is not None and variable.causality != "calculatedParameter":
+            if variable is not None and variable.causality in ("parameter", "input"):
                 call = self.fmu.setReal if variable.type == "Real" else self.fmu.setInteger
                 call([variable.valueReference], [value])
 

@@ -14,7 +14,8 @@ from typing import Any
 from slave_driver import STEP, TOUCHING, Slave
 
 PUSHED = {"journal.y": -0.315e-3, "seat.fy": -20.0, "A.fy": 20.0}
-CHANGED = {**TOUCHING, **PUSHED, "contact.stiffness": 1e9, "stiffness": 3e5, "mass": 3.0}
+PARAMETERS = {"contact.stiffness": 1e9, "stiffness": 3e5, "mass": 3.0, "gain.proportional": 5e3}
+CHANGED = {**TOUCHING, **PUSHED, **PARAMETERS}
 
 
 def started(folder: str, steps: int = 0) -> Slave:

@@ -151,6 +151,10 @@ def inputs(slots: Sequence[Slot], k: int) -> dict[str, float]:
             found[name] = by_tail.get(tail, 0.0)
         elif tail in sizes:
             found[name] = sizes[tail] * float(generator.standard_normal())
+        elif name == "tick":
+            found[name] = float(k)
+        elif tail == "sensed":
+            found[name] = 1e-4 * float(generator.standard_normal())
         elif port == "housing":
             calm = {"inv_m": 0.2, "k_over_m": 5e7, "c_over_m": 500.0}
             found[name] = calm.get(tail, 1e-6 * float(generator.standard_normal()))

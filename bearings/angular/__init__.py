@@ -1,0 +1,1 @@
+"""Ball bearings with a contact angle: rows between circles of groove centres, loads in space, statics."""

@@ -1,0 +1,176 @@
+"""A row of balls between two grooves in space.
+
+The centres of a groove's arcs lie on a circle: that of the inner race is fixed in the inner ring, that of
+the outer race in the housing. Where ball and races just touch, both circles are
+
+    A = (f_i + f_o - 1) D          f: groove radius over ball diameter D
+
+apart at every ball. With the free contact angle a0, and s = +1 where a shaft pushed in +z loads the row,
+else -1,
+
+    R_i = d_m/2 + (f_i - 1/2) D cos a0          R_o = d_m/2 - (f_o - 1/2) D cos a0          their radii
+    Z_i = z + s ((f_i - 1/2) D sin a0 + p)      Z_o = z - s (f_o - 1/2) D sin a0            along the shaft
+
+with the row at z from the ring's centre and p the approach by preload. A row without a contact angle is a
+deep groove: s = 0, and its radial play takes the circles together by as much.
+
+A ball has no inertia across its orbit here: both of its contacts are one spring in series on the line
+between the groove centres at its angle. A shift (x, y, z) and a tilt (rx, ry) of the inner ring move that
+of the inner race, to first order, by
+
+    outwards    x cos + y sin + Z_i (ry cos - rx sin)
+    along       z + R_i (rx sin - ry cos)
+
+Loads are the slopes of the springs' energy, which is convex in the ring's pose.
+
+Harris, Kotzalas, Rolling Bearing Analysis, 5th ed., volume 1, chapter 7, and volume 2, chapter 1; de Mul,
+Vree, Maas, Journal of Tribology 111 (1989) 142 (five coordinates of the ring). ISO/TS 16281 takes half the
+pitch diameter for the lever R_i of a tilt.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from ...modelkit.kernel import inlined, kernel
+from ..contact.laws import in_series, race_contact_stiffness
+from ..contact.materials import effective_modulus, elastic_of
+
+NEWTON_STEPS = 60  # of the search for a contact angle; ten are enough
+ROUNDING = 1e-15  # rad
+
+
+class Row(NamedTuple):
+    """Lengths in m, along the shaft from the ring's centre."""
+
+    inner: float  # R_i
+    outer: float  # R_o
+    inner_at: float  # Z_i
+    outer_at: float  # Z_o
+    free: float  # A
+    stiffness: float  # N/m^1.5, of both contacts of a ball in series
+    lever: float  # at which a tilt moves the inner groove along: R_i
+
+
+class Pose(NamedTuple):
+    """Of the inner ring from where it is concentric with the outer one. A positive tilt `ry` moves the +z
+    end to +x, a positive `rx` moves it to -y.
+    """
+
+    x: float  # m
+    y: float
+    z: float
+    rx: float  # rad
+    ry: float
+
+
+class Pressed(NamedTuple):
+    """A ball between the rings."""
+
+    force: float  # N, along the line between the groove centres
+    outwards: float  # N, of the ball on the outer ring
+    along: float  # N, likewise
+    slope: float  # N/m, of `force` over the distance of the groove centres
+    length: float  # m, that distance
+    cosine: float  # of the contact angle
+    sine: float
+
+
+@kernel
+def series_stiffness(b, rings, angle):
+    """Stiffness (N/m^1.5) of a ball on both races, touching at a contact `angle` (rad).
+
+    b: a record of `BallSet`; rings: `Elastic`.
+    """
+    modulus = effective_modulus(elastic_of(b), rings)
+    middle = 0.5 * b.pitch_diameter / math.cos(angle)
+    outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
+    inner = race_contact_stiffness(b.diameter, middle - 0.5 * b.diameter, b.conformity, modulus, b.hertz)
+    outer = race_contact_stiffness(b.diameter, -middle - 0.5 * b.diameter, outer_groove, modulus, b.hertz)
+    return in_series(inner, outer)
+
+
+@kernel
+def groove_distance(b):
+    """A (m) of the balls `b`, a record of `BallSet`."""
+    outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
+    return (0.5 * b.conformity + 0.5 * outer_groove - 1.0) * b.diameter
+
+
+@kernel
+def row_of(b, rings, angle, side, at, approach):
+    """`Row` of the balls `b`, a record of `BallSet`, in rings of a material (`Elastic`).
+
+    angle: contact angle (rad); side: s, of no account where the angle is 0; at, approach: z and p (m).
+    """
+    outer_groove = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
+    inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (outer_groove - 1.0) * b.diameter
+    stiffness = series_stiffness(b, rings, angle)
+    middle = 0.5 * b.pitch_diameter
+    if angle == 0.0:
+        inner = middle + inner_arc - b.play
+        return Row(inner, middle - outer_arc, at, at, inner_arc + outer_arc, stiffness, inner)
+    inner = middle + inner_arc * math.cos(angle)
+    return Row(
+        inner,
+        middle - outer_arc * math.cos(angle),
+        at + side * (inner_arc * math.sin(angle) + approach),
+        at - side * outer_arc * math.sin(angle),
+        inner_arc + outer_arc,
+        stiffness,
+        inner,
+    )
+
+
+@inlined
+def pressed(row, pose, cosine, sine):
+    """The `Pressed` ball of a `Row` at an angle around the shaft, of this cosine and sine; pose: `Pose`."""
+    tilt = pose.ry * cosine - pose.rx * sine
+    outwards = row.inner - row.outer + pose.x * cosine + pose.y * sine + row.inner_at * tilt
+    along = row.inner_at - row.outer_at + pose.z - row.lever * tilt
+    length = math.sqrt(outwards * outwards + along * along)
+    depth = max(length - row.free, 0.0)
+    root = math.sqrt(depth)
+    force = row.stiffness * depth * root
+    radial, axial = outwards / length, along / length
+    return Pressed(force, force * radial, force * axial, 1.5 * row.stiffness * root, length, radial, axial)
+
+
+@kernel
+def thrust_angle(angle, load):
+    """Contact angle a (rad) of balls at the free `angle` a0 (rad) that carry a thrust, Harris' equation
+
+        load = sin a (cos a0/cos a - 1)^1.5
+
+    load: F/(Z K A^1.5), without unit.
+    """
+    low, high = angle, 0.5 * math.pi - 1e-9
+    a = min(angle + 0.1, 0.5 * (low + high))
+    for _ in range(NEWTON_STEPS):
+        c, s = math.cos(a), math.sin(a)
+        depth = max(math.cos(angle) / c - 1.0, 0.0)
+        root = math.sqrt(depth)
+        off = s * depth * root - load
+        if off > 0.0:
+            high = a
+        else:
+            low = a
+        slope = c * depth * root + 1.5 * s * root * math.cos(angle) * s / (c * c)
+        new = a - off / slope if slope > 0.0 else 0.5 * (low + high)
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - a) <= ROUNDING:
+            return new
+        a = new
+    return a
+
+
+@kernel
+def thrust_approach(angle, distance, load):
+    """Approach (m) of the rings along the shaft under a thrust: A sin(a - a0)/cos a.
+
+    angle: a0 (rad); distance: A (m); load: as `thrust_angle`.
+    """
+    a = thrust_angle(angle, load)
+    return distance * math.sin(a - angle) / math.cos(a)
