@@ -34,7 +34,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "bearings": (
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
-        *("catalogue", "rating", "surroundings", "magnetic", "rolling", "contact", "seat"),
+        *("catalogue", "rating", "surroundings", "magnetic", "angular", "rolling", "contact", "seat"),
     ),
     "rotor": (
         *(
