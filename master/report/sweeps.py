@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 from ..common.errors import TouchdownError
 from ..common.units import spoken, with_unit
+from ..results.capture import Fate
 from ..results.figures.style import sized
 from ..results.whirl.evidence import first_contact
 from ..results.whirl.verdict import clopper_pearson, has_verdict, whirling
@@ -21,6 +22,8 @@ from ..scene.scene import amended
 from ..studies.machine.choose import HEAD, Row, cells, read_table
 from ..studies.sweep.definition import Column
 from ..studies.sweep.members import Member
+from ..studies.sweep.parts import CAPTURE
+from ..studies.sweep.places import field
 from ..studies.sweep.report import failures, keys, largest, picked, verdict_lines, warned
 from ..studies.sweep.results import Sweep
 from ..studies.sweep.survival import DEFAULT, drivers, lines, survival
@@ -53,6 +56,7 @@ MAX_DIGITS = 8
 DROPS = (1, 2, 5, 10, 20)  # after which survival is told
 MAPS = {
     "whirl": "Which part of the drops whirls, with its 95 % interval where a place stands for several.",
+    "capture": "Which part of the rotors is captured, with its 95 % interval where a place has several.",
     "force": "Largest contact force of the drops at each place.",
     "stress": "Largest bending stress of the drops at each place.",
 }
@@ -110,11 +114,27 @@ def headline(sweep: Sweep) -> str:
     if not told:
         return f"No drop of {len(sweep)} has a verdict.{unsaid}"
     count = sum(bool(whirling(member.summary)) for member in told)
-    part = clopper_pearson(count, len(told))
+    said = f"{count} of {len(told)} drops whirl ({_part(sweep, count, len(told))})."
+    return f"{_captured(sweep)}{said} {_length(sweep)}{unsaid}"
+
+
+def _part(sweep: Sweep, count: int, of: int) -> str:
+    """A part of the drops, with its interval."""
+    part = clopper_pearson(count, of)
     stand_for = "" if _is_sample(sweep.definition.about) else "as drops drawn one by one, "
-    reach = f"{stand_for}{share(part.low)} to {share(part.high)} of all with 95 % confidence"
-    said = f"{count} of {len(told)} drops whirl ({share(part.value)}; {reach})."
-    return f"{said} {_length(sweep)}{unsaid}"
+    reach = f"{share(part.low)} to {share(part.high)} of all with 95 % confidence"
+    return f"{share(part.value)}; {stand_for}{reach}"
+
+
+def _captured(sweep: Sweep) -> str:
+    """How many rotors are captured of those that were asked for again, in a sentence; "": none was."""
+    counts = CAPTURE.counted(_done(sweep))
+    if not counts:
+        return ""
+    count, of = counts[Fate.CAPTURED], counts.total()
+    undecided = counts[Fate.UNDECIDED]
+    more = f"; {undecided} undecided, which count as not captured" if undecided else ""
+    return f"{count} of {of} rotors are captured ({_part(sweep, count, of)}{more}). "
 
 
 def _length(sweep: Sweep) -> str:
@@ -180,6 +200,9 @@ def _section(name: str, title: str, blocks: Callable[[Sweep], list[Block]], swee
 def _summary(sweep: Sweep) -> list[Block]:
     done, told = _done(sweep), _told(sweep)
     tiles = [Tile("Drops", str(len(sweep)), f"{len(done)} ran to their end")]
+    if asked_for := CAPTURE.counted(done):
+        count, of = asked_for[Fate.CAPTURED], asked_for.total()
+        tiles.append(Tile("Captured", share(count / of, 3), f"{count} of {of}"))
     if told:
         count = sum(bool(whirling(member.summary)) for member in told)
         tiles.append(Tile("Whirl", share(count / len(told), 3), f"{count} of {len(told)}"))
@@ -254,7 +277,26 @@ def _maps(sweep: Sweep) -> list[Block]:
             blocks.append(Lacking(f"The map of {name}", f"{error}."))
             continue
         blocks.append(Picture(svg, caption))
+        if name == "capture":
+            blocks.append(_places(sweep))
     return blocks
+
+
+def _places(sweep: Sweep) -> Table:
+    """How many rotors are captured at each place of the map."""
+    found = field(sweep.definition, sweep.members)
+    rows = []
+    for place, members in found.spots.items():
+        counts = CAPTURE.counted(members)
+        if not counts:
+            continue
+        part = CAPTURE.share(counts)
+        told = [f"{counts[one]}" for one in Fate]
+        rows.append(
+            [*map(_shown, place), *told, share(part.value), f"{share(part.low)} to {share(part.high)}"]
+        )
+    head = [*found.labels, *(one.value for one in Fate), "share captured", "95 % interval"]
+    return Table("Captured, place by place", head, rows, len(found.labels))
 
 
 def _map(figure: Figure, draw: Callable[[Axes], object]) -> None:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
@@ -37,6 +38,36 @@ COILS = (  # figures of actuators: key, variable, and which of several counts
     ("time_at_current_limit_s", "limits.current_time", max),
     ("time_at_voltage_limit_s", "limits.voltage_time", max),
 )
+
+
+class Fate(StrEnum):
+    """What became of a rotor that was asked for again, the gravest last."""
+
+    CAPTURED = "captured"
+    UNDECIDED = "undecided"
+    LOST = "lost"
+
+
+KEY, AFTER = (
+    "capture_",
+    "_time_s",
+)  # about the name of a seat, of its verdict's and its capture time's figure
+
+
+def capture_keys(summary: Mapping[str, object]) -> list[str]:
+    """The figures that are verdicts on seats, in their order; none where no rotor was asked for again."""
+    return [
+        key
+        for key, words in summary.items()
+        if key.startswith(KEY) and f"{key}{AFTER}" in summary and isinstance(words, str)
+    ]
+
+
+def fate(summary: Mapping[str, object]) -> Fate | None:
+    """Of a run, that of the worst of its seats; None where no rotor was asked for again."""
+    order = list(Fate)
+    words = (str(summary[key]).partition(":")[0] for key in capture_keys(summary))
+    return max(map(Fate, words), key=order.index, default=None)
 
 
 @dataclass(frozen=True)
@@ -101,10 +132,10 @@ def capture_figures(
         if f"{a.bearing}.clearance" in system
     }
     for name, one in captures.items():
-        found[f"capture_{name}"] = one.words
-        found[f"capture_{name}_time_s"] = one.after
-        found[f"capture_{name}_last_contact_s"] = one.last_contact
-        found[f"capture_{name}_peak_force_N"] = one.peak_force
+        found[f"{KEY}{name}"] = one.words
+        found[f"{KEY}{name}{AFTER}"] = one.after
+        found[f"{KEY}{name}_last_contact_s"] = one.last_contact
+        found[f"{KEY}{name}_peak_force_N"] = one.peak_force
     if captures:
         found["capture_command_time_s"] = command
     for key, variable, which in COILS:

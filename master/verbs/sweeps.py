@@ -108,7 +108,7 @@ def _execute_sweep(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
     from ..common.errors import Ended
     from ..interop.scenes import find_scene
-    from ..studies.sweep.maps import refuse_axes
+    from ..studies.sweep.places import refuse_axes
     from ..studies.sweep.sweep import Running, sweep
 
     chosen = timed(find_scene(options.scene).set(settings(options)), options)

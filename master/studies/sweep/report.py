@@ -12,8 +12,9 @@ from statistics import median
 
 from ...common.errors import Ended, one_of
 from ...common.files import replacing
+from ...results.capture import Fate, capture_keys, fate
 from ...results.requirements import MARGIN, MET
-from ...results.whirl.verdict import CONFIDENCE, clopper_pearson, verdict_class
+from ...results.whirl.verdict import CONFIDENCE, TURNS, clopper_pearson, verdict_class
 from ...scene.requirements import KINDS
 from .definition import number_and_unit
 from .members import Member
@@ -38,11 +39,12 @@ def keys(members: Sequence[Member]) -> list[str]:
 
 
 def verdict_keys(members: Sequence[Member]) -> list[str]:
-    """Figures that are verdicts in words, such as whirl_A."""
+    """Figures that are verdicts in words, such as whirl_A and capture_A."""
+    known = keys(members)
+    whirls = [key for key in known if key.startswith("whirl_") and f"{key}{TURNS}" in known]
     return [
-        key
-        for key in keys(members)
-        if key.startswith("whirl_") and any(isinstance(m.summary.get(key), str) for m in members)
+        *(key for key in whirls if any(isinstance(m.summary.get(key), str) for m in members)),
+        *dict.fromkeys(key for m in members for key in capture_keys(m.summary)),
     ]
 
 
@@ -50,10 +52,26 @@ def verdict_lines(members: Sequence[Member]) -> list[str]:
     """How many members have each verdict, the most frequent first."""
     lines = []
     for key in verdict_keys(members):
-        words = (str(m.summary[key]) for m in members if m.summary.get(key) is not None)
-        counts = Counter(map(verdict_class, words))  # however near to a turn they came
+        words = [str(m.summary[key]) for m in members if m.summary.get(key) is not None]
+        if key.startswith("whirl_"):
+            words = list(map(verdict_class, words))  # however near to a turn they came
+        counts = Counter(words)
         lines.append(f"  {key}: " + ", ".join(f"{n} x {verdict}" for verdict, n in counts.most_common()))
     return lines
+
+
+def capture_lines(members: Sequence[Member]) -> list[str]:
+    """How many rotors are captured of those that were asked for again; none where none was.
+
+    The worst seat counts, and what is undecided is not captured: a run that ends too early tells captures
+    only.
+    """
+    fates = [one for m in members if not m.failed and (one := fate(m.summary)) is not None]
+    if not fates:
+        return []
+    undecided = fates.count(Fate.UNDECIDED)
+    more = f", {undecided} undecided, which count as not captured" if undecided else ""
+    return [f"  captured: {_passing([one is Fate.CAPTURED for one in fates])}{more}"]
 
 
 def requirement_lines(members: Sequence[Member]) -> list[str]:
@@ -106,7 +124,8 @@ def picked(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], 
 def report_lines(members: Sequence[Member], picks: Iterable[str]) -> tuple[list[str], list[str]]:
     """What the command shows of a sweep, and complaints about `picks`."""
     figures, complaints = picked(members, picks)
-    lines = [table(members, figures), *verdict_lines(members), *requirement_lines(members)]
+    lines = [table(members, figures), *verdict_lines(members)]
+    lines += [*capture_lines(members), *requirement_lines(members)]
     if why := failures(members):
         lines += ["failed:", *why]
     if said := warned(members):

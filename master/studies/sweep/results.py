@@ -58,7 +58,7 @@ class Sweep(Sequence[Member]):
 
     @property
     def plot(self) -> MapPlot:
-        """Pictures over one or two settings: `plot.whirl()`, `plot.force()`, `plot.stress()`."""
+        """Pictures over one or two settings: `plot.whirl()`, `capture()`, `force()`, `stress()`."""
         from .maps import MapPlot
 
         return MapPlot(self.definition, self.members)

@@ -23,7 +23,7 @@ from .members import MEMBERS_FILE, Journal, Member, cut_torn_line, read_journal
 from .results import DATASET, TABLE, Sweep, write_results
 
 DERIVED_FILES = (  # what an earlier sweep may have left, beside its journal
-    *(DATASET, TABLE, "whirl-map.png", "force-map.png", "stress-map.png"),
+    *(DATASET, TABLE, "whirl-map.png", "capture-map.png", "force-map.png", "stress-map.png"),
     *("report.html", "report.pdf"),
 )
 SCRATCH_FOLDER = ".under-way"  # where members run whose recordings are not kept

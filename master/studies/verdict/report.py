@@ -19,7 +19,7 @@ from ...results.settling import Trend
 from ...results.whirl.verdict import CONFIDENCE, Share, how_it_goes_on, kind
 from ...scene.run_spec import SETTLED
 from ...scene.scene import Scene
-from ..sweep.maps import COLOURS
+from ..sweep.parts import WHIRL
 from ..sweep.report import counted
 from .study import (
     FIRST_IMPACT_FORCE,
@@ -54,7 +54,7 @@ def circles(study: Study) -> Figure:
     axes.set_ylim(0.0, outermost)
     axes.set_yticks([])
     axes.grid(visible=False)
-    patches = [Patch(color=colour, label=name.value) for name, colour in COLOURS.items()]
+    patches = [Patch(color=look.colour, label=name.value) for name, look in WHIRL.looks.items()]
     line = axes.plot([], [], color=GREY, ls="--", lw=1, label="the scene's own phase")
     figure.legend(handles=[*patches, *line], loc="outside lower center", ncols=4)
     inwards = " | ".join(circle.title for circle in study.circles)
@@ -66,7 +66,7 @@ def circles(study: Study) -> Figure:
 def _ring(axes: PolarAxes, circle: Circle, inner: float) -> None:
     for phase, before, after in gaps(circle.verdicts):
         begin, width = np.radians(phase - 0.5 * before), np.radians(0.5 * (before + after))
-        colour = COLOURS[kind(circle.verdicts[phase])]
+        colour = WHIRL.looks[kind(circle.verdicts[phase])].colour
         axes.bar(begin, 0.9, width=width, bottom=inner, align="edge", color=colour, lw=0)
         axes.plot(np.radians(phase), inner + 0.45, ".", color=BLACK, ms=3)
 

@@ -11,11 +11,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from touchdown.master.common.errors import TouchdownError
+from touchdown.master.results.capture import Fate, fate
 from touchdown.master.results.whirl.verdict import Kind, clopper_pearson
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.sweep.definition import Definition, Design, define
-from touchdown.master.studies.sweep.maps import COLOURS, MapPlot, field
+from touchdown.master.studies.sweep.maps import MapPlot
 from touchdown.master.studies.sweep.members import Member
+from touchdown.master.studies.sweep.parts import CAPTURE, WHIRL
+from touchdown.master.studies.sweep.places import field
+from touchdown.master.studies.sweep.report import capture_lines, verdict_lines
 
 SPEEDS = {"rotor.speed": ["6000 rpm", "9000 rpm", "12000 rpm"]}
 CLEARANCES = {"bearing_*.clearance": ["0.2 mm", "0.3 mm"]}
@@ -33,6 +37,7 @@ def pretended(variations: dict[str, list[str]] | Design) -> tuple[Definition, li
         summary = {
             "whirl_A": "backward whirl, at 0.5 s still whirling, steady" if whirls else "pendulum",
             "whirl_A_revolutions": 20.0 if whirls else 0.0,
+            "whirl_A_trend": "steady" if whirls else None,
             "peak_contact_force_N_bearing_A": 100.0 * number,
             "peak_contact_force_N_bearing_B": 1.0,
         }
@@ -57,13 +62,58 @@ def test_a_place_stands_for_all_phases() -> None:
 def test_cells_are_filled_by_the_parts_of_their_verdicts() -> None:
     """Half of the phases whirl at 12000 rpm: half of the width, and 7 to 93 % by Clopper and Pearson."""
     axes = MapPlot(*pretended({**SPEEDS, **CLEARANCES, **PHASES})).whirl(Figure().add_subplot())
-    whirl = [p for p in axes.patches if _colour(p) == COLOURS[Kind.SUSTAINED] and _width(p) > 0.0]
-    settles = [p for p in axes.patches if _colour(p) == COLOURS[Kind.SETTLES] and _width(p) > 0.0]
+    whirl = [
+        p for p in axes.patches if _colour(p) == WHIRL.looks[Kind.SUSTAINED].colour and _width(p) > 0.0
+    ]
+    settles = [
+        p for p in axes.patches if _colour(p) == WHIRL.looks[Kind.SETTLES].colour and _width(p) > 0.0
+    ]
     assert len(whirl) == 2
     assert len(settles) == 6
     assert {round(_width(p) / _width(settles[0]), 6) for p in whirl} == {0.5}
     assert [text.get_text() for text in axes.texts].count("50 %\n7–93 %") == 2
     assert clopper_pearson(2, 4).low == pytest.approx(0.0676, abs=1e-4)  # of tables of the binomial
+
+
+def asked_for(members: list[Member], seconds: dict[str, object]) -> list[Member]:
+    """The same drops, whose rotors are lost where they whirl; `seconds`: what is said of a second seat."""
+    told = []
+    for m in members:
+        lost = m.summary["whirl_A_revolutions"] != 0.0
+        here = {
+            "capture_A": "lost: whirl" if lost else "captured",
+            "capture_A_time_s": None if lost else 0.02,
+        }
+        told.append(Member(m.number, m.settings, {**m.summary, **here, **seconds}, m.failed))
+    return told
+
+
+def test_captured_parts_of_a_place_have_their_interval() -> None:
+    """Of four phases at 12000 rpm two are captured, of others all; the failed drop is not counted."""
+    asked, members = pretended({**SPEEDS, **CLEARANCES, **PHASES})
+    members = asked_for(members, {})
+    axes = MapPlot(asked, members).capture(Figure().add_subplot())
+    told = [text.get_text() for text in axes.texts]
+    assert sorted(told) == ["100 %\n29–100 %", *["100 %\n40–100 %"] * 3, *["50 %\n7–93 %"] * 2]
+    lost = [p for p in axes.patches if _colour(p) == CAPTURE.looks[Fate.LOST].colour and _width(p) > 0.0]
+    assert len(lost) == 2
+    assert capture_lines(members) == ["  captured: 19 of 23 (82.6 %; 61.2 % to 95 % with 95% confidence)"]
+    words = verdict_lines(members)
+    assert [line.split(":")[0] for line in words] == ["  whirl_A", "  capture_A"]
+    assert words[1] == "  capture_A: 20 x captured, 4 x lost: whirl"
+
+
+def test_the_worst_seat_counts_and_what_is_undecided_is_not_captured() -> None:
+    asked, members = pretended(SPEEDS)
+    early: dict[str, object] = {"capture_B": "undecided: the run ends too early", "capture_B_time_s": None}
+    told = asked_for(members, early)
+    assert [fate(m.summary) for m in told] == [Fate.UNDECIDED, Fate.UNDECIDED, Fate.LOST]
+    assert "0 of 2 (" in capture_lines(told)[0]
+    assert "1 undecided, which count as not captured" in capture_lines(told)[0]
+    assert fate(members[0].summary) is None
+    assert capture_lines(members) == []
+    with pytest.raises(TouchdownError, match="no rotor was asked for again"):
+        MapPlot(asked, members).capture(Figure().add_subplot())
 
 
 def _colour(patch: object) -> str:
