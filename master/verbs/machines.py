@@ -122,6 +122,7 @@ CATALOGUE_EXAMPLES = (
     'touchdown catalogue --bore "70 mm"',
     "touchdown catalogue 7014",
     "touchdown catalogue 7014 --toml",
+    'touchdown catalogue 7014 --thrust "2 kN" --arrangement "back to back" --preload "300 N"',
 )
 
 
@@ -138,6 +139,15 @@ def _declare_catalogue(verb: argparse.ArgumentParser) -> None:
         "--load", metavar="FORCE", help='show its most loaded ball by rings and seat, such as "350 N"'
     )
     verb.add_argument("--speed", help='show which cages run it for long, such as "45000 rpm"')
+    verb.add_argument(
+        "--thrust",
+        metavar="FORCE",
+        help='show its shift, balls and stiffness under a thrust, such as "2 kN"',
+    )
+    verb.add_argument(
+        "--arrangement", default="", help='of a pair under --thrust: "back to back", "face to face", tandem'
+    )
+    verb.add_argument("--preload", metavar="FORCE", help="of that pair")
 
 
 def _execute_catalogue(options: argparse.Namespace) -> int:
@@ -149,20 +159,29 @@ def _execute_catalogue(options: argparse.Namespace) -> int:
         find_bearing,
         known,
         listed,
+        pushed,
         shared,
     )
 
     here = Path()
     load = above_zero(options.load, "N", "--load")
     speed = above_zero(options.speed, "rad/s", "--speed")
+    thrust = above_zero(options.thrust, "N", "--thrust")
+    preload = above_zero(options.preload, "N", "--preload")
+    if (options.arrangement or preload) and not thrust:
+        raise TouchdownError("--arrangement and --preload are of a bearing under --thrust; give that, too")
     if options.bearing is None:
-        if load or speed:
-            raise TouchdownError("--load and --speed are of one bearing; name it, such as 6904")
+        if load or speed or thrust:
+            raise TouchdownError("--load, --speed and --thrust are of one bearing; name it, such as 6904")
         print(listed(known(here), above_zero(options.bore, "m", "--bore")))
         return 0
     bearing = find_bearing(options.bearing, here)
-    if load or speed:
-        print(*(f(bearing, x) for f, x in ((shared, load), (fast_enough, speed)) if x), sep="\n")
+    if load or speed or thrust:
+        if thrust:
+            print(pushed(bearing, thrust, options.arrangement, preload or 0.0))
+        for told, value in ((shared, load), (fast_enough, speed)):
+            if value:
+                print(told(bearing, value))
         return 0
     print(as_file(bearing) if options.toml else described(bearing), end="" if options.toml else "\n")
     return 0

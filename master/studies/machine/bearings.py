@@ -6,9 +6,22 @@ import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import numpy as np
+
 from ....bearings import catalogue
+from ....bearings.angular.statics import (
+    ARRANGEMENTS,
+    BACK_TO_BACK,
+    SINGLE,
+    TANDEM,
+    Mounted,
+    balance,
+    balls_on,
+)
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
+from ....bearings.contact.materials import elastic_of
+from ....modelkit.variables import as_record
 from ...common.errors import TouchdownError, one_of, with_remedy
 
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
@@ -17,8 +30,8 @@ BORE_TOLERANCE = 1e-6  # m, of a bore asked for
 HINTS = (
     "ceramic balls, as of hybrid bearings: `touchdown new --balls Si3N4`, or beside a preset in a scene "
     'balls.material = "Si3N4"',
-    "duplex: a pair side by side is one set of balls with balls.rows = 2 (as 7914 pair); it takes radial "
-    "load only, preload is a negative play",
+    "duplex: a pair side by side is one set of balls with balls.rows = 2 (as 7914 pair); in a drop "
+    "it takes radial load only, preload is a negative play; `--thrust` tells its statics",
     "numbers of one bearing and where each is from: `touchdown catalogue NAME`",
 )
 
@@ -101,6 +114,71 @@ def fast_enough(bearing: Bearing, speed: float) -> str:
         "a cage they\n  state none. A landing lasts seconds: beyond them ask the maker."
     )
     return "\n".join(lines)
+
+
+def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mounted:
+    """The bearing beside its like in an `arrangement`, a word of `ARRANGEMENTS`, with `preload` (N).
+
+    Without a word a bearing of two rows stands back to back, one with a row alone; rows are a width apart.
+    Raises TouchdownError.
+    """
+    words = ARRANGEMENTS.words
+    if arrangement and arrangement not in words:
+        raise TouchdownError(f"--arrangement {arrangement}: {one_of(arrangement, words)}")
+    rows = bearing.balls.rows
+    kind = words.index(arrangement) if arrangement else BACK_TO_BACK if rows == 2 else SINGLE
+    if rows > 2 or (rows == 2 and kind == SINGLE):
+        raise TouchdownError(f"{bearing.designation} has {rows} rows; --thrust takes one, or pairs")
+    if kind != SINGLE and bearing.contact_angle == 0.0:
+        raise TouchdownError(
+            f"{bearing.designation} has no contact angle, and makes no pair; leave --arrangement out"
+        )
+    if preload and kind in (SINGLE, TANDEM):
+        raise TouchdownError(
+            f"--preload clamps rows against each other, which {words[kind]} has none of; "
+            'give --arrangement "back to back" or "face to face"'
+        )
+    return Mounted(
+        bearing.balls,
+        bearing.contact_angle,
+        elastic_of(as_record(bearing.ring)),
+        arrangement=kind,
+        distance=bearing.width / rows,
+        preload=preload,
+    )
+
+
+def pushed(bearing: Bearing, thrust: float, arrangement: str = "", preload: float = 0.0) -> str:
+    """Shift, balls and stiffness of a bearing under a static `thrust` (N); otherwise as `mounted`."""
+    how = mounted(bearing, arrangement, preload)
+    rows, angles = how.rows(), how.angles()
+    try:
+        found = balance(rows, angles, (0.0, 0.0, thrust, 0.0, 0.0))
+    except ValueError as error:
+        raise TouchdownError(f"{bearing.designation} under {thrust:g} N along the shaft: {error}") from None
+    clamped = f", preload {preload:g} N, rows {1e3 * how.distance:g} mm apart" if preload else ""
+    title = f"{bearing.designation}, {ARRANGEMENTS.words[how.arrangement]}{clamped}"
+    lines = [f"{title}, under a static thrust of {thrust:g} N"]
+    lines.append(f"  shift along the shaft {1e6 * found.pose[2]:>12.3f} um")
+    for k, (forces, slants) in enumerate(zip(found.forces, found.angles, strict=True)):
+        name = "balls" if len(rows) == 1 else f"balls of row {k + 1}"
+        slant = math.degrees(abs(slants[0]))
+        told = f"{forces.max():>12.1f} N at {slant:.2f} deg" if forces.max() > 0.0 else f"{'apart':>12}"
+        lines.append(f"  {name:<22}{told}")
+    lines += _stiffness_lines("under it", found.stiffness)
+    if preload:
+        lines += _stiffness_lines("by preload alone", balls_on(rows, angles, np.zeros(5))[1])
+    lines.append("  Balls at rest. Drops run in the plane of the bearing: no thrust acts in them.")
+    return "\n".join(lines)
+
+
+def _stiffness_lines(when: str, stiffness: np.ndarray) -> Iterable[str]:
+    """Radial, axial and tilting stiffness (5, 5)."""
+    radial, axial, tilt = stiffness[0, 0], stiffness[2, 2], stiffness[4, 4]
+    yield (
+        f"  stiffness {when}: {1e-6 * radial:.4g} N/um radial, {1e-6 * axial:.4g} N/um axial, "
+        f"{tilt:.4g} N m/rad tilt"
+    )
 
 
 def listed(bearings: Mapping[str, Bearing], bore: float | None = None) -> str:
