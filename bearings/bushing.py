@@ -1,4 +1,4 @@
-"""Plain touchdown bearing: a bushing fixed in its housing, with nothing that rolls.
+"""Plain touchdown bearing: a bushing fixed in its housing, with nothing that rolls, and its faces.
 
 The simplest thing a journal can land in. It serves as a bearing of its own (planetary whirl, dry
 friction), and as the check of the contact law and of the coupling against closed forms.
@@ -15,6 +15,16 @@ from ..modelkit.ports import Energy, Interface, Load, MountReaction, SeatReactio
 from ..modelkit.variables import group, real
 from . import seat
 from .contact import journal as bore
+from .contact.face import (
+    Shoulder,
+    ShoulderMemory,
+    ShoulderReport,
+    Slip,
+    land,
+    note_landing,
+    report_faces,
+    watch_faces,
+)
 from .contact.friction import FrictionLaw
 from .contact.journal import (
     RATE_FROM,
@@ -30,7 +40,8 @@ from .contact.journal import (
 from .contact.laws import elastic_energy
 from .contact.line import BoreContact
 
-LOSS = seat.INSIDE
+LOSS, FACE_LOSS = range(seat.INSIDE, seat.INSIDE + 2)  # J, heat of the bore and of the faces
+SIZE = FACE_LOSS + 1
 
 
 @dataclass(frozen=True)
@@ -42,6 +53,7 @@ class Parameters:
     interface: Interface = group(Interface)
     contact: BoreContact = group(BoreContact, damping=1e7)
     friction: FrictionLaw = group(FrictionLaw, static=0.27, dynamic=0.18)
+    shoulder: Shoulder = group(Shoulder)
 
 
 @dataclass(frozen=True)
@@ -52,6 +64,7 @@ class Outputs:
     housing: MountReaction = group(MountReaction)
     contact: ContactReport = group(ContactReport)
     energy: Energy = group(Energy)
+    shoulder: ShoulderReport = group(ShoulderReport)
 
 
 @dataclass(frozen=True)
@@ -69,9 +82,10 @@ class Hidden:
     seat: seat.SeatMemory = group(seat.SeatMemory)
     contact: ContactMemory = group(ContactMemory)
     touched: Touched = group(Touched)
+    shoulder: ShoulderMemory = group(ShoulderMemory)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, SIZE, derived=Derived, hidden=Hidden)
 STATIC = Parameters().friction.static
 MASSLESS = len(bore.PROBLEMS) + 1  # number of the problem
 CONSTANTS, PROBLEMS = constants(
@@ -86,13 +100,23 @@ CONSTANTS, PROBLEMS = constants(
 
 @kernel
 def react(t, q, dq, m):
-    """`Load` on journal and housing (N, N m); inside there is only the heat, whose rate (W) goes to dq."""
+    """`Load` on journal and housing (N, N m); inside there is only heat, whose rate (W) goes to dq."""
     p = m.p
-    housing = seat.housing_motion(q)
-    j = touch(seat.journal_motion(q), housing, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
+    journal, housing = seat.journal_motion(q), seat.housing_motion(q)
+    j = touch(journal, housing, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
     note(m.s.touched, j)
-    dq[LOSS] = j.loss
-    return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
+    slip = Slip(
+        q[seat.JZ] - q[seat.HZ],
+        q[seat.JVZ] - q[seat.HVZ],
+        journal.vx - housing.vx,
+        journal.vy - housing.vy,
+        journal.spin,
+    )
+    f = land(slip, p.shoulder, m.d.friction)
+    note_landing(m.s.shoulder, f)
+    dq[LOSS], dq[FACE_LOSS] = j.loss, f.loss
+    fx, fy = j.fx + f.fx, j.fy + f.fy
+    return Load(fx, fy, j.journal_moment + f.moment, -fx, -fy, f.fz, -f.fz)
 
 
 @kernel
@@ -105,6 +129,7 @@ def rhs(t, q, dq, m):
 def observe(t, q, m):
     """Peaks and the first contact, after each accepted micro-step, t (s) into the macro step."""
     watch_contact(m.time + t, seat.journal_motion(q), m.s.touched, m.o.contact, m.s.contact)
+    watch_faces(m.time + t, m.p.shoulder, m.o.shoulder, m.s.shoulder)
 
 
 @kernel
@@ -114,8 +139,9 @@ def report(q, m):
     c.force, c.indentation = s.normal, s.indentation
     c.sliding = q[seat.JW] * m.p.journal_radius
     c.reach = time_to_touch(seat.journal_motion(q), seat.housing_motion(q), m.p.clearance)
-    m.o.energy.potential = elastic_energy(s.indentation, m.d.contact)
-    m.o.energy.dissipated = q[LOSS]
+    faces = report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
+    m.o.energy.potential = elastic_energy(s.indentation, m.d.contact) + faces
+    m.o.energy.dissipated = q[LOSS] + q[FACE_LOSS]
 
 
 @kernel
@@ -131,7 +157,7 @@ def settle(words):
         return problem
     bore.settle(m.d, m.p, m.p.contact.mass)
     seat.set_weights(m.weight)
-    m.n = LOSS + 1
+    m.n = SIZE
     return missing(words, CONSTANTS)
 
 
@@ -166,7 +192,7 @@ def advance(words, work, time, step):
 MODEL = Model(
     name="bushing",
     title="Plain touchdown bushing",
-    about="Bore fixed in the housing: contact and friction, no rolling elements",
+    about="Bore and faces fixed in the housing: contact and friction, no rolling elements",
     parameters=Parameters,
     inputs=seat.BearingInputs,
     outputs=Outputs,

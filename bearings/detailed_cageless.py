@@ -151,7 +151,7 @@ def react(t, q, dq, m):
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + _rubbing(dq, m)
-    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy)
+    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy, 0.0, 0.0)
 
 
 @kernel

@@ -246,7 +246,7 @@ def react(t, q, dq, m):
     bending.hand_over(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
     dq[ring.LOSS] = j.loss + balls.loss + bent + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
-    return Load(j.fx, j.fy, j.journal_moment, -fx, -fy)
+    return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0)
 
 
 @kernel

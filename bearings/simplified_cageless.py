@@ -209,7 +209,7 @@ def react(t, q, dq, m):
     j, balls = rub_balls(q, dq, m)
     ring.accelerate(q, dq, m, j, balls)
     dq[ring.LOSS] = j.loss + balls.loss + rubbing(dq, m)
-    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy)
+    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0)
 
 
 @kernel

@@ -62,8 +62,27 @@ class SprungMotion(BodyMotion):
 
 
 @dataclass(frozen=True)
-class MountMotion(SprungMotion):
+class AxialMotion:
+    """Motion of a body along the shaft at the beginning of the macro step; all 0: it keeps its place."""
+
+    z: float = real(0.0, "m", "position along the shaft", nominal=1e-4)
+    vz: float = real(0.0, "m/s", "velocity along the shaft", nominal=0.1)
+    az_free: float = real(0.0, "m/s2", "axial acceleration from everything but this bearing's force")
+    inv_m_z: float = real(
+        0.0, "1/kg", "axial acceleration per force of this bearing; 0: motion is prescribed", constant=True
+    )
+
+
+@dataclass(frozen=True)
+class MountMotion(AxialMotion, SprungMotion):
     """Motion of a housing at the beginning of the macro step."""
+
+    k_over_m_z: float = real(
+        0.0, "1/s2", "axial restoring acceleration per displacement; 0: none", constant=True, minimum=0.0
+    )
+    c_over_m_z: float = real(
+        0.0, "1/s", "axial damping acceleration per velocity; 0: none", constant=True, minimum=0.0
+    )
 
 
 @dataclass(frozen=True)
@@ -76,7 +95,7 @@ class ModeMotion(SprungMotion):
 
 
 @dataclass(frozen=True)
-class SeatMotion(BodyMotion):
+class SeatMotion(AxialMotion, BodyMotion):
     """Motion of a journal at the beginning of the macro step."""
 
     omega: float = real(0.0, "rad/s", "spin speed, counter-clockwise", nominal=1000.0)
@@ -116,6 +135,8 @@ class MountLoad:
     fy: float = real(0.0, "N", "mean vertical force over the last macro step")
     dfx: float = real(0.0, "N/s", "slope of the horizontal force, 12/H^3 int (t - t_mid) F dt")
     dfy: float = real(0.0, "N/s", "slope of the vertical force, 12/H^3 int (t - t_mid) F dt")
+    fz: float = real(0.0, "N", "mean axial force over the last macro step")
+    dfz: float = real(0.0, "N/s", "slope of the axial force, 12/H^3 int (t - t_mid) F dt")
 
 
 @dataclass(frozen=True)
@@ -128,6 +149,8 @@ class SeatLoad:
     dfx: float = real(0.0, "N/s", "slope of the horizontal force, 12/H^3 int (t - t_mid) F dt")
     dfy: float = real(0.0, "N/s", "slope of the vertical force, 12/H^3 int (t - t_mid) F dt")
     dmz: float = real(0.0, "N.m/s", "slope of the moment, 12/H^3 int (t - t_mid) M dt")
+    fz: float = real(0.0, "N", "mean axial force over the last macro step")
+    dfz: float = real(0.0, "N/s", "slope of the axial force, 12/H^3 int (t - t_mid) F dt")
 
 
 @dataclass(frozen=True)
@@ -226,13 +249,15 @@ class Energy:
 
 
 class Load(NamedTuple):
-    """Instantaneous load of a bearing: on the journal (N, N, N m) and on the housing (N, N)."""
+    """Instantaneous load of a bearing: on journal and housing, along the shaft last (N; jm: N m)."""
 
     jx: float
     jy: float
     jm: float
     hx: float
     hy: float
+    jz: float
+    hz: float
 
 
 class Motion(NamedTuple):

@@ -1,6 +1,6 @@
-"""A rigid rotor in planar motion: a disk that floats, falls, bounces and spins.
+"""A rigid rotor that does not tilt: a disk that floats, falls, bounces and spins, and moves along its shaft.
 
-Three coordinates: position of the shaft centre and rotation. Its seats lie in the plane of the centre
+Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft. Its seats lie in the plane of the centre
 of mass; a rotor that tilts is a matter of the flexible model. Unbalance enters with spin acceleration
 as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre feels
 
@@ -20,12 +20,13 @@ from ..modelkit import body
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, memory_layout
 from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
-from ..modelkit.variables import group, real
+from ..modelkit.variables import SWITCH, choice, group, real
 from .motion.equations import drag
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
-SIZE = 9
+Z, VZ = range(9, 11)  # along the shaft
+SIZE = 11
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,11 @@ class Parameters:
     y: float = real(0.0, "m", "vertical position at the start")
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")
     vy: float = real(0.0, "m/s", "vertical velocity at the start")
+    axial: int = choice(0, SWITCH, "whether it moves along its shaft")
+    axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z; acts where axial is on")
+    axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
+    z: float = real(0.0, "m", "position along the shaft at the start")
+    vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
 
 
 @dataclass(frozen=True)
@@ -73,7 +79,7 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 @kernel
 def rhs(t, q, dq, m):
-    """Newton and Euler: dq (9,) of the state q (9,) under the loads mean + slope (t - t_mid); t in s."""
+    """Newton and Euler: dq (11,) of the state q (11,) under the loads mean + slope (t - t_mid); t in s."""
     p, since_middle = m.p, t - m.half
     ax, ay, am = _load_at(m.u.A, since_middle)
     bx, by, bm = _load_at(m.u.amb, since_middle)
@@ -85,8 +91,11 @@ def rhs(t, q, dq, m):
     dq[VY] = dvy
     dq[ANGLE] = q[SPIN]
     dq[SPIN] = alpha
-    dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN]
-    dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN]
+    az, bz = _thrust_of(m.u.A, since_middle), _thrust_of(m.u.amb, since_middle)
+    dq[Z] = q[VZ]
+    dq[VZ] = _axial_acceleration(az + bz, p)
+    dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN] + az * q[VZ]
+    dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN] + bz * q[VZ]
     dq[LOSS] = braking * q[SPIN]
 
 
@@ -101,8 +110,20 @@ def _load_at(load, since_middle):
 
 
 @kernel
+def _thrust_of(load, since_middle):
+    """Axial force (N) of a load, `since_middle` (s) after the middle of the macro step."""
+    return load.fz + load.dfz * since_middle
+
+
+@kernel
+def _axial_acceleration(force, p):
+    """Along the shaft (m/s2), under gravity, the thrust and the seats' `force` (N); 0 where it keeps its place."""
+    return p.axial_gravity + (p.axial_load + force) / p.mass if p.axial == 1 else 0.0
+
+
+@kernel
 def _accelerations(q, fx, fy, moment, p):
-    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (9,), under gravity and loads.
+    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (11,), under gravity and loads.
 
     The loads act at the shaft centre: fx, fy (N), moment (N m). The centre of mass stands off by e (c, s):
     I alpha = M + e (Fx s - Fy c), gravity drops out.
@@ -118,7 +139,7 @@ def _accelerations(q, fx, fy, moment, p):
 
 @kernel
 def publish(q, m):
-    """Outputs m.o from the state q (9,) at the end of the step: what a seat does not cause is 'free'."""
+    """Outputs m.o from the state q (11,) at the end of the step: what a seat does not cause is 'free'."""
     p = m.p
     _publish_seat(q, p, m.o.A, m.u.amb, m.half)
     _publish_seat(q, p, m.o.amb, m.u.A, m.half)
@@ -130,6 +151,9 @@ def publish(q, m):
     e = m.o.energy
     e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * q[SPIN] ** 2
     e.potential = p.mass * p.gravity * (q[Y] + ey)
+    if p.axial == 1:
+        e.kinetic += 0.5 * p.mass * q[VZ] ** 2
+        e.potential -= (p.mass * p.axial_gravity + p.axial_load) * q[Z]
     e.dissipated = q[LOSS]
 
 
@@ -142,6 +166,9 @@ def _publish_seat(q, p, seat, other, half):
     seat.inv_m = 1.0 / p.mass
     seat.omega = q[SPIN]
     seat.inv_I = 1.0 / p.inertia
+    if p.axial == 1:
+        seat.z, seat.vz, seat.inv_m_z = q[Z], q[VZ], 1.0 / p.mass
+        seat.az_free = _axial_acceleration(_thrust_of(other, half), p)
 
 
 @kernel
@@ -152,8 +179,8 @@ def settle(words):
     """
     m = words.view(MEMORY)[0]
     m.n = SIZE
-    m.weight[X], m.weight[Y] = 1e6, 1e6
-    m.weight[VX], m.weight[VY] = 1e2, 1e2
+    m.weight[X], m.weight[Y], m.weight[Z] = 1e6, 1e6, 1e6
+    m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     m.weight[ANGLE], m.weight[SPIN] = 1e-1, 1e-1
     return 0
 
@@ -165,6 +192,8 @@ def start(words):
     p, q = m.p, m.q
     q[X], q[Y], q[VX], q[VY] = p.x, p.y, p.vx, p.vy
     q[SPIN] = p.speed
+    if p.axial == 1:
+        q[Z], q[VZ] = p.z, p.vz
     m.half = 0.0
     publish(q, m)
     weight = p.gravity / m.o.amb.inv_m  # unbalance turns, and is no static load
@@ -174,7 +203,7 @@ def start(words):
 @kernel
 def _sum(load):
     """Sum of a load's values, in mixed units, by which one that is not finite is noticed."""
-    return load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz
+    return load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz + load.fz + load.dfz
 
 
 @kernel
@@ -192,13 +221,23 @@ def _exposed(name: str) -> str:
 def _starts_from() -> dict[str, tuple[str, ...]]:
     """What the first outputs depend on: at a seat, also on the load at the other one."""
     causes: dict[str, tuple[str, ...]] = {
-        "energy.kinetic": ("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
-        "energy.potential": ("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
+        "energy.kinetic": (
+            *("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
+            *("axial", "vz"),
+        ),
+        "energy.potential": (
+            *("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
+            *("axial", "axial_gravity", "axial_load", "z"),
+        ),
         "amb.static_fy": ("mass", "gravity"),
     }
     for seat, other in (("A", "amb"), ("amb", "A")):
         causes |= {f"{seat}.{name}": (name,) for name in ("x", "y", "vx", "vy")}
         causes |= {f"{seat}.inv_m": ("mass",), f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
+        causes |= {f"{seat}.{name}": ("axial", name) for name in ("z", "vz")}
+        causes[f"{seat}.inv_m_z"] = ("axial", "mass")
+        thrust = ("axial_gravity", "axial_load", f"{other}.fz")
+        causes[f"{seat}.az_free"] = ("axial", "mass", *thrust)
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
         spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
         causes[f"{seat}.alpha_free"] = spinning
@@ -210,7 +249,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
 MODEL = Model(
     name="rigid_rotor",
     title="Rigid rotor",
-    about="Rigid disk in planar motion with spin, unbalance and drag; one seat for a touchdown "
+    about="Rigid disk with spin, unbalance and drag, in the plane and along its shaft; one seat for a touchdown "
     "bearing (A), one for a magnetic bearing (amb)",
     parameters=Parameters,
     inputs=Inputs,

@@ -18,20 +18,20 @@ leave open is handed over beside them (`ModeLoad`).
 At the next restart the copy takes the body's state; half the sum of the loads before and after times
 that jump is the work the copy missed, and is accounted for as `jump`.
 
-`layout` says where the copies lie in a bearing's state and memory, `copies` how they move, `load` what is
-made of the load, `step` in which order. Kernels take the bearing's whole state q and its derivative dq,
+`copies` says where the copies lie in a bearing's state and memory and how they move, `along` the same along the
+shaft, `step` what is made of the load and in which order. Kernels take the bearing's whole state q and its derivative dq,
 both (m.n,) or longer, and its memory, the record m; all in SI units.
 """
 
 from __future__ import annotations
 
+from .along import HVZ, HZ, INSIDE, JVZ, JZ
 from .copies import (
     HE,
     HVX,
     HVY,
     HX,
     HY,
-    INSIDE,
     JE,
     JVX,
     JVY,
@@ -50,24 +50,29 @@ from .copies import (
     forecast,
     housing_motion,
     journal_motion,
+    last_load,
     set_weights,
     take_inputs,
 )
-from .step import advance, advance_timed, begin, instant, integrate, last_load
+from .step import advance, advance_timed, begin, instant, integrate
 
 __all__ = [
     "HE",
     "HVX",
     "HVY",
+    "HVZ",
     "HX",
     "HY",
+    "HZ",
     "INSIDE",
     "JE",
     "JVX",
     "JVY",
+    "JVZ",
     "JW",
     "JX",
     "JY",
+    "JZ",
     "MODES_SIZE",
     "POSITION_SCALE",
     "SPIN_SCALE",

@@ -1,7 +1,7 @@
 """Copies of journal and housing within a bearing's macro step.
 
-The state begins with the copies and their quadratures, `INSIDE` components. What is inside the bearing
-follows, and behind it `PER_MODE` components for each elastic mode that is carried.
+The state begins with the copies and their quadratures, `INSIDE` components, those along the shaft last
+(`along`). What is inside the bearing follows, and behind it `PER_MODE` components for each elastic mode that is carried.
 
 The journal's copy is a point mass, or with a flexible rotor the sum of one and of the rotor's elastic
 modes; the housing's is a mass on its springs. Quadratures of the load run beside them.
@@ -27,6 +27,18 @@ from ...modelkit.ports import (
     MountMotion,
 )
 from ...modelkit.variables import Nothing, group, integer, real
+from .along import (
+    HFVZ,
+    HVZ,
+    HZ,
+    INSIDE,
+    JVZ,
+    JZ,
+    along_rates,
+    clear_along,
+    drift_along,
+    take_along,
+)
 
 # State of the copies and quadratures, at the head of every bearing's state vector.
 JX, JY, JVX, JVY, JW = range(5)  # journal copy
@@ -34,7 +46,6 @@ JPX, JPY, JPM, JQX, JQY, JQM, JE = range(5, 12)  # impulse, first moment, work
 HX, HY, HVX, HVY = range(12, 16)  # housing copy
 HFX, HFY, HFVX, HFVY, HE = range(16, 21)  # its response to the load alone, per mass; work
 HPX, HPY = range(21, 23)  # impulse
-INSIDE = 23  # first component of what is inside the bearing
 # Of each elastic mode, behind what is inside: its share in the journal copy's motion, and the response
 # of a mode of unit inv_m to the load alone.
 ZX, ZY, ZVX, ZVY, QX, QY, PX, PY = range(8)
@@ -64,6 +75,8 @@ class SeatMemory:
     jm: float = real(0.0, "N.m", "on the journal")
     hx: float = real(0.0, "N", "on the housing")
     hy: float = real(0.0, "N", "on the housing")
+    jz: float = real(0.0, "N", "on the journal, along the shaft")
+    hz: float = real(0.0, "N", "on the housing, along the shaft")
     inside: int = integer(0, "components of the state up to the elastic modes")
     modes: int = integer(0, "elastic modes that are carried")
     fastest: float = real(0.0, "rad/s", "largest angular frequency among them")
@@ -84,8 +97,10 @@ def bearing_memory(
 @kernel
 def set_weights(weight):
     """Set the error weights of the copies, the first `INSIDE` of a bearing's `weight` (n,)."""
-    weight[JX] = weight[JY] = weight[HX] = weight[HY] = 1.0 / POSITION_SCALE
-    weight[JVX] = weight[JVY] = weight[HVX] = weight[HVY] = 1.0 / VELOCITY_SCALE
+    for i in (JX, JY, HX, HY, JZ, HZ):
+        weight[i] = 1.0 / POSITION_SCALE
+    for i in (JVX, JVY, HVX, HVY, JVZ, HVZ):
+        weight[i] = 1.0 / VELOCITY_SCALE
     weight[JW] = 1.0 / SPIN_SCALE
 
 
@@ -131,6 +146,7 @@ def take_inputs(q, m):
     q[JX], q[JY], q[JVX], q[JVY], q[JW] = j.x, j.y, j.vx, j.vy, j.omega
     h = m.u.housing
     q[HX], q[HY], q[HVX], q[HVY] = h.x, h.y, h.vx, h.vy
+    take_along(q, m)
     for k in range(m.s.seat.modes):
         i, z = m.s.seat.inside + PER_MODE * k, j.mode[k]
         q[i + ZX], q[i + ZY], q[i + ZVX], q[i + ZVY] = z.x, z.y, z.vx, z.vy
@@ -144,9 +160,17 @@ def clear(q, m):
         q[i] = 0.0
     for i in range(HFX, HPY + 1):
         q[i] = 0.0
+    clear_along(q)
     for k in range(m.s.seat.modes):
         i = m.s.seat.inside + PER_MODE * k
         q[i + QX], q[i + QY], q[i + PX], q[i + PY] = 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def last_load(m):
+    """The last known `Load` (N, N m)."""
+    s = m.s.seat
+    return Load(s.jx, s.jy, s.jm, s.hx, s.hy, s.jz, s.hz)
 
 
 @kernel
@@ -160,7 +184,7 @@ def copy_rates(t, q, dq, m, half, load):
     speeds_up = 1.0 if order >= ACCELERATION else 0.0
     own = load
     if order == ACCELERATION:  # the bearing's own part, as it was at the restart
-        own = Load(m.s.seat.jx, m.s.seat.jy, m.s.seat.jm, m.s.seat.hx, m.s.seat.hy)
+        own = last_load(m)
     s = t - half
     j = m.u.journal
     dq[JX] = moves * q[JVX]
@@ -189,7 +213,9 @@ def copy_rates(t, q, dq, m, half, load):
     dq[HFY] = q[HFVY]
     dq[HFVX] = load.hx - h.k_over_m * q[HFX] - h.c_over_m * q[HFVX]
     dq[HFVY] = load.hy - h.k_over_m * q[HFY] - h.c_over_m * q[HFVY]
-    dq[HE] = load.hx * dq[HX] + load.hy * dq[HY]
+    along_rates(s, q, dq, m, load, own, moves, speeds_up)
+    dq[JE] += load.jz * dq[JZ]
+    dq[HE] = load.hx * dq[HX] + load.hy * dq[HY] + load.hz * dq[HZ]
 
 
 @kernel
@@ -224,6 +250,7 @@ def drift(trial, q, mid, h, m):
     trial[HY] = q[HY] + moves * h * mid[HVY]
     trial[HFX] = q[HFX] + h * mid[HFVX]
     trial[HFY] = q[HFY] + h * mid[HFVY]
+    drift_along(trial, q, mid, h, moves)
     _drift_modes(trial, q, mid, h, m)
 
 
@@ -245,5 +272,5 @@ def forecast(trial, dq, h):
     Their accelerations dq change little from one to the next; with them the work that crosses the seat
     is of second order.
     """
-    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY):
+    for i in (JVX, JVY, JW, HVX, HVY, HFVX, HFVY, JVZ, HVZ, HFVZ):
         trial[i] += 0.5 * h * dq[i]

@@ -20,14 +20,16 @@ A bearing brings four kernels, which are compiled into the functions below:
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from ...modelkit import numerics
 from ...modelkit.integrators import dopri
 from ...modelkit.kernel import kernel
-from ...modelkit.ports import MODEL, Load
+from ...modelkit.ports import MODEL
 from ...modelkit.status import BAD_INPUT, BAD_LOAD, OK
+from .along import HZ, JPZ, JZ, hand_along
 from .copies import (
     HE,
     HFVX,
@@ -55,13 +57,14 @@ from .copies import (
     QY,
     clear,
     copy_rates,
+    last_load,
     take_inputs,
     take_modes,
 )
 
 # Half a period of the housing per macro step; beyond, two numbers cannot stand for its load
 MAX_HALF_PERIODS = 3.0
-BODY_LOAD_SIZE = 10  # numbers of the load on journal and housing; each mode has four more
+BODY_LOAD_SIZE = 14  # numbers of the load on journal and housing; each mode has four more
 
 
 @kernel
@@ -85,6 +88,7 @@ def hand_over(q, m, step):
         h.fy, h.dfy = numerics.load_for(response, q[HFY], q[HFVY])
     else:
         h.fx, h.fy, h.dfx, h.dfy = first * q[HPX], first * q[HPY], 0.0, 0.0
+    hand_along(q, m, step, MAX_HALF_PERIODS)
     h.work += q[HE]
 
 
@@ -107,15 +111,17 @@ def hand_now(m, load):
     j, h = m.o.journal, m.o.housing
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load.jx, load.jy, load.jm, 0.0, 0.0, 0.0
     h.fx, h.fy, h.dfx, h.dfy = load.hx, load.hy, 0.0, 0.0
+    j.fz, j.dfz, h.fz, h.dfz = load.jz, 0.0, load.hz, 0.0
 
 
 @kernel
 def handed_over(m):
-    """The load as it stands in m.o, in its units: (10 + 4 modes,) on journal, housing and modes."""
+    """The load as it stands in m.o, in its units: (14 + 4 modes,) on journal, housing and modes."""
     j, h = m.o.journal, m.o.housing
     load = np.empty(BODY_LOAD_SIZE + 4 * m.s.seat.modes)
     load[0], load[1], load[2], load[3], load[4], load[5] = j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz
     load[6], load[7], load[8], load[9] = h.fx, h.fy, h.dfx, h.dfy
+    load[10], load[11], load[12], load[13] = j.fz, j.dfz, h.fz, h.dfz
     for k in range(m.s.seat.modes):
         i, z = BODY_LOAD_SIZE + 4 * k, j.mode[k]
         load[i], load[i + 1], load[i + 2], load[i + 3] = z.qx, z.qy, z.px, z.py
@@ -124,10 +130,11 @@ def handed_over(m):
 
 @kernel
 def hand_instead(m, load):
-    """Put a load from `handed_over`, (10 + 4 modes,), in the outputs."""
+    """Put a load from `handed_over`, (14 + 4 modes,), in the outputs."""
     j, h = m.o.journal, m.o.housing
     j.fx, j.fy, j.mz, j.dfx, j.dfy, j.dmz = load[0], load[1], load[2], load[3], load[4], load[5]
     h.fx, h.fy, h.dfx, h.dfy = load[6], load[7], load[8], load[9]
+    j.fz, j.dfz, h.fz, h.dfz = load[10], load[11], load[12], load[13]
     for k in range(m.s.seat.modes):
         i, z = BODY_LOAD_SIZE + 4 * k, j.mode[k]
         z.qx, z.qy, z.px, z.py = load[i], load[i + 1], load[i + 2], load[i + 3]
@@ -137,24 +144,35 @@ def hand_instead(m, load):
 def is_finite(m):
     """Whether every number of the load handed over to journal and housing is finite."""
     j, h = m.o.journal, m.o.housing
-    return math.isfinite(
-        j.fx + j.fy + j.mz + j.dfx + j.dfy + j.dmz + h.fx + h.fy + h.dfx + h.dfy + j.work + h.work
-    )
+    total = j.fx + j.fy + j.mz + j.dfx + j.dfy + j.dmz + h.fx + h.fy + h.dfx + h.dfy + j.work + h.work
+    return math.isfinite(total + j.fz + j.dfz + h.fz + h.dfz)
+
+
+class Places(NamedTuple):
+    """Where the copies of journal and housing are (m)."""
+
+    jx: float
+    jy: float
+    jz: float
+    hx: float
+    hy: float
+    hz: float
 
 
 @kernel
-def account_jump(m, load, djx, djy, dhx, dhy):
-    """Work (J) missed where the copies were moved by (djx, djy) and (dhx, dhy) (m) at the restart."""
-    s = m.s.seat
-    m.o.journal.jump += 0.5 * ((s.jx + load.jx) * djx + (s.jy + load.jy) * djy)
-    m.o.housing.jump += 0.5 * ((s.hx + load.hx) * dhx + (s.hy + load.hy) * dhy)
+def places(q):
+    """`Places` (m) in the state q."""
+    return Places(q[JX], q[JY], q[JZ], q[HX], q[HY], q[HZ])
 
 
 @kernel
-def last_load(m):
-    """The last known `Load` (N, N m)."""
+def account_jump(m, load, before, now):
+    """Work (J) missed where the restart moved the copies from `before` to `now` (`Places`)."""
     s = m.s.seat
-    return Load(s.jx, s.jy, s.jm, s.hx, s.hy)
+    across = (s.jx + load.jx) * (now.jx - before.jx) + (s.jy + load.jy) * (now.jy - before.jy)
+    m.o.journal.jump += 0.5 * (across + (s.jz + load.jz) * (now.jz - before.jz))
+    across = (s.hx + load.hx) * (now.hx - before.hx) + (s.hy + load.hy) * (now.hy - before.hy)
+    m.o.housing.jump += 0.5 * (across + (s.hz + load.hz) * (now.hz - before.hz))
 
 
 @kernel
@@ -162,6 +180,7 @@ def remember(m, load):
     """Keep `load` (`Load`: N, N m) as the last known one."""
     s = m.s.seat
     s.jx, s.jy, s.jm, s.hx, s.hy = load.jx, load.jy, load.jm, load.hx, load.hy
+    s.jz, s.hz = load.jz, load.hz
 
 
 @kernel
@@ -169,7 +188,8 @@ def finite_inputs(m):
     """Whether every input that is in use is a finite number."""
     j = m.u.journal
     total = j.x + j.y + j.vx + j.vy + j.ax_free + j.ay_free + j.inv_m + j.omega
-    total += j.alpha_free + j.inv_I + _sum_of(m.u.housing)
+    total += j.alpha_free + j.inv_I + _sum_of(m.u.housing) + _sum_along(j)
+    total += _sum_along(m.u.housing) + m.u.housing.k_over_m_z + m.u.housing.c_over_m_z
     for k in range(m.s.seat.modes):
         total += _sum_of(j.mode[k])
     return math.isfinite(total)
@@ -182,6 +202,12 @@ def _sum_of(z):
 
 
 @kernel
+def _sum_along(z):
+    """Of all numbers of an `AxialMotion`, in no unit."""
+    return z.z + z.vz + z.az_free + z.inv_m_z
+
+
+@kernel
 def _weigh_impulse(m):
     """Have micro-steps resolve the load where no copy moves under it, and so none would show its error.
 
@@ -189,6 +215,8 @@ def _weigh_impulse(m):
     """
     if m.p.interface.order < MODEL or m.u.journal.inv_m == 0.0:
         m.weight[JPX] = m.weight[JPY] = 1.0 / IMPULSE_SCALE
+    if m.p.interface.order < MODEL or m.u.journal.inv_m_z == 0.0:
+        m.weight[JPZ] = 1.0 / IMPULSE_SCALE
 
 
 @kernel
@@ -249,11 +277,11 @@ def advance_timed(ready, react, integrate, report, words, m, work, time, step):
         q = m.q
         m.time = time
         m.half = 0.5 * step
-        jx, jy, hx, hy = q[JX], q[JY], q[HX], q[HY]
+        left = places(q)
         take_inputs(q, m)
         ready(m, 0.0)
         before = react(0.0, q, work[0], m)
-        account_jump(m, before, q[JX] - jx, q[JY] - jy, q[HX] - hx, q[HY] - hy)
+        account_jump(m, before, left, places(q))
         remember(m, before)
         copy_rates(0.0, q, work[0], m, m.half, before)
         m.h, status, evaluations = integrate(m, work, step)

@@ -1,6 +1,6 @@
 """The housing of a touchdown bearing: a mass on springs and dampers to the ground, at rest at the start.
 
-The outer ring sits in it and moves with it. `x0`, `y0` put its rest position off the rotor's axis
+The outer ring sits in it and moves with it, along the shaft, too. `x0`, `y0` put its rest position off the rotor's axis
 (misalignment). Frame and signs as everywhere: x horizontal, y up, SI.
 """
 
@@ -14,7 +14,8 @@ from ...modelkit.model import Model, memory_layout
 from ...modelkit.ports import Energy, MountLoad, MountState
 from ...modelkit.variables import group, real
 
-X, Y, VX, VY, WORK, LOSS = range(6)
+X, Y, VX, VY, WORK, LOSS, Z, VZ = range(8)
+SIZE = 8
 
 
 @dataclass(frozen=True)
@@ -23,11 +24,16 @@ class Parameters:
 
     mass: float = real(5.0, "kg", "mass of the housing", above=0.0)
     outer_ring: float = real(0.042, "kg", "mass of the outer ring fixed in it", minimum=0.0)
-    stiffness: float = real(2.5e8, "N/m", "stiffness to the ground, each direction", minimum=0.0)
-    damping: float = real(2500.0, "N.s/m", "damping to the ground, each direction", minimum=0.0)
+    stiffness: float = real(
+        2.5e8, "N/m", "stiffness to the ground, each direction and along the shaft", minimum=0.0
+    )
+    damping: float = real(
+        2500.0, "N.s/m", "damping to the ground, each direction and along the shaft", minimum=0.0
+    )
     gravity: float = real(9.81, "m/s2", "gravity, downwards", minimum=0.0)
     x0: float = real(0.0, "m", "horizontal position with the spring relaxed (misalignment)")
     y0: float = real(0.0, "m", "vertical position with the spring relaxed (misalignment)")
+    axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
 
 
 @dataclass(frozen=True)
@@ -45,12 +51,12 @@ class Outputs:
     energy: Energy = group(Energy)
 
 
-MEMORY = memory_layout(Parameters, Inputs, Outputs, 6)
+MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 
 @kernel
 def rhs(t, q, dq, m):
-    """Derivative dq (6,) of the state q (6,) under the force mean + slope (t - t_mid); t: s."""
+    """Derivative dq (8,) of the state q (8,) under the force mean + slope (t - t_mid); t: s."""
     p, u = m.p, m.u.seat
     mass = p.mass + p.outer_ring
     s = t - m.half
@@ -59,13 +65,16 @@ def rhs(t, q, dq, m):
     dq[Y] = q[VY]
     dq[VX] = (fx - p.stiffness * (q[X] - p.x0) - p.damping * q[VX]) / mass
     dq[VY] = (fy - p.stiffness * (q[Y] - p.y0) - p.damping * q[VY]) / mass - p.gravity
-    dq[WORK] = fx * q[VX] + fy * q[VY]
-    dq[LOSS] = p.damping * (q[VX] ** 2 + q[VY] ** 2)
+    fz = u.fz + u.dfz * s
+    dq[Z] = q[VZ]
+    dq[VZ] = (fz - p.stiffness * q[Z] - p.damping * q[VZ]) / mass + p.axial_gravity
+    dq[WORK] = fx * q[VX] + fy * q[VY] + fz * q[VZ]
+    dq[LOSS] = p.damping * (q[VX] ** 2 + q[VY] ** 2 + q[VZ] ** 2)
 
 
 @kernel
 def publish(q, m):
-    """Outputs at the end of the step, from the state q (6,)."""
+    """Outputs at the end of the step, from the state q (8,)."""
     p, o = m.p, m.o.seat
     mass = p.mass + p.outer_ring
     ex, ey = q[X] - p.x0, q[Y] - p.y0
@@ -74,10 +83,14 @@ def publish(q, m):
     o.ay_free = -(p.stiffness * ey + p.damping * q[VY]) / mass - p.gravity
     o.inv_m = 1.0 / mass
     o.k_over_m, o.c_over_m = p.stiffness / mass, p.damping / mass
+    o.z, o.vz, o.inv_m_z = q[Z], q[VZ], o.inv_m
+    o.az_free = -(p.stiffness * q[Z] + p.damping * q[VZ]) / mass + p.axial_gravity
+    o.k_over_m_z, o.c_over_m_z = o.k_over_m, o.c_over_m
     o.work = q[WORK]
     e = m.o.energy
-    e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2)
+    e.kinetic = 0.5 * mass * (q[VX] ** 2 + q[VY] ** 2 + q[VZ] ** 2)
     e.potential = 0.5 * p.stiffness * (ex * ex + ey * ey) + mass * p.gravity * q[Y]
+    e.potential += 0.5 * p.stiffness * q[Z] ** 2 - mass * p.axial_gravity * q[Z]
     e.dissipated = q[LOSS]
 
 
@@ -85,9 +98,9 @@ def publish(q, m):
 def settle(words):
     """Error weights: positions matter at 1 um, velocities at 1 cm/s. Returns 0: nothing can be wrong."""
     m = words.view(MEMORY)[0]
-    m.n = 6
-    m.weight[X], m.weight[Y] = 1e6, 1e6
-    m.weight[VX], m.weight[VY] = 1e2, 1e2
+    m.n = SIZE
+    m.weight[X], m.weight[Y], m.weight[Z] = 1e6, 1e6, 1e6
+    m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     return 0
 
 
@@ -98,6 +111,8 @@ def start(words):
     p = m.p
     sag = (p.mass + p.outer_ring) * p.gravity / p.stiffness if p.stiffness > 0.0 else 0.0
     m.q[X], m.q[Y] = p.x0, p.y0 - sag
+    if p.stiffness > 0.0:
+        m.q[Z] = (p.mass + p.outer_ring) * p.axial_gravity / p.stiffness
     publish(m.q, m)
 
 
@@ -106,7 +121,7 @@ def advance(words, work, time, step):
     """One macro step of `step` (s) from `time` (s) under the given force; returns a status."""
     m = words.view(MEMORY)[0]
     u = m.u.seat
-    return body.advance(rhs, publish, m, work, time, step, u.fx + u.fy + u.dfx + u.dfy)
+    return body.advance(rhs, publish, m, work, time, step, u.fx + u.fy + u.fz + u.dfx + u.dfy + u.dfz)
 
 
 _MASS = ("mass", "outer_ring")
@@ -132,6 +147,11 @@ MODEL = Model(
         "seat.inv_m": _MASS,
         "seat.k_over_m": ("stiffness", *_MASS),
         "seat.c_over_m": ("damping", *_MASS),
-        "energy.potential": (*_SAG, "y0"),
+        "energy.potential": (*_SAG, "y0", "axial_gravity"),
+        "seat.z": ("axial_gravity", *_MASS, "stiffness"),
+        "seat.az_free": ("axial_gravity", *_MASS, "stiffness"),
+        "seat.inv_m_z": _MASS,
+        "seat.k_over_m_z": ("stiffness", *_MASS),
+        "seat.c_over_m_z": ("damping", *_MASS),
     },
 )

@@ -45,8 +45,8 @@ MOTION = tuple(_declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad))
 SENSED = tuple(_declared(ports.PointMotion))
 SLOPE = tuple(name for name in _LOAD if name[0] == "d" and name[1:] in _LOAD)
 LOAD = tuple(name for name in _LOAD if name not in SLOPE)
-SPIN = (*_beyond(ports.SeatMotion, ports.BodyMotion), *_beyond(ports.SeatLoad, ports.MountLoad))
-MOUNT = _beyond(ports.MountMotion, ports.BodyMotion)  # of a body on springs
+SPIN = (*_beyond(ports.SeatMotion, ports.MountMotion), *_beyond(ports.SeatLoad, ports.MountLoad))
+MOUNT = _beyond(ports.MountMotion, ports.SeatMotion)  # of a body on springs
 MODE_MOTION = tuple(_declared(ports.ModeMotion))  # of an elastic mode, below mode[k] of a port
 MODE_LOAD = tuple(_declared(ports.ModeLoad))
 WORK, JUMP = _declared(ports.Account)  # what each side states of the energy that crossed
@@ -54,7 +54,7 @@ UNITS = _declared(ports.SeatMotion, ports.MountMotion, ports.StaticLoad, ports.S
 
 REPORTS = (  # groups of what bearings and bodies say of themselves, for figures and pictures
     *("contact", "ring", "balls", "inner", "outer", "neighbours", "pockets", "hardest", "cage", "speed"),
-    *("energy", "stress", "axis", "limits", "heat"),
+    *("energy", "stress", "axis", "limits", "heat", "shoulder"),
 )
 LOOP = (  # what actuators and controllers say of themselves beside those
     *("link", "link_energy", "peak_current", "least_gap"),
@@ -67,9 +67,12 @@ MOUNTED = "housing"  # a bearing's port on what it is mounted in
 REACH = "contact.reach"  # s, of a touchdown bearing: time until its journal touches, going straight on
 
 POSITION = ("x", "y")
+AXES = (*POSITION, "z")  # the last one, along the shaft, only where both sides of a port have it
 STIFFNESS = "k_over_m"  # 1/s2, of the springs that hold a body
-GAINS = ("inv_m", "inv_I", STIFFNESS, "c_over_m")  # what a bearing carries a body by
+# what a bearing carries a body by
+GAINS = ("inv_m", "inv_I", STIFFNESS, "c_over_m", "inv_m_z", "k_over_m_z", "c_over_m_z")
 FORCE = ("fx", "fy")
+THRUST = "fz"  # along the shaft
 NEEDED = POSITION + FORCE  # no port works without them
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....modelkit.ports import MODEL
-from ...components.component import FORCE, JUMP, POSITION, WORK
+from ...components.component import FORCE, JUMP, POSITION, THRUST, WORK
 from ..assembly import ORDER
 from ..connections import Attachment
 from ..loop.kernels.accounts import BOOK, book, shares, worst_of
@@ -18,6 +18,7 @@ from .account import Account, BondAccount, SeatAccount
 from .auditor import witnesses
 
 VELOCITY = tuple(f"v{axis}" for axis in POSITION)
+_ALONG = ("z", THRUST, "vz")  # of the shaft
 
 
 class Ledger:
@@ -63,13 +64,16 @@ class Ledger:
     def _find(self) -> None:
         self._signals, position = self._system.signals, self._system.position
         for account, flow in zip(self._seats, self._flows, strict=True):
-            for names, there, places in (
-                (_statements(account.attachment), "stating", "statements"),
-                (flow, "flowing", "flow"),
-            ):
-                account.record[there] = all(name in position for name in names)
-                if account.record[there]:
-                    account.record[places] = [position[name] for name in names]
+            statements, along = _statements(account.attachment), flow[-len(_ALONG) :]
+            account.record["stating"] = all(name in position for name in statements)
+            if account.record["stating"]:
+                account.record["statements"] = [position[name] for name in statements]
+            account.record["flowing"] = all(name in position for name in flow[: -len(_ALONG)])
+            if account.record["flowing"]:
+                spatial = all(name in position for name in along)
+                planar = flow if spatial else flow[: -len(_ALONG)]
+                absent = [] if spatial else [-1] * len(_ALONG)
+                account.record["flow"] = [*(position[name] for name in planar), *absent]
 
     @property
     def listens(self) -> bool:
@@ -145,14 +149,16 @@ def _statements(a: Attachment) -> list[str]:
 def _begun(system: System, account: SeatAccount, in_turn: bool) -> list[str]:
     """Begin an account; returns the names of motion and load from which follows what it turns over.
 
-    in_turn: whether bodies take each step after the bearings, under the load of that step.
+    1/kg of 0 is unknown, or prescribed. in_turn: whether bodies take each step after the bearings, under the load of that step.
     """
     a, record = account.attachment, account.record
-    inv_m = a.motion("inv_m")  # 1/kg; 0: unknown, or prescribed
-    gain = system.value(inv_m) if inv_m in system else 0.0
+    gain, gain_z = (system.value(n) if n in system else 0.0 for n in map(a.motion, ("inv_m", "inv_m_z")))
     moves = all(a.motion(v) in system.position for v in VELOCITY) and gain > 0.0
     record["every"] = math.lcm(system.every[a.bearing], system.every[a.body])
     record["mass"] = 1.0 / gain if moves else 0.0
+    record["mass_z"] = 1.0 / gain_z if gain_z > 0.0 else 0.0
     record["x"] = math.nan
     record["carried"] = in_turn and not a.on_journal and system.settings.get((a.bearing, ORDER)) == MODEL
-    return [*map(a.motion, POSITION), *map(a.load, FORCE), *map(a.motion, VELOCITY if moves else POSITION)]
+    across = [*map(a.motion, POSITION), *map(a.load, FORCE)]
+    along = [a.motion("z"), a.load(THRUST), a.motion("vz")]
+    return [*across, *map(a.motion, VELOCITY if moves else POSITION), *along]

@@ -30,7 +30,7 @@ from ....modelkit.ports import MODEL
 from ....modelkit.variables import Causality, Variability
 from ...common.errors import TouchdownError
 from ...common.units import scaled
-from ...components.component import FORCE, GAINS, MOUNTED, POSITION, Component, Kind, Variable
+from ...components.component import AXES, FORCE, GAINS, MOUNTED, POSITION, Component, Kind, Variable
 from ..assembly import LEAD, ORDER
 from ..connections import Attachment, Connection
 from ..steppers.stepper import Stepper
@@ -413,7 +413,8 @@ class Witness:
         component.set({c.input: _value(system, c) for c in fed if system.constant(c)})
         told = [c for c in fed if not system.constant(c)]
         self._inputs = [c.input for c in told]
-        forces = [a.attachment.bearing_end.own(force) for a in self._accounts for force in FORCE]
+        self._directions = [(a, axis) for a in self._accounts for axis in AXES if self._moves(a, axis)]
+        forces = [a.attachment.bearing_end.own(f"f{axis}") for a, axis in self._directions]
         self._forces = np.zeros(len(forces))
         component.bind(self._inputs, self._forces, forces)
         component.enter(system.start)
@@ -422,13 +423,19 @@ class Witness:
         component.exit()
         component.pull()
 
+    def _moves(self, account: SeatAccount, axis: str) -> bool:
+        """Whether it is told of a motion along an axis, and gives a force: across the shaft it always is."""
+        port = account.attachment.bearing_end
+        gives = port.own(f"f{axis}") in self._component.variables
+        return axis in POSITION or (gives and self._place(port.own(axis)) is not None)
+
     def _place(self, name: str) -> int | None:
         return self._inputs.index(name) if name in self._inputs else None
 
     def _find(self) -> None:
         """Find motion and loads where they now stand in the system."""
         system = self._system
-        self._axes = [Axis(system, a, axis, self._place) for a in self._accounts for axis in POSITION]
+        self._axes = [Axis(system, a, axis, self._place) for a, axis in self._directions]
         self._spins = [Spin(system, a, self._place) for a in self._accounts]
         self._intake = system.intakes[self._bearing]
         taken = list(self._intake.inputs)
@@ -458,8 +465,9 @@ class Witness:
             _leave(self._accounts, f"the second instance that listens failed: {error}")
             self._accounts = ()
             return
-        for account, x, y in zip(self._accounts, residuals[::2], residuals[1::2], strict=True):
-            account.book(float(x + y))
+        for account in self._accounts:
+            own = [r for r, axis in zip(residuals, self._axes, strict=True) if axis.account is account]
+            account.book(float(sum(own)))
 
     def _walk(self, step: float, parts: int) -> np.ndarray:
         """Take the step in parts; returns the residuals (J) of all axes."""

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...components.component import GAINS, POSITION
+from ...components.component import AXES, GAINS
 from ...scene.run_spec import RunSpec
 from ..system import System
 from .stepper import Checkpoint, Stepper, require_states
@@ -157,7 +157,7 @@ def _channels(system: System, bearing: str) -> _Channels:
     gains: list[int] = []
     ports = dict.fromkeys(a.bearing_end for a in system.attachments if a.bearing == bearing)
     for port in ports:
-        for axis in POSITION:
+        for axis in AXES:
             names = [port.own(name) for name in (axis, f"v{axis}", f"a{axis}_free")]
             if names[0] in inputs:
                 _require_all(names, inputs, bearing)

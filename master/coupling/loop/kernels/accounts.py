@@ -32,12 +32,15 @@ BOOK = np.dtype(
         ("by_body", "f8"),
         ("pending", "f8"),  # J, work difference of the last step, its jump not yet known
         ("flowing", "i8"),  # whether motion and load are exchanged
-        ("flow", "i8", (6,)),  # places in the signals: x, y, fx, fy, vx, vy
+        ("flow", "i8", (9,)),  # places in the signals: x, y, fx, fy, vx, vy, z, fz, vz; -1: not there
         ("mass", "f8"),  # kg, that moves with the port
+        ("mass_z", "f8"),  # kg, likewise along the shaft
         ("x", "f8"),  # m, at the end of the last step; not a number before the first
         ("y", "f8"),
         ("vx", "f8"),  # m/s
         ("vy", "f8"),
+        ("z", "f8"),
+        ("vz", "f8"),
     ]
 )
 
@@ -73,23 +76,34 @@ def _compare(b, signals):
 
 @kernel
 def _flow(b, signals):
-    """Add what a step to (x, y) (m) under the mean load (N), with the velocity at its end, turned over.
+    """Add what a step to (x, y, z) (m) under the mean load (N), with the velocity at its end, turned over.
 
     Kinetic energy counts along the force only: a journal that slides past a contact brings nothing of its
-    motion along into it.
+    motion along into it. Across the shaft and along it a body may have other masses, so each counts apart.
     """
     at = b.flow
     x, y, fx, fy, vx, vy = (
         signals[at[0]], signals[at[1]], signals[at[2]], signals[at[3]], signals[at[4]], signals[at[5]]
     )  # fmt: skip
+    z, fz, vz = _at(signals, at[6]), _at(signals, at[7]), _at(signals, at[8])
     squared = fx * fx + fy * fy
-    if squared > 0.0 and b.x == b.x:  # from the second step on
-        b.turned += abs(fx * (x - b.x) + fy * (y - b.y))
-        along = max(abs(fx * vx + fy * vy), abs(fx * b.vx + fy * b.vy))
-        kinetic = 0.5 * b.mass * along * along / squared
+    if (squared > 0.0 or fz != 0.0) and b.x == b.x:  # from the second step on
+        b.turned += abs(fx * (x - b.x) + fy * (y - b.y) + fz * (z - b.z))
+        kinetic = 0.0
+        if squared > 0.0:
+            along = max(abs(fx * vx + fy * vy), abs(fx * b.vx + fy * b.vy))
+            kinetic = 0.5 * b.mass * along * along / squared
+        if fz != 0.0:
+            kinetic += 0.5 * b.mass_z * max(abs(vz), abs(b.vz)) ** 2
         if kinetic > b.kinetic:
             b.kinetic = kinetic
-    b.x, b.y, b.vx, b.vy = x, y, vx, vy
+    b.x, b.y, b.vx, b.vy, b.z, b.vz = x, y, vx, vy, z, vz
+
+
+@kernel
+def _at(signals, place):
+    """The signal at a place; 0 where it is none."""
+    return signals[place] if place >= 0 else 0.0
 
 
 @kernel
