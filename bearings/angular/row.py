@@ -31,10 +31,11 @@ pitch diameter for the lever R_i of a tilt.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import Choices
+from ...modelkit.variables import Choices, real
 from ..contact.laws import in_series, race_contact_stiffness
 from ..contact.materials import effective_modulus, elastic_of
 
@@ -63,6 +64,26 @@ class Row(NamedTuple):
     free: float  # A
     stiffness: float  # N/m^1.5, of both contacts of a ball in series
     lever: float  # at which a tilt moves the inner groove along: R_i
+
+
+@dataclass(frozen=True)
+class RowConstants:
+    """A `Row` in a model's memory."""
+
+    inner: float = real(0.0, "m", "radius of the circle of the inner groove's centres")
+    outer: float = real(0.0, "m", "the same of the outer groove")
+    inner_at: float = real(0.0, "m", "that circle along the shaft")
+    outer_at: float = real(0.0, "m", "the same of the outer groove")
+    free: float = real(0.0, "m", "distance of the circles where a ball just touches")
+    stiffness: float = real(0.0, "N/m^1.5", "of both contacts of a ball in series")
+    lever: float = real(0.0, "m", "at which a tilt moves the inner groove along")
+
+
+@kernel
+def keep_row(kept, row):
+    """Put a `Row` into `kept`, a record of `RowConstants`."""
+    kept.inner, kept.outer, kept.inner_at, kept.outer_at = row.inner, row.outer, row.inner_at, row.outer_at
+    kept.free, kept.stiffness, kept.lever = row.free, row.stiffness, row.lever
 
 
 class Pose(NamedTuple):

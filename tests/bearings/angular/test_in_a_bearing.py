@@ -1,0 +1,210 @@
+"""The simplified caged bearing in space: loads of its balls, the plane it comes from, axial landings."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import touchdown
+from tests.support.bearing_states import instance_of
+from touchdown.bearings import seat
+from touchdown.bearings.angular.statics import Mounted, balls_on
+from touchdown.bearings.contact.materials import SILICON_NITRIDE
+from touchdown.bearings.rolling import ring
+from touchdown.bearings.rolling.ball_set import BallSet
+from touchdown.bearings.simplified_caged import RVZ, RZ
+from touchdown.master.common.errors import TouchdownError
+from touchdown.master.coupling.simulation import opened
+from touchdown.modelkit.instance import Instance
+
+BALLS = BallSet(
+    count=17,
+    diameter=4.8e-3,
+    pitch_diameter=28.5e-3,
+    outer_conformity=1.06,
+    play=0.0,
+    material=SILICON_NITRIDE,
+)
+PAIR = Mounted(BALLS, math.radians(25.0), arrangement=1, distance=9e-3, preload=100.0)
+SETTINGS: dict[str, object] = {  # a hybrid pair of the size 71904 on an upright shaft, without its magnets
+    "bearing.balls.contact_angle": "25 deg",
+    "bearing.arrangement": "back to back",
+    "bearing.row_distance": "9 mm",
+    "bearing.preload": 100.0,
+    "bearing.balls.rows": 2,
+    "bearing.balls.play": 0.0,
+    "bearing.balls.count": BALLS.count,
+    "bearing.balls.diameter": BALLS.diameter,
+    "bearing.balls.pitch_diameter": BALLS.pitch_diameter,
+    "bearing.balls.outer_conformity": BALLS.outer_conformity,
+    "bearing.balls.material": "Si3N4",
+    "bearing.balls.hertz": "exact",
+    "bearing.balls.damping_ratio": 0.05,
+    "bearing.ring.mass": 0.019,
+    "bearing.shoulder.gap_minus": "0.15 mm",
+    "bearing.shoulder.stiffness": 5e8,
+    "bearing.shoulder.dissipation": 5.0,
+    "bearing.gravity": 0.0,
+    "rotor.gravity": 0.0,
+    "rotor.axial": 1,
+    "rotor.axial_gravity": -9.81,
+    "run.macro_step": "50 us",
+}
+
+
+def paired() -> Instance:
+    """A bearing with the balls of `PAIR`, still unstarted."""
+    instance = instance_of("simplified_caged")
+    p = instance.record["p"]
+    for name in ("count", "diameter", "pitch_diameter", "outer_conformity", "play", "material"):
+        p["balls"][name] = getattr(BALLS, name)
+    p["balls"]["contact_angle"], p["balls"]["rows"] = PAIR.contact_angle, 2
+    p["arrangement"], p["row_distance"], p["preload"] = PAIR.arrangement, PAIR.distance, PAIR.preload
+    p["rolling"]["f1"] = 0.0
+    return instance
+
+
+def rates(instance: Instance, q: np.ndarray) -> np.ndarray:
+    """Derivative of the state, all as it stands."""
+    dq = np.zeros(len(q))
+    instance.model.instant(0.0, q, dq, instance.record)  # type: ignore[misc]
+    return dq
+
+
+def test_balls_load_the_ring_as_at_rest() -> None:
+    """At ten places of the ring, with that of its cage: the sums of `balls_on`, which take no damping."""
+    instance, draw = paired(), np.random.default_rng(3)
+    instance.start(0.0)
+    m = instance.record
+    p, n = m["p"], int(m["n"])
+    mass, weight = float(p["ring"]["mass"]), float(p["ring"]["mass"]) * float(p["gravity"])
+    for _ in range(10):
+        q = m["q"][:n].copy()
+        q[ring.RX], q[ring.RY], q[RZ] = draw.uniform(-3e-6, 3e-6, 3)
+        q[ring.RANGLE] = draw.uniform(0.0, 6.0)
+        dq = rates(instance, q)
+        turned = float(m["d"]["cage_ratio"]) * q[ring.RANGLE] + float(p["balls"]["first_angle"])
+        pose = np.array([q[ring.RX], q[ring.RY], q[RZ], 0.0, 0.0])
+        load, _ = balls_on(PAIR.rows(), PAIR.angles() + turned, pose)
+        found = mass * np.array([dq[ring.RVX], dq[ring.RVY], dq[RVZ]]) + (0.0, weight, 0.0)
+        assert found == pytest.approx(-load[:3], rel=1e-9, abs=1e-9 * 100.0)
+
+
+def test_without_a_contact_angle_it_is_the_one_of_the_plane() -> None:
+    """At ten states with balls pressed, faces far away: rates of the ring to 1e-9 of the largest."""
+    flat, spatial = instance_of("simplified_caged"), instance_of("simplified_caged")
+    spatial.record["p"]["shoulder"]["gap_minus"] = 1.0
+    draw = np.random.default_rng(5)
+    for instance in (flat, spatial):
+        instance.start(0.0)
+    sizes = [int(instance.record["n"]) for instance in (flat, spatial)]
+    common = slice(seat.INSIDE, ring.NEXT)
+    for _ in range(10):
+        moved = draw.uniform(-1.0, 1.0, ring.NEXT - seat.INSIDE) * (2e-5, 2e-5, 0.1, 0.1, 3.0, 100.0, 0.0)
+        found = []
+        for instance, size in zip((flat, spatial), sizes, strict=True):
+            q = instance.record["q"][:size].copy()
+            q[common] += moved
+            found.append(rates(instance, q)[common])
+        assert np.abs(found[0]).max() > 1e3
+        assert found[1] == pytest.approx(found[0], rel=1e-9, abs=1e-9 * np.abs(found[0]).max())
+
+
+def landing(gap: float) -> tuple[float, float]:
+    """Peak forces (N) of face and worst ball, by one system of rotor, ring and housing in z."""
+    first, second = PAIR.rows()
+    mass, inner, housing, stiffness, damping = 1.65, 0.019, 5.0, 2.5e8, 2500.0
+    scene = touchdown.load("disk-caged-simplified").set(SETTINGS)
+    with opened(scene, in_process=True) as system:
+        bearing, house = system.components["bearing"], system.components["housing"]
+        system.initialise()
+        law = float(bearing.instance.record["d"]["row_damping"])  # type: ignore[attr-defined]
+        housing = 1.0 / float(house.read(["seat.inv_m"])[0])
+    peaks = [0.0, 0.0]
+
+    def balls(z: float, rate: float) -> float:
+        total = 0.0
+        for row in (first, second):
+            across, along = row.inner - row.outer, row.inner_at - row.outer_at + z
+            length = math.hypot(across, along)
+            depth = max(length - row.free, 0.0)
+            sine = along / length
+            force = max(row.stiffness * depth**1.5 + law * depth * sine * rate, 0.0)
+            peaks[1] = max(peaks[1], force)
+            total -= 17 * force * sine
+        return total
+
+    def motion(_: float, y: np.ndarray) -> list[float]:
+        zr, vr, zi, vi, zh, vh = y
+        depth, rate = zi - zr - gap, vi - vr
+        face = max(5e8 * depth * (1.0 + 5.0 * rate), 0.0) if depth > 0.0 else 0.0
+        peaks[0] = max(peaks[0], face)
+        on_ring = balls(zi - zh, vi - vh)
+        return [
+            *(vr, face / mass - 9.81, vi, (on_ring - face) / inner),
+            *(vh, (-on_ring - stiffness * zh - damping * vh) / housing),
+        ]
+
+    span = math.sqrt(2.0 * gap / 9.81) + 1.5e-3
+    solve_ivp(motion, (0.0, span), np.zeros(6), rtol=1e-8, atol=1e-12, max_step=5e-6)
+    return peaks[0], peaks[1]
+
+
+@pytest.mark.parametrize(
+    ("gap", "published"), [(0.05e-3, (311.0, 41.4)), (0.15e-3, (524.0, 68.5)), (0.3e-3, (764.0, 98.0))]
+)
+def test_a_landing_along_the_shaft(gap: float, published: tuple[float, float]) -> None:
+    """Coupled at 50 us against one system, and that against another program of it (to its digits)."""
+    alone = landing(gap)
+    assert alone == pytest.approx(published, rel=3e-3)
+    span = math.sqrt(2.0 * gap / 9.81) + 1.5e-3
+    scene = touchdown.load("disk-caged-simplified").set(
+        {**SETTINGS, "run.duration": span, "bearing.shoulder.gap_minus": gap}
+    )
+    run = touchdown.run(scene, in_process=True)
+    found = [
+        float(np.asarray(run.data[name])[-1])
+        for name in ("bearing.shoulder.peak_force", "bearing.balls.peak_force")
+    ]
+    assert found == pytest.approx(alone, rel=1e-3)
+    assert float(run.summary["energy_residual_of_turnover"]) < 1e-5  # type: ignore[arg-type]
+
+
+def test_nothing_lost_comes_back() -> None:
+    """Without damping or friction the rotor rises again to 1e-4 of what it fell from, less what rings."""
+    settings = SETTINGS | {
+        "bearing.balls.damping_ratio": 0.0,
+        "bearing.shoulder.dissipation": 0.0,
+        "housing.damping": 0.0,
+        "bearing.friction.static": 0.0,
+        "bearing.friction.dynamic": 0.0,
+        "bearing.rolling.f1": 0.0,
+        "rotor.speed": 0.0,
+        "run.duration": "8 ms",
+    }
+    run = touchdown.run(touchdown.load("disk-caged-simplified").set(settings), in_process=True)
+    total = sum(
+        np.asarray(run.data[f"{name}.energy.{kind}"])
+        for name in ("rotor", "bearing", "housing")
+        for kind in ("kinetic", "potential")
+    )
+    assert np.ptp(total) < 2e-4 * 1.65 * 9.81 * 0.15e-3
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"bearing.balls.rows": 1}, "arrangement needs two rows with a contact angle; set balls.rows = 2"),
+        ({"bearing.arrangement": "single", "bearing.preload": 0.0}, "need an arrangement"),
+        ({"bearing.balls.play": 1e-6}, "balls.play = 1e-06 m has no meaning with a contact angle"),
+        ({"bearing.slip": 1}, "slip = 1 is for balls in the plane"),
+        ({"bearing.arrangement": "tandem"}, "preload = 100 N clamps two rows against each other"),
+    ],
+)
+def test_rows_that_do_not_go_together_are_refused(settings: dict[str, object], message: str) -> None:
+    scene = touchdown.load("disk-caged-simplified").set({**SETTINGS, **settings})
+    with pytest.raises(TouchdownError, match=message), opened(scene, in_process=True) as system:
+        system.initialise()
