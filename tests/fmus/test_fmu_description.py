@@ -43,7 +43,29 @@ MOUNTS = [  # whose carrier leans on its stop, with slides that stick or slide a
     }
     for i in range(12)
 ]  # fmt: skip
-FIXED = {"mount": MOUNTS}
+PLANE = {
+    "balls.contact_angle": 0.0,
+    "arrangement": 0,
+    "preload": 0.0,
+    "balls.rows": 1,
+    "shoulder.gap_minus": 0.0,
+    "shoulder.gap_plus": 0.0,
+}
+PAIRS = [  # of rows with a contact angle, and bearings in the plane whose balls may slip
+    {
+        "balls.contact_angle": 0.3,
+        "balls.rows": 2,
+        "balls.play": 0.0,
+        "slip": 0,
+        "arrangement": 1 + i % 3,
+        "preload": 0.0 if i % 3 == 2 else 50.0,
+        "row_distance": 0.01,
+    }
+    if i % 2
+    else PLANE | {"slip": i // 2 % 2}
+    for i in range(12)
+]
+FIXED = {"mount": MOUNTS, "simplified_caged": PAIRS}
 JOINED = {"foundation"}  # all that is in it hangs together, by rounding at least
 
 
