@@ -42,6 +42,10 @@ EVERYTHING = {  # where the defaults leave most of a model out
         "mount_A.slide[2].force": 10.0, "mount_B.branch[1].stiffness": 1e7, "mount_B.film.viscosity": 0.01,
         "mount_B.stop.gap": 1e-7, "mount_B.stop.stiffness": 1e10,
     },
+    "simplified_caged": {
+        "balls.contact_angle": 0.4, "balls.rows": 2, "balls.play": 0.0, "arrangement": 1, "preload": 100.0,
+        "row_distance": 0.01, "shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 2e-4,
+    },
 }  # fmt: skip
 WHOLE = {"modes": (2, 5, 10), "residual": (0, 1)}  # that rotors hold constants for
 
@@ -133,6 +137,9 @@ def inputs(slots: Sequence[Slot], k: int) -> dict[str, float]:
     by_tail = {
         "x": 1.6e-4 * math.sin(400 * t),
         "y": -0.2e-3 - 1.4e-4 * math.sin(300 * t),
+        "z": -3e-4 * math.sin(200 * t),
+        "vz": -0.06 * math.cos(200 * t),
+        "inv_m_z": 0.6,
         "vx": 0.064 * math.cos(400 * t),
         "vy": -0.042 * math.cos(300 * t),
         "ay_free": -9.81,
@@ -157,7 +164,7 @@ def inputs(slots: Sequence[Slot], k: int) -> dict[str, float]:
             found[name] = 1e-4 * float(generator.standard_normal())
         elif port == "housing":
             calm = {"inv_m": 0.2, "k_over_m": 5e7, "c_over_m": 500.0}
-            found[name] = calm.get(tail, 1e-6 * float(generator.standard_normal()))
+            found[name] = calm.get(tail.removesuffix("_z"), 1e-6 * float(generator.standard_normal()))
     return found
 
 
