@@ -1,8 +1,9 @@
-"""A rigid rotor that does not tilt: a disk that floats, falls, bounces and spins, and moves along its shaft.
+"""A rigid rotor that does not tilt: a disk that floats, falls, bounces and spins, also along its shaft.
 
-Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft. Its seats lie in the plane of the centre
-of mass; a rotor that tilts is a matter of the flexible model. Unbalance enters with spin acceleration
-as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre feels
+Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft. Its
+seats lie in the plane of the centre of mass; a rotor that tilts is a matter of the flexible model.
+Unbalance enters with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft
+centre feels
 
     m e (omega^2 cos(theta + phase) + alpha sin(theta + phase)),   likewise in y.
 
@@ -117,7 +118,7 @@ def _thrust_of(load, since_middle):
 
 @kernel
 def _axial_acceleration(force, p):
-    """Along the shaft (m/s2), under gravity, the thrust and the seats' `force` (N); 0 where it keeps its place."""
+    """Along the shaft (m/s2), under gravity, thrust and the seats' `force` (N); 0 where it stays."""
     return p.axial_gravity + (p.axial_load + force) / p.mass if p.axial == 1 else 0.0
 
 
@@ -249,8 +250,8 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
 MODEL = Model(
     name="rigid_rotor",
     title="Rigid rotor",
-    about="Rigid disk with spin, unbalance and drag, in the plane and along its shaft; one seat for a touchdown "
-    "bearing (A), one for a magnetic bearing (amb)",
+    about="Rigid disk with spin, unbalance and drag, in the plane and along its shaft; one seat for a "
+    "touchdown bearing (A), one for a magnetic bearing (amb)",
     parameters=Parameters,
     inputs=Inputs,
     outputs=Outputs,

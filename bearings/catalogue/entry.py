@@ -20,7 +20,7 @@ NUMBERS = {  # name: unit and meaning
     "pitch_diameter": ("m", "pitch diameter"),
     "inner_groove": ("1", "groove radius of the inner race over the ball's diameter"),
     "outer_groove": ("1", "groove radius of the outer race over the ball's diameter"),
-    "contact_angle": ("rad", "nominal contact angle; for ratings and statics, drops take balls.contact_angle"),
+    "contact_angle": ("rad", "nominal contact angle; for ratings and statics"),
     "play": ("m", "radial play between balls and races; negative: preload"),
     "ring_mass": ("kg", "mass of the inner ring"),
     "ring_inertia": ("kg.m2", "moment of inertia of the inner ring"),

@@ -1,7 +1,7 @@
 """The shoulder of a rotor on the faces of a ring: what stops a rotor along its shaft.
 
 A ring has a face on either side, a gap away from the rotor's shoulder that is to land on it. The contact
-runs around a circle of the mean radius; shaft and ring do not tilt, so that all of the circle presses alike:
+runs around a circle of the mean radius; shaft and ring do not tilt, so all of the circle presses alike:
 
     N = k d^n (1 + eps d') + (c d + v) d'        for an indentation d > 0, never below zero
 

@@ -18,9 +18,9 @@ leave open is handed over beside them (`ModeLoad`).
 At the next restart the copy takes the body's state; half the sum of the loads before and after times
 that jump is the work the copy missed, and is accounted for as `jump`.
 
-`copies` says where the copies lie in a bearing's state and memory and how they move, `along` the same along the
-shaft, `step` what is made of the load and in which order. Kernels take the bearing's whole state q and its derivative dq,
-both (m.n,) or longer, and its memory, the record m; all in SI units.
+`copies` says where the copies lie in a bearing's state and memory and how they move, `along` the same along
+the shaft, `step` what is made of the load and in which order. Kernels take the bearing's whole state q and
+its derivative dq, both (m.n,) or longer, and its memory, the record m; all in SI units.
 """
 
 from __future__ import annotations

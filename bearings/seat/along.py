@@ -37,7 +37,7 @@ def clear_along(q):
 def along_rates(s, q, dq, m, load, own, moves, speeds_up):
     """Derivatives dq of the axial copies and quadratures under `load` (`Load`), s (s) after the middle.
 
-    own: the load that moves the copies; moves, speeds_up: 1, or 0 where the order of extrapolation has it so.
+    own: the load that moves the copies; moves, speeds_up: 1, or 0 where the order of extrapolation says so.
     """
     j, h = m.u.journal, m.u.housing
     dq[JZ] = moves * q[JVZ]

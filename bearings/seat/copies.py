@@ -1,7 +1,8 @@
 """Copies of journal and housing within a bearing's macro step.
 
 The state begins with the copies and their quadratures, `INSIDE` components, those along the shaft last
-(`along`). What is inside the bearing follows, and behind it `PER_MODE` components for each elastic mode that is carried.
+(`along`). What is inside the bearing follows, and behind it `PER_MODE` components for each elastic mode
+that is carried.
 
 The journal's copy is a point mass, or with a flexible rotor the sum of one and of the rotor's elastic
 modes; the housing's is a mass on its springs. Quadratures of the load run beside them.
@@ -31,7 +32,6 @@ from .along import (
     HFVZ,
     HVZ,
     HZ,
-    INSIDE,
     JVZ,
     JZ,
     along_rates,

@@ -57,7 +57,6 @@ from .copies import (
     QY,
     clear,
     copy_rates,
-    last_load,
     take_inputs,
     take_modes,
 )

@@ -1,7 +1,7 @@
 """The housing of a touchdown bearing: a mass on springs and dampers to the ground, at rest at the start.
 
-The outer ring sits in it and moves with it, along the shaft, too. `x0`, `y0` put its rest position off the rotor's axis
-(misalignment). Frame and signs as everywhere: x horizontal, y up, SI.
+The outer ring sits in it and moves with it, along the shaft, too. `x0`, `y0` put its rest position off the
+rotor's axis (misalignment). Frame and signs as everywhere: x horizontal, y up, SI.
 """
 
 from __future__ import annotations

@@ -149,9 +149,10 @@ def _statements(a: Attachment) -> list[str]:
 def _begun(system: System, account: SeatAccount, in_turn: bool) -> list[str]:
     """Begin an account; returns the names of motion and load from which follows what it turns over.
 
-    1/kg of 0 is unknown, or prescribed. in_turn: whether bodies take each step after the bearings, under the load of that step.
+    in_turn: whether bodies take each step after the bearings, under the load of that step.
     """
     a, record = account.attachment, account.record
+    # 1/kg; 0: unknown, or prescribed
     gain, gain_z = (system.value(n) if n in system else 0.0 for n in map(a.motion, ("inv_m", "inv_m_z")))
     moves = all(a.motion(v) in system.position for v in VELOCITY) and gain > 0.0
     record["every"] = math.lcm(system.every[a.bearing], system.every[a.body])

@@ -424,7 +424,7 @@ class Witness:
         component.pull()
 
     def _moves(self, account: SeatAccount, axis: str) -> bool:
-        """Whether it is told of a motion along an axis, and gives a force: across the shaft it always is."""
+        """Whether it is told of a motion along an axis, and gives a force; across the shaft it is."""
         port = account.attachment.bearing_end
         gives = port.own(f"f{axis}") in self._component.variables
         return axis in POSITION or (gives and self._place(port.own(axis)) is not None)
