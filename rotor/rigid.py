@@ -2,8 +2,8 @@
 
 Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft. Its
 seats lie in the plane of the centre of mass; a rotor that tilts is a matter of the flexible model.
-Unbalance enters with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft
-centre feels
+Unbalance enters with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and
+the shaft centre feels
 
     m e (omega^2 cos(theta + phase) + alpha sin(theta + phase)),   likewise in y.
 

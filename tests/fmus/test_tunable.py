@@ -32,7 +32,7 @@ def test_they_are_known():
         f"{axis}.{gain}" for axis in axes for gain in gains
     }
     assert {name for fmu, name in tunable if fmu != "amb_controller"} <= {
-        *("stiffness", "damping", "force_limit", "shutdown_time", "drag", "viscous_drag")
+        *("stiffness", "damping", "force_limit", "shutdown_time", "drag", "viscous_drag", "axial_load")
     }
 
 
