@@ -70,6 +70,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
         *("touchdown.master.studies.machine", "touchdown.master.studies.loop"),
         *("touchdown.master.report.chapters.machine", "touchdown.master.report.drawings"),
     },
+    "touchdown.bearings.angular": {"touchdown.master.studies.machine"},
     "touchdown.bearings.magnetic": {"touchdown.master.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,

@@ -20,8 +20,6 @@ from ....bearings.angular.statics import (
 )
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
-from ....bearings.contact.materials import elastic_of
-from ....modelkit.variables import as_record
 from ...common.errors import TouchdownError, one_of, with_remedy
 
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
@@ -141,7 +139,7 @@ def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mo
     return Mounted(
         bearing.balls,
         bearing.contact_angle,
-        elastic_of(as_record(bearing.ring)),
+        bearing.rated().rings,
         arrangement=kind,
         distance=bearing.width / rows,
         preload=preload,
