@@ -12,7 +12,15 @@ from scipy.optimize import minimize
 from ...modelkit.variables import as_record
 from ..contact.materials import elastic_of
 from ..rolling.ball_set import RaceStiffness, set_stiffness
-from ..rolling.bending import AUTOMATIC, HARMONICS_PER_BALL, SHOULDER_HEIGHT, Groove, compliance, section_of
+from ..rolling.bending import (
+    AUTOMATIC,
+    HARMONICS_PER_BALL,
+    MAX_HARMONICS,
+    SHOULDER_HEIGHT,
+    Groove,
+    compliance,
+    section_of,
+)
 from .entry import Bearing
 
 # Of the load on the most loaded ball, from which on a ring's bending is worth its time
@@ -182,7 +190,7 @@ def outer_groove(bearing: Bearing) -> Groove:
 
 def harmonics_for(count: int) -> int:
     """The highest harmonic that `count` balls in a row ask for."""
-    return math.ceil(HARMONICS_PER_BALL * count)
+    return min(math.ceil(HARMONICS_PER_BALL * count), MAX_HARMONICS)
 
 
 def gain_by_bending(bearing: Bearing, load: float) -> float:

@@ -135,7 +135,7 @@ def test_balls_bear_the_load() -> None:
 
 
 def test_harmonics_in_use_suffice_across_the_catalogue() -> None:
-    """Within 4.2 % of all of them, over 95 sizes, two loads, a ball under the load or two beside it."""
+    """Within 4 % of all (found 3.6), over 95 sizes, two loads, a ball under the load or two beside it."""
     errors = []
     for series in ("618", "619", "60", "62", "63"):
         for code in range(2, 21):
@@ -146,7 +146,7 @@ def test_harmonics_in_use_suffice_across_the_catalogue() -> None:
                         ball_loads(one, load, n, offset).max() for n in (harmonics_for(one.balls.count), 40)
                     )
                     errors.append(abs(some / full - 1.0))
-    assert max(errors) < 0.042
+    assert max(errors) < 0.04
     assert np.median(errors) < 0.012
 
 
