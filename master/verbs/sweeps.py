@@ -237,7 +237,7 @@ MERGE = Verb(
 
 SURVIVE_EXAMPLES = (
     "touchdown survive runs/sweep-rotor1-9000",
-    'touchdown survive runs/sweep-rotor1-9000 --limit "peak_ball_force_N=1695 N" --drops 1:20',
+    'touchdown survive runs/sweep-rotor1-9000 --limit "ball_force=1695 N" --drops 1:20',
 )
 
 
@@ -246,8 +246,9 @@ def _declare_survive(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("folder", type=Path, help="of a sweep, finished or under way")
     verb.add_argument(
         "--limit",
-        metavar="COLUMN=VALUE",
-        help="of sweep.csv, that a drop must keep to (default: lowest_static_safety=1, a dent)",
+        metavar="NAME=VALUE",
+        help="that a drop must keep to: a column of sweep.csv, or a requirement as in scenes, such as "
+        '"ball_force=1695 N" (default: lowest_static_safety=1, a dent)',
     )
     verb.add_argument(
         "--drops", default="1,2,5,10,20", help='how many, such as "1:20" (default: 1,2,5,10,20)'

@@ -7,7 +7,8 @@ exp(i W t),
     z = A(W) F        v_j = -a_j(W) F_j        z_j - v_j = (c_j + d_j) exp(i b_j)
 
 where A are receptances of the rotor, free, with its gyroscopic moments, a_j those of carrier and mount, c_j
-the radial clearance and d_j how deep the journal is pressed in. A bearing answers with
+the radial clearance and d_j how deep the journal is pressed in. Carriers on one foundation move by each
+other's forces, too. A bearing answers with
 
     F_j = (-N(d_j) + i s T(d_j)) exp(i b_j)
 
@@ -39,6 +40,11 @@ DRIVES = (0.5, 0.1, 0.02, 2.0)  # tried where a first circle is looked for
 
 Receptance = Callable[[float], np.ndarray]  # of W (rad/s): (S, S), complex, m/N
 Carrier = Callable[[float, float], complex]  # of W (rad/s) and the force on it (N): m/N
+# Of carriers on one foundation: of W (rad/s) and the forces on all (S,), complex, N: (S, S), complex, m/N
+Ground = Callable[[float, np.ndarray], np.ndarray]
+Stiffness = Callable[
+    [float, float], np.ndarray
+]  # of W (rad/s, above 0) and stroke (m): (2, 2), complex, N/m
 Bearing = Callable[[float, float], complex]  # of depth (m) and W: -N + i T, N
 
 
@@ -86,8 +92,10 @@ def receptance(basis: Basis, damping_ratio: float, nodes: Sequence[int], spin: f
 class ContactWhirl:
     """The circles in which a rotor may whirl round its seats."""
 
-    def __init__(self, rotor: Receptance, seats: Sequence[Seat]) -> None:
+    def __init__(self, rotor: Receptance, seats: Sequence[Seat], ground: Ground | None = None) -> None:
+        """ground: of carriers on one foundation, whose own receptances are then 0."""
         self._rotor, self._seats, self._count = rotor, tuple(seats), len(seats)
+        self._ground = ground
         self._clearance = np.array([seat.clearance for seat in seats])
 
     def at(self, omega: float, like: Circle | None = None) -> Circle | None:
@@ -123,6 +131,8 @@ class ContactWhirl:
             force = (np.real(given) + 1j * drive * np.imag(given)) * turn
             on = np.abs(force)
             carried = np.array([s.carrier(omega, f) for s, f in zip(self._seats, on, strict=True)]) * force
+            if self._ground is not None:
+                carried = carried + self._ground(omega, force) @ force
             gap = (rotor @ force + carried - (self._clearance + depth) * turn) / self._clearance
             made = Circle(omega, depth, angle, -np.real(given), np.imag(given), np.abs(carried), drive)
             return np.concatenate([np.real(gap), np.imag(gap)]), made
@@ -188,22 +198,66 @@ def steady(mass: float, stiffness: float, damping: float) -> Carrier:
     return lambda omega, force: 1.0 / (stiffness - mass * omega * omega + 1j * omega * damping)
 
 
-def circling(stiffness: Callable[[float, float], np.ndarray], mass: float) -> Carrier:
+def _around(stiffness: Stiffness, omega: float, stroke: float) -> complex:
+    """Force over way (N/m) on a circle at `omega` (rad/s): the mean over it where directions differ."""
+    there = stiffness(abs(omega), stroke)
+    there = there if omega > 0.0 else np.conj(there)
+    return 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
+
+
+def circling(stiffness: Stiffness, mass: float) -> Carrier:
     """A mass (kg) on what resists with a dynamic stiffness that hangs on its stroke.
 
-    stiffness: (omega (rad/s, above 0), stroke (m)) to (2, 2), complex, N/m, force's direction by motion's.
     What is not alike in all directions is taken in the mean over the circle.
     """
 
     def receptance_of(omega: float, force: float) -> complex:
         stroke, found = 0.0, 0.0 + 0.0j
         for _ in range(STROKES):
-            there = stiffness(abs(omega), stroke)
-            there = there if omega > 0.0 else np.conj(there)
-            around = 0.5 * complex(there[0, 0] + there[1, 1] + 1j * (there[1, 0] - there[0, 1]))
-            found = 1.0 / (around - mass * omega * omega)
+            found = 1.0 / (_around(stiffness, omega, stroke) - mass * omega * omega)
             after = force * abs(found)
             if abs(after - stroke) <= STROKE_TOLERANCE * after:
+                break
+            stroke = 0.5 * (stroke + after)
+        return found
+
+    return receptance_of
+
+
+@dataclass(frozen=True)
+class ElasticModes:
+    """Of a foundation without its carriers."""
+
+    omega: np.ndarray  # (M,), rad/s
+    damping_ratio: np.ndarray  # (M,)
+    shape: np.ndarray  # (M, S, 2), mass-normalised, x and y at each seat
+
+    def around(self, omega: float) -> np.ndarray:
+        """Way over force between seats (S, S) on a circle at `omega` (rad/s), m/N, in the mean over it."""
+        swing = self.omega**2 - omega * omega + 2j * self.damping_ratio * self.omega * omega
+        x, y = self.shape[:, :, 0], self.shape[:, :, 1]
+        by = [np.einsum("mj,mk,m->jk", a, b, 1.0 / swing) for a, b in ((x, x), (y, y), (y, x), (x, y))]
+        return 0.5 * (by[0] + by[1] + 1j * (by[2] - by[3]))
+
+
+def on_modes(modes: ElasticModes, mounts: Sequence[Stiffness], masses: Sequence[float]) -> Ground:
+    """Carriers (kg) on mounts, one at each seat of a foundation.
+
+    With K the mounts' stiffness at their strokes and H what the modes give way by, a mount presses with
+    f = K (v - u), u = H f, so that ((1 + K H)^-1 K - W^2 m) v = F.
+    """
+    mass = np.array(masses)
+
+    def receptance_of(omega: float, force: np.ndarray) -> np.ndarray:
+        stroke, found = np.zeros(len(mass)), np.zeros((len(mass), len(mass)), complex)
+        give, inertia = modes.around(omega), mass * omega * omega
+        for _ in range(STROKES):
+            k = np.array([_around(one, omega, s) for one, s in zip(mounts, stroke, strict=True)])
+            through = np.linalg.solve(np.eye(len(mass)) + k[:, None] * give, np.diag(k))
+            found = np.linalg.inv(through - np.diag(inertia))
+            way = found @ force
+            after = np.abs(way - give @ (force + inertia * way))
+            if np.all(np.abs(after - stroke) <= STROKE_TOLERANCE * after):
                 break
             stroke = 0.5 * (stroke + after)
         return found

@@ -36,7 +36,7 @@ SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a wh
 
 def evidence(summary: Mapping[str, object]) -> list[str]:
     """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
-    if not _touched(summary):
+    if not touched(summary):
         return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
 
@@ -47,7 +47,7 @@ def first_contact(summary: Mapping[str, object]) -> float | None:
     return min((time for time in times if isinstance(time, float)), default=None)
 
 
-def _touched(summary: Mapping[str, object]) -> bool:
+def touched(summary: Mapping[str, object]) -> bool:
     """Whether any bearing was, as far as bearings tell."""
     tells = any(key.startswith(CONTACT) for key in summary)
     return not tells or first_contact(summary) is not None
@@ -56,7 +56,7 @@ def _touched(summary: Mapping[str, object]) -> bool:
 def hint(scene: str, system: Readable, summary: Mapping[str, object]) -> Iterator[str]:
     """That a run with an unbalance is one phase of it, where there is a verdict that hangs on it."""
     verdicts = any(key.endswith(MARCHED) and value is not None for key, value in summary.items())
-    if verdicts and _touched(summary) and unbalanced(system):
+    if verdicts and touched(summary) and unbalanced(system):
         yield f"one phase of the unbalance: `touchdown verdict {scene}` tells how the verdict hangs on it"
 
 

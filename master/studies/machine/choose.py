@@ -26,12 +26,13 @@ from ...common.errors import TouchdownError, one_of
 from ...common.files import replacing
 from ...coupling.simulation import opened
 from ...results.requirements import MARGIN
+from ...results.whirl.evidence import touched
 from ...results.whirl.verdict import Share, clopper_pearson
 from ...scene.requirements import KINDS
 from ...scene.scene import Scene
 from ..sweep.definition import Design
 from ..sweep.members import Member
-from ..sweep.report import failures, largest, warned
+from ..sweep.report import failures, warned
 from .bearings import find_bearing
 from .design import GRAVITY, rounded
 
@@ -275,7 +276,7 @@ def remarks(found: Sequence[Ranked]) -> Iterator[str]:
     yield from assumptions([one.candidate for one in found])
     members = sorted((m for one in found for m in one.members), key=lambda m: m.number)
     ended = [m for m in members if not m.failed]
-    if untouched := sum(not largest(m.summary, "peak_contact_force_N") for m in ended):
+    if untouched := sum(not touched(m.summary) for m in ended):
         part = f"{untouched} of {len(ended)} drops"
         yield f"{part} ended before the rotor touched a bearing; give a longer --duration"
     for what, said in (("failed:", failures(members)), ("warnings:", warned(members))):

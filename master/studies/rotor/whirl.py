@@ -22,14 +22,18 @@ from ....rotor.modal.contact_whirl import (
     Carrier,
     Circle,
     ContactWhirl,
+    ElasticModes,
+    Ground,
     Seat,
     circling,
+    on_modes,
     receptance,
     rigid,
     steady,
 )
 from ...common.errors import TouchdownError
 from ...common.files import replacing
+from ...components.component import POSITION
 from ...coupling.connections import Attachment
 from ...coupling.simulation import opened
 from ...coupling.system import System
@@ -116,6 +120,7 @@ class Machine:
     seen: Seen
     spin: float  # rad/s, of the rotor; counter-clockwise
     journals: tuple[Journal, ...]
+    ground: Ground | None = None  # where bearings share a foundation
 
     def foretold(self, direction: float = BACKWARD) -> Foretold:
         """The whirl against the spin, or with it."""
@@ -126,7 +131,7 @@ class Machine:
         found = Foretold(self, direction, (), None)
         if found.braked:
             return found
-        whirl = ContactWhirl(rotor, [j.seat(sign) for j in self.journals])
+        whirl = ContactWhirl(rotor, [j.seat(sign) for j in self.journals], self.ground)
         way, settled = whirl.settled(sign * HERTZ * SLOWEST, sign * HERTZ * FASTEST)
         return replace(found, way=tuple(way), settled=settled)
 
@@ -239,15 +244,55 @@ def _journal(
 
 
 def _carrier(system: System, place: str) -> Carrier:
-    """What stands at a place, COMPONENT.PORT, of an initialised system."""
+    """What stands at a place, COMPONENT.PORT, of an initialised system; of a foundation see `_ground`."""
     foundation = foundation_of(system, place)
-    if foundation is None:
-        return rigid
     name = place.partition(".")[0]
+    if foundation is None or _is_shared(system, name):
+        return rigid
     if f"{name}.{SLIDING}" not in system:
         return steady(foundation.mass, foundation.stiffness, foundation.damping)
     elements = elements_of(lambda inner: system.value(f"{name}.{inner}"))
     return circling(lambda omega, stroke: dynamic_stiffness(elements, omega, stroke), foundation.mass)
+
+
+def _is_shared(system: System, name: str) -> bool:
+    """Whether a component is a foundation with modes, or may have them."""
+    return f"{name}.modes" in system and f"{name}.seats" in system
+
+
+def _ground(system: System, places: Sequence[str]) -> Ground | None:
+    """Foundations under some of these places (COMPONENT.PORT, or "": none) of a system; None without."""
+    names = dict.fromkeys(place.partition(".")[0] for place in places if place)
+    shared = [_on_foundation(system, name, places) for name in names if _is_shared(system, name)]
+    if not shared:
+        return None
+
+    def receptance_of(omega: float, force: np.ndarray) -> np.ndarray:
+        found = np.zeros((len(places), len(places)), complex)
+        for at, ground in shared:
+            found[np.ix_(at, at)] = ground(omega, force[at])
+        return found
+
+    return receptance_of
+
+
+def _on_foundation(system: System, name: str, places: Sequence[str]) -> tuple[list[int], Ground]:
+    """Which of the places are on a foundation, and what it is there."""
+    at = [k for k, place in enumerate(places) if place.partition(".")[0] == name]
+    ports = [places[k].partition(".")[2] for k in at]
+    numbers = range(1, 1 + int(system.value(f"{name}.modes")))
+
+    def of_modes(what: str) -> np.ndarray:
+        return np.array([system.value(f"{name}.mode[{i}].{what}") for i in numbers])
+
+    shape = np.array([[of_modes(f"{port}.{axis}") for axis in POSITION] for port in ports])
+    shape = np.moveaxis(shape, 2, 0) / np.sqrt(of_modes("mass"))[:, None, None]
+    modes = ElasticModes(of_modes("omega"), of_modes("damping_ratio"), shape)
+    elements = [
+        elements_of(lambda inner, p=port: system.value(f"{name}.mount_{p}.{inner}")) for port in ports
+    ]
+    mounts = [lambda omega, stroke, e=one: dynamic_stiffness(e, omega, stroke) for one in elements]
+    return at, on_modes(modes, mounts, [1.0 / system.value(f"{name}.{port}.inv_m") for port in ports])
 
 
 _Kept = dict[tuple[object, ...], dict[float, Measured]]
@@ -299,11 +344,12 @@ def with_mounts(known: Machine, scene: Scene) -> Machine:
     with opened(alone, in_process=True, listening=False) as system:
         system.initialise()
         carriers = {place: _carrier(system, place) for place in known.seen.mounts.values()}
+        ground = _ground(system, [known.seen.mounts.get(j.name, "") for j in known.journals])
     journals = tuple(
         replace(j, carrier=carriers[place]) if (place := known.seen.mounts.get(j.name)) else j
         for j in known.journals
     )
-    return replace(known, journals=journals)
+    return replace(known, journals=journals, ground=ground)
 
 
 def over(
@@ -335,7 +381,7 @@ def _components(scene: Scene, setting: str) -> set[str]:
 
 # -- for people ------------------------------------------------------------------------------------------
 
-HEAD = "bearing", "force", "most loaded ball", "dents at", "stroke of its mount", "friction needed"
+HEAD = "bearing", "force", "most loaded ball", "dents at", "stroke of its carrier", "friction needed"
 ASSUMPTIONS = (
     "a steady circle, as its receptances have it, without unbalance; impacts on the way there press harder",
     "whether a drop gets into it hangs on friction, phase and alignment: `touchdown verdict` tells",

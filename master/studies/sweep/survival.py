@@ -1,13 +1,14 @@
 """How many drops a machine survives, from the drops of a sweep; nothing is run again.
 
 A drop ends it with the probability p that one goes beyond a limit, and takes shares d of what it has, such
-as of its bearings' rating lives. Drops leave it as it was in all else. With p and d drawn from the sweep,
+as of its bearings' rating lives. Drops leave it as it was in all else. With p drawn from the sweep, and d
+from those of its drops that end nothing,
 
     P(N) = (1 - p)^N P(d_1 + ... + d_N < 1)
 
 p is known to Clopper and Pearson's interval; the sum's distribution is convolved on a grid. Drops that
-failed count as beyond the limit. Drops of a sweep stand for those of the machine as far as its settings are
-drawn as they occur.
+failed count as beyond the limit, those that ended in the air as within it. Drops of a sweep stand for those
+of the machine as far as its settings are drawn as they occur.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ from scipy.stats import spearmanr
 
 from ...common.errors import Ended, TouchdownError, one_of
 from ...common.units import to_si
-from ...results.whirl.evidence import CONTACT
-from ...results.whirl.verdict import CONFIDENCE, Share, clopper_pearson
+from ...results.whirl.evidence import CONTACT, touched
+from ...results.whirl.verdict import CONFIDENCE, TURNS, Share, clopper_pearson
+from ...scene.requirements import KINDS
 from .definition import Definition
 from .members import Member
 from .report import keys
@@ -38,22 +40,28 @@ DRAWN = ("random", "Latin hypercube", "Sobol")  # samples that settings are draw
 
 @dataclass(frozen=True)
 class Limit:
-    """What a drop must not go beyond: all figures that begin with `figure`."""
+    """What a drop must not go beyond: all figures that begin with `figure` and end with `ending`."""
 
     figure: str
     value: float
     at_least: bool = False
+    ending: str = ""
 
     def words(self) -> str:
         """For people."""
-        return f"{self.figure} {'below' if self.at_least else 'above'} {self.value:g}"
+        return f"{self.name} {'below' if self.at_least else 'above'} {self.value:g}"
+
+    @property
+    def name(self) -> str:
+        """Of its figures, for people."""
+        return f"{self.figure}*{self.ending}" if self.ending else self.figure
 
     def worst(self, member: Member) -> float:
         """The worst of the figures of a drop; nan where it has none, or a touched bearing does not tell."""
         told = {
-            key.removeprefix(self.figure): value
+            key.removeprefix(self.figure).removesuffix(self.ending): value
             for key, value in member.summary.items()
-            if key.startswith(self.figure)
+            if key.startswith(self.figure) and key.endswith(self.ending)
         }
         found = [float(v) for v in told.values() if isinstance(v, int | float)]
         silent = [tail for tail, value in told.items() if value is None]
@@ -62,10 +70,13 @@ class Limit:
         return min(found) if self.at_least else max(found)
 
     def broken(self, member: Member) -> bool:
-        """Whether a drop goes beyond it, or failed, or does not tell."""
+        """Whether a drop goes beyond it, or failed, or does not tell though it touched a bearing."""
+        if member.failed:
+            return True
         worst = self.worst(member)
-        inside = worst >= self.value if self.at_least else worst <= self.value
-        return bool(member.failed) or not inside
+        if math.isnan(worst):
+            return touched(member.summary)
+        return worst < self.value if self.at_least else worst > self.value
 
 
 DEFAULT = Limit(SAFETY, 1.0, at_least=True)
@@ -78,7 +89,8 @@ class Survival:
     limit: Limit
     broken: int
     count: int
-    shares: Mapping[str, np.ndarray]  # by bearing: of its life that each drop takes, (drops,)
+    shares: Mapping[str, np.ndarray]  # by bearing: of its life, what each drop within the limit takes
+    untouched: int = 0  # of the count, drops that ended in the air
 
     @property
     def chance(self) -> Share:
@@ -133,16 +145,18 @@ def survival(members: Sequence[Member], limit: Limit = DEFAULT) -> Survival:
             key for key in keys(members) if any(isinstance(m.summary.get(key), float) for m in members)
         ]
         raise TouchdownError(
-            f"no drop of the sweep has a figure {limit.figure}; {one_of(limit.figure, known)}"
+            f"no drop of the sweep has a figure {limit.name}; {one_of(limit.figure, known)}"
         )
-    names = [key for key in keys(run) if key.startswith(FATIGUE)]
+    within = [m for m in run if not limit.broken(m)]
+    names = [key for key in keys(within) if key.startswith(FATIGUE)]
     shares = {
         name.removeprefix(FATIGUE).strip("_") or "bearing": np.array(
-            [_share(m.summary.get(name)) for m in run]
+            [_share(m.summary.get(name)) for m in within]
         )
         for name in names
     }
-    return Survival(limit, sum(limit.broken(m) for m in run), len(run), shares)
+    in_the_air = sum(not m.failed and not touched(m.summary) for m in run)
+    return Survival(limit, len(run) - len(within), len(run), shares, in_the_air)
 
 
 def _share(drops: object) -> float:
@@ -202,14 +216,20 @@ def lines(found: Survival, drops: Sequence[int], by: Sequence[Driver]) -> Iterat
     yield f"{found.broken} of {found.count} drops: {found.limit.words()} ({_percent(p.value)}; {interval})"
     if found.broken == 0:
         yield f"  one in {found.count / 3.0:.0f} cannot be excluded (3/n); more drops would say more"
+    if found.untouched:
+        yield (
+            f"  {found.untouched} of them ended before the rotor touched a bearing, and count as survived; "
+            "give a longer --duration unless it was caught"
+        )
     yield f"{'drops':>6}  survived with probability"
     for n in drops:
         one = found.after(n)
         yield f"{n:>6}  {_percent(one.value)} ({_percent(one.low)} to {_percent(one.high)})"
     for name, shares in found.shares.items():
-        yield f"life that a drop takes, {name}: {shares.mean():.2g} in the mean, {shares.max():.2g} at most"
+        said = f"{shares.mean():.2g} in the mean, {shares.max():.2g} at most"
+        yield f"life that a drop within the limit takes, {name}: {said}"
     if by:
-        yield f"what {found.limit.figure} follows, by Spearman's rank correlation:"
+        yield f"what {found.limit.name} follows, by Spearman's rank correlation:"
         for one in by:
             index = "" if one.index is None else f", first-order index {one.index:.2f}"
             yield f"  {one.setting}: {one.rank:+.2f}{index}"
@@ -220,20 +240,30 @@ def _percent(value: float) -> str:
 
 
 def read_limit(text: str, found: Sequence[Member]) -> Limit:
-    """A limit as COLUMN=VALUE, with a unit where the column's name ends in one; of a column of the sweep.
+    """A limit as NAME=VALUE, of a requirement as in scenes or of a column of the sweep.
 
-    A safety and a gap must not fall below it, all else not exceed it. Raises TouchdownError.
+    A column's value may have a unit where its name ends in one. A safety and a gap must not fall below it,
+    all else not exceed it. Raises TouchdownError.
     """
     name, equals, value = (part.strip() for part in text.partition("="))
+    if equals and name in KINDS:
+        return _required(name, value)
     known = [key for key in keys(found) if any(isinstance(m.summary.get(key), float) for m in found)]
     if not equals or not any(key.startswith(name) for key in known) or not name:
-        raise TouchdownError(f"--limit {text}: write COLUMN=VALUE; {one_of(name, known)}")
+        raise TouchdownError(f"--limit {text}: write NAME=VALUE; {one_of(name, [*KINDS, *known])}")
     unit = next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")
     scale = to_si(f"1 {unit}", SI[unit], text) if unit != "1" else 1.0
     limit = (
         to_si(value, SI.get(unit, "1"), f"--limit {name}") / scale if " " in value else _number(value, text)
     )
     return Limit(name, limit, at_least=name.startswith((SAFETY, FATIGUE, "least_gap", "gap_")))
+
+
+def _required(name: str, value: str) -> Limit:
+    """That of a requirement in `KINDS`."""
+    kind = KINDS[name]
+    limit = to_si(value, kind.unit, f"--limit {name}") / kind.factor
+    return Limit(kind.figure, limit, kind.at_least, TURNS if name == "whirl_turns" else "")
 
 
 UNITS = {"_N": "N", "_um": "um", "_GPa": "GPa", "_J": "J", "_s": "s", "_MPa": "MPa", "_Hz": "Hz"}

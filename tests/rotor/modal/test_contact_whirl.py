@@ -10,8 +10,10 @@ import pytest
 from touchdown.rotor.file import find
 from touchdown.rotor.modal.contact_whirl import (
     ContactWhirl,
+    ElasticModes,
     Seat,
     circling,
+    on_modes,
     receptance,
     rigid,
     steady,
@@ -112,3 +114,26 @@ def test_a_mount_that_slides_and_one_that_couples_its_directions() -> None:
     forward, backward = (circling(coupled, 0.0)(sense * omega, 1.0) for sense in (1.0, -1.0))
     assert forward == pytest.approx(1.0 / complex(k, -2e5))
     assert backward == pytest.approx(forward)
+
+
+def test_carriers_that_share_a_mode_are_two_masses_in_a_row() -> None:
+    """Pushed alike, they are 2 m on 2 k on a mode; each is a mount by itself where no mode gives way."""
+    m, k, c, big, own, ratio = 0.5, 1e7, 500.0, 15.0, 900.0, 0.02
+    shapes = np.array([[[1.0, 0.0]] * 2, [[0.0, 1.0]] * 2]) / math.sqrt(big)  # along x, along y
+    half = ElasticModes(np.array([own]), np.array([ratio]), shapes[:1])
+    both = ElasticModes(np.array([own, own]), np.array([ratio, ratio]), shapes)
+
+    def mount(omega: float, stroke: float) -> np.ndarray:
+        return (k + 1j * omega * c) * np.eye(2)
+
+    for omega in (700.0, -1300.0):
+        dynamic = k + 1j * omega * c
+        found = on_modes(both, [mount, mount], [m, m])(omega, np.array([1.0, 1.0j]))
+        below = big * (own**2 - omega**2 + 2j * ratio * own * omega)
+        u = 2.0 / (below - (below + 2.0 * dynamic) * m * omega**2 / dynamic)  # 2 (F + m W^2 v) = below u
+        v = u * (below + 2.0 * dynamic) / (2.0 * dynamic)
+        assert found @ [1.0, 1.0] == pytest.approx([v, v], rel=1e-9)
+        assert half.around(omega) == pytest.approx(0.5 * both.around(omega), rel=1e-12)  # in the mean
+        none = ElasticModes(np.zeros(0), np.zeros(0), np.zeros((0, 2, 2)))
+        alone = on_modes(none, [mount, mount], [m, m])(omega, np.ones(2))
+        assert alone == pytest.approx(circling(mount, m)(omega, 1.0) * np.eye(2), rel=1e-12)

@@ -99,8 +99,8 @@ def test_a_ranking_is_read_as_it_was_written(tmp_path: Path) -> None:
 
 def test_what_is_said_beside_the_table() -> None:
     """Drops that ended in the air, failures and warnings."""
-    touched = Member(1, {}, {"peak_contact_force_N": 9.0}, warnings=("stays",))
-    members = [touched, Member(2, {}, {"peak_contact_force_N": 0.0}), Member(3, {}, {}, "stopped")]
+    touched = Member(1, {}, {"first_contact_time_s": 0.01}, warnings=("stays",))
+    members = [touched, Member(2, {}, {"first_contact_time_s": None}), Member(3, {}, {}, "stopped")]
     said = list(remarks(ranked([Candidate("a", "", {})], members)))
     assert said[0].startswith("1 of 2 drops ended before the rotor touched a bearing")
     assert said[1:] == ["failed:", "  1 x stopped (member 3)", "warnings:", "  1 x stays (member 1)"]

@@ -86,6 +86,26 @@ def test_a_bearing_that_was_touched_and_does_not_tell_is_not_survived() -> None:
     assert not DEFAULT.broken(untouched)
 
 
+def test_drops_that_end_in_the_air_are_survived_and_said() -> None:
+    """Whether they tell nothing, or what balls bear by themselves."""
+    in_the_air: dict[str, object] = {"first_contact_time_s_A": None, "first_contact_time_s_B": None}
+    told = {f"lowest_static_safety_{end}": None for end in "AB"}
+    members = [member(1, 3.0), Member(2, {}, in_the_air), Member(3, {}, {**in_the_air, **told})]
+    found = survival(members)
+    assert (found.broken, found.count, found.untouched) == (0, 3, 2)
+    assert any(
+        "2 of them ended before the rotor touched a bearing" in line for line in lines(found, [1], [])
+    )
+
+
+def test_what_a_drop_uses_up_counts_only_where_it_ends_nothing() -> None:
+    """Every second drop dents and takes a whole life; the others take none: one in two, one in four."""
+    members = [member(k, *((0.5, "", 1.0) if k % 2 else (5.0, "", 1e9))) for k in range(40)]
+    found = survival(members)
+    assert found.after(1).value == pytest.approx(0.5)
+    assert found.after(2).value == pytest.approx(0.25)
+
+
 def test_of_two_bearings_neither_may_be_used_up() -> None:
     """Each drop takes 0.6 of a life of either: of four drops, one of them takes two or more, always."""
     shares = {"A": np.array([0.6, 0.0]), "B": np.array([0.0, 0.6])}
@@ -106,9 +126,18 @@ def test_limits_are_read_with_their_units() -> None:
     told = [Member(1, {}, {"peak_ball_force_N_A": 900.0, "least_gap_um": 20.0})]
     assert read_limit("peak_ball_force_N=1.695 kN", told) == Limit("peak_ball_force_N", 1695.0)
     assert read_limit("least_gap_um=0.01 mm", told) == Limit("least_gap_um", pytest.approx(10.0), True)
+    assert read_limit("ball_pressure=4.2 GPa", told) == Limit(
+        "largest_ball_pressure_GPa", pytest.approx(4.2)
+    )
+    assert read_limit("least_gap=10 um", told) == Limit("least_gap_um", pytest.approx(10.0), True)
+    turns = read_limit("whirl_turns=3", told)
+    summary = {"whirl_A_revolutions": 4.0, "whirl_A_radius_um": 1.0, "whirl_B_revolutions": 2.0}
+    assert turns.worst(Member(1, {}, summary)) == 4.0
+    assert turns.words() == "whirl_*_revolutions above 3"
     for wrong, message in (
         ("peak=x", "'x' is no number"),
-        ("gone=1", "write COLUMN=VALUE"),
+        ("gone=1", "write NAME=VALUE"),
+        ("heat=x", "--limit heat"),
         ("peak", "write"),
     ):
         with pytest.raises(TouchdownError, match=message):
