@@ -26,11 +26,12 @@ from matplotlib.patches import Annulus, Circle
 from ..common.errors import TouchdownError, one_of
 from ..common.files import replacing, writing_to
 from ..coupling.connections import Attachment
+from ..results.capture import COMMAND, captures
 from ..results.ending import housing_port
 from ..results.figures.style import BLUE, ORANGE, PURPLE
 from ..results.recording import NotRecordedError
 from .blocks import Absent
-from .subject import Subject
+from .subject import Subject, number
 
 FRAMES_PER_S = 25  # frames a second
 LEAD_TIME = 0.02  # s before the first contact with which a film begins at most
@@ -77,11 +78,16 @@ class Motion:
     force: np.ndarray  # (frames, 2): of the bearing on the journal (N), the largest about a frame
     speeds: np.ndarray  # (frames, 2): rotor, inner ring (rad/s)
     slower: np.ndarray  # how many times slower than it was
+    stages: tuple[tuple[float, str], ...] = ()  # from when on (s) which words stand with it, in order
 
     @property
     def largest_force(self) -> float:
         """Of the film (N)."""
         return float(np.max(np.hypot(*self.force.T), initial=0.0))
+
+    def stage(self, frame: int) -> str:
+        """The words that stand with a frame; "" before the first."""
+        return next((words for since, words in reversed(self.stages) if since <= self.time[frame]), "")
 
     def for_page(self) -> str:
         """JSON for the page's script; lengths over the journal's radius, forces over the largest."""
@@ -104,6 +110,7 @@ class Motion:
             "balls": _rounded(self.balls[:, :1]),
             "count": self.balls.shape[1],
             "force": _rounded(self.force / (self.largest_force or 1.0)),
+            "stages": [[round(1e3 * since, 3), words] for since, words in self.stages],
             "rpm": np.round(self.speeds * 30.0 / math.pi).astype(int).tolist(),
         }
         return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
@@ -147,7 +154,18 @@ def motion(subject: Subject, a: Attachment) -> Motion:
         _forces(subject, a, time),
         _at(time, rows, spin, turning),
         slower,
+        _stages(subject, a),
     )
+
+
+def _stages(subject: Subject, a: Attachment) -> tuple[tuple[float, str], ...]:
+    """Since when the rotor is to be levitated again, and since when it is captured at the seat."""
+    found = captures(subject.summary).get(subject.name(a))
+    command = number(subject.summary.get(COMMAND))
+    if found is None or command is None:
+        return ()
+    asked = (command, "to be levitated")
+    return (asked,) if found.after is None else (asked, (command + found.after, "captured"))
 
 
 def frames(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
@@ -390,7 +408,8 @@ class _Panel:
         self._arrow.set_UVC(*(FORCE_ARROW * size / (m.largest_force or 1.0) * direction))
         rpm = m.speeds[frame] * 30.0 / math.pi
         ring = f", ring {rpm[1]:.0f} rpm" if self._size.ball else ""
-        self._told.set_text(f"rotor {rpm[0]:.0f} rpm{ring}, force {size:.0f} N")
+        stage = f", {m.stage(frame)}" if m.stage(frame) else ""
+        self._told.set_text(f"rotor {rpm[0]:.0f} rpm{ring}, force {size:.0f} N{stage}")
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from .chapters.basis import accuracy, model, repeat, settings
 from .chapters.bearings import balls, life, run_up
 from .chapters.contact import forces, spectra, stresses
 from .chapters.drop import drop, test_figures
+from .chapters.levitation import levitation
 from .chapters.machine import machine
 from .chapters.mounts import mounts
 from .chapters.summary import summary
@@ -58,6 +59,7 @@ CHAPTERS = (
         "d",
     ),
     Chapter("drop", "The contact event", drop, "e"),
+    Chapter("levitation", "Levitated again", levitation, "e"),
     Chapter("forces", "Contact forces and where they act", forces, "f"),
     Chapter("run-up", "Run-up of rings and balls", run_up, "f"),
     Chapter("spectra", "Spectra", spectra, "f"),

@@ -106,6 +106,17 @@ FIGURE_NAMES = {  # key without its component: words, and the unit of the value
     "peak_shear_stress_MPa": ("Largest shear stress", "MPa"),
     "peak_shear_stress_node": ("Largest shear stress", "node"),
     "peak_shear_stress_time_s": ("Largest shear stress, after the shutdown", "s"),
+    "capture_command_time_s": ("Asked for again, after the shutdown", "s"),
+    "largest_coil_current_A": ("Largest coil current", "A"),
+    "time_at_current_limit_s": ("Time at the current limit", "s"),
+    "time_at_voltage_limit_s": ("Time at the voltage limit", "s"),
+}
+CAPTURE = re.compile(r"capture_(?P<seat>.+?)(?P<tail>|_time_s|_last_contact_s|_peak_force_N)")
+CAPTURE_NAMES = {
+    "": ("Captured or lost", ""),
+    "_time_s": ("Captured, after the command", "s"),
+    "_last_contact_s": ("Last contact, after the command", "s"),
+    "_peak_force_N": ("Largest contact force after the command", "N"),
 }
 SEAT_FIGURE_NAMES = {
     "": ("Verdict", ""),
@@ -150,4 +161,6 @@ def label(key: str, components: Iterable[str]) -> Label | None:
         base = key.removesuffix(f"_{component}") if component else key
         if base in FIGURE_NAMES and (base != key or not component):
             return Label(*FIGURE_NAMES[base], component)
+    if (seat := CAPTURE.fullmatch(key)) is not None:
+        return Label(*CAPTURE_NAMES[seat["tail"]], seat["seat"])
     return None

@@ -33,6 +33,9 @@ SHARE = 0.5  # of the clearance
 LASTING = 0.9  # of the time from the command on
 COMMANDED = "commanded_time"  # s, simulation's clock, of a controller; below zero: never
 GAP = "least_gap"  # m, of an actuator
+KEY = "capture_"  # before a seat's name: its verdict
+AFTER, LAST, PEAK = "_time_s", "_last_contact_s", "_peak_force_N"  # behind it: what that rests on
+COMMAND = "capture_command_time_s"
 COILS = (  # figures of actuators: key, variable, and which of several counts
     ("largest_coil_current_A", "peak_current", max),
     ("time_at_current_limit_s", "limits.current_time", max),
@@ -46,12 +49,6 @@ class Fate(StrEnum):
     CAPTURED = "captured"
     UNDECIDED = "undecided"
     LOST = "lost"
-
-
-KEY, AFTER = (
-    "capture_",
-    "_time_s",
-)  # about the name of a seat, of its verdict's and its capture time's figure
 
 
 def capture_keys(summary: Mapping[str, object]) -> list[str]:
@@ -78,6 +75,21 @@ class Capture:
     after: float | None  # s, capture time; None where it is not captured
     last_contact: float | None  # s after the command; None: none
     peak_force: float  # N, after the command
+
+
+def captures(summary: Mapping[str, object]) -> dict[str, Capture]:
+    """The verdicts of a run by the names of their seats; none where no rotor was asked for again."""
+    found = {}
+    for key in capture_keys(summary):
+        after, last, peak = (summary[f"{key}{tail}"] for tail in (AFTER, LAST, PEAK))
+        found[key.removeprefix(KEY)] = Capture(
+            str(summary[key]), _number(after), _number(last), _number(peak) or 0.0
+        )
+    return found
+
+
+def _number(value: object) -> float | None:
+    return value if isinstance(value, float) else None
 
 
 def judge(
@@ -126,18 +138,18 @@ def capture_figures(
         return {}
     command = max(times) - zero
     found: dict[str, object] = {}
-    captures = {
+    verdicts = {
         name: _at_seat(system, recording, command, a, _known(system, name, figures))
         for name, a in seats.items()
         if f"{a.bearing}.clearance" in system
     }
-    for name, one in captures.items():
+    for name, one in verdicts.items():
         found[f"{KEY}{name}"] = one.words
         found[f"{KEY}{name}{AFTER}"] = one.after
-        found[f"{KEY}{name}_last_contact_s"] = one.last_contact
-        found[f"{KEY}{name}_peak_force_N"] = one.peak_force
-    if captures:
-        found["capture_command_time_s"] = command
+        found[f"{KEY}{name}{LAST}"] = one.last_contact
+        found[f"{KEY}{name}{PEAK}"] = one.peak_force
+    if verdicts:
+        found[COMMAND] = command
     for key, variable, which in COILS:
         if values := _told(system, variable):
             found[key] = which(values)

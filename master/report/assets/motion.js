@@ -117,7 +117,8 @@
       for (const { data, canvas, told } of drawn) {
         draw(canvas, data, at);
         const force = data.largest * Math.hypot(...data.force[at]);
-        told.textContent = `rotor ${data.rpm[at][0]} rpm` + (data.pitch ? `, ring ${data.rpm[at][1]} rpm` : "") + `, force ${force.toFixed(0)} N`;
+        const stage = data.stages.findLast(([since]) => since <= time[at]);
+        told.textContent = `rotor ${data.rpm[at][0]} rpm` + (data.pitch ? `, ring ${data.rpm[at][1]} rpm` : "") + `, force ${force.toFixed(0)} N` + (stage ? `, ${stage[1]}` : "");
       }
     };
     const step = (now) => {

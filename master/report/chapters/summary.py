@@ -15,6 +15,7 @@ from ...studies.rotor.supports import balanced
 from ..blocks import Block, Points, Remark, Table, Text, Tile, Tiles
 from ..numbers import RPM, digits, listed, quantity, share
 from ..subject import Subject, number
+from .levitation import captured_words
 
 NOT_ACCURATE = 0.02  # of the energy that crossed, made by the coupling
 NO_WHIRL_VERDICT = "not told, for no clearance is stated or no orbit recorded"
@@ -32,7 +33,8 @@ def headline(subject: Subject) -> str:
     if subject.first_contact is None:
         seconds = quantity(subject.length, "s")
         return f"The rotor touches no bearing within {seconds} of the shutdown.{cut}"
-    return f"{_verdict(subject)}{cut}"
+    again = captured_words(subject)
+    return f"{again}{' ' if again else ''}{_verdict(subject)}{cut}"
 
 
 def _verdict(subject: Subject) -> str:
