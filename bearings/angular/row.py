@@ -34,9 +34,21 @@ import math
 from typing import NamedTuple
 
 from ...modelkit.kernel import inlined, kernel
+from ...modelkit.variables import Choices
 from ..contact.laws import in_series, race_contact_stiffness
 from ..contact.materials import effective_modulus, elastic_of
 
+SINGLE, BACK_TO_BACK, FACE_TO_FACE, TANDEM = range(4)
+ARRANGEMENTS = Choices(
+    "Arrangement",
+    ("single", "back to back", "face to face", "tandem"),
+    (
+        "a row",
+        "a pair whose contact lines meet far apart on the shaft: stiff against tilt",
+        "a pair whose contact lines meet close to each other",
+        "a pair that shares a thrust in +z",
+    ),
+)
 NEWTON_STEPS = 60  # of the search for a contact angle; ten are enough
 ROUNDING = 1e-15  # rad
 
@@ -174,3 +186,33 @@ def thrust_approach(angle, distance, load):
     """
     a = thrust_angle(angle, load)
     return distance * math.sin(a - angle) / math.cos(a)
+
+
+@kernel
+def preload_approach(b, rings, angle, preload):
+    """p (m) by which a `preload` (N) takes the rings of each row of a pair together along the shaft."""
+    distance = groove_distance(b)
+    unit = b.count * series_stiffness(b, rings, angle) * distance * math.sqrt(distance)
+    return thrust_approach(angle, distance, preload / unit)
+
+
+@kernel
+def rows_of(b, rings, angle, arrangement, distance, preload):
+    """Both rows (`Row`) of a pair as mounted; of a single row the second has no stiffness.
+
+    b: a record of `BallSet`; rings: `Elastic`; angle: contact angle (rad); arrangement: of `ARRANGEMENTS`;
+    distance: of the rows (m); preload: that clamps them against each other (N).
+    """
+    if arrangement == SINGLE:
+        row = row_of(b, rings, angle, 1.0, 0.0, 0.0)
+        return row, Row(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
+    approach = preload_approach(b, rings, angle, preload) if arrangement != TANDEM else 0.0
+    left, right = 1.0, 1.0
+    if arrangement == BACK_TO_BACK:
+        right = -1.0
+    elif arrangement == FACE_TO_FACE:
+        left = -1.0
+    return (
+        row_of(b, rings, angle, left, -0.5 * distance, approach),
+        row_of(b, rings, angle, right, 0.5 * distance, approach),
+    )

@@ -9,22 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from ...modelkit.variables import Choices, as_record
+from ...modelkit.variables import as_record
 from ..contact.materials import STEEL_NUMBERS, Elastic
 from ..rolling.ball_set import BallSet
-from .row import Pose, Row, groove_distance, pressed, row_of, series_stiffness, thrust_approach
+from .row import SINGLE, Pose, Row, pressed, rows_of
 
-SINGLE, BACK_TO_BACK, FACE_TO_FACE, TANDEM = range(4)
-ARRANGEMENTS = Choices(
-    "Arrangement",
-    ("single", "back to back", "face to face", "tandem"),
-    (
-        "a row",
-        "a pair whose contact lines meet far apart on the shaft: stiff against tilt",
-        "a pair whose contact lines meet close to each other",
-        "a pair that shares a thrust in +z",
-    ),
-)
 COORDINATES = ("x", "y", "z", "rx", "ry")
 NEWTON_STEPS = 4
 UNBALANCED = 1e-9  # of the load, what may be left of it
@@ -49,23 +38,11 @@ class Mounted:
 
     def rows(self) -> tuple[Row, ...]:
         """Its rows; a pair of them, or one."""
-        b, rings = as_record(self.balls), self.rings
-        if self.arrangement == SINGLE:
-            return (row_of(b, rings, self.contact_angle, 1.0, 0.0, 0.0),)
-        lies = np.array([-0.5, 0.5]) * self.distance
-        sides = {BACK_TO_BACK: (1.0, -1.0), FACE_TO_FACE: (-1.0, 1.0), TANDEM: (1.0, 1.0)}[self.arrangement]
-        approach = 0.0 if self.arrangement == TANDEM else self._approach()
-        return tuple(
-            row_of(b, rings, self.contact_angle, side, at, approach)
-            for side, at in zip(sides, lies, strict=True)
+        both = rows_of(
+            *(as_record(self.balls), self.rings, self.contact_angle),
+            *(self.arrangement, self.distance, self.preload),
         )
-
-    def _approach(self) -> float:
-        """Of each row, by preload (m)."""
-        b = as_record(self.balls)
-        distance = groove_distance(b)
-        unit = self.balls.count * series_stiffness(b, self.rings, self.contact_angle) * distance**1.5
-        return thrust_approach(self.contact_angle, distance, self.preload / unit)
+        return both[:1] if self.arrangement == SINGLE else both
 
     def angles(self) -> np.ndarray:
         """Of the balls of a row around the shaft (rad), (count,)."""

@@ -9,15 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ....bearings import catalogue
-from ....bearings.angular.statics import (
-    ARRANGEMENTS,
-    BACK_TO_BACK,
-    SINGLE,
-    TANDEM,
-    Mounted,
-    balance,
-    balls_on,
-)
+from ....bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, SINGLE, TANDEM
+from ....bearings.angular.statics import Mounted, balance, balls_on
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
 from ...common.errors import TouchdownError, one_of, with_remedy

@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from touchdown.bearings.angular.row import Pose, groove_distance, pressed, thrust_angle, thrust_approach
-from touchdown.bearings.angular.statics import (
+from touchdown.bearings.angular.row import (
     BACK_TO_BACK,
     FACE_TO_FACE,
     TANDEM,
-    Mounted,
-    balance,
-    balls_on,
+    Pose,
+    groove_distance,
+    pressed,
+    thrust_angle,
+    thrust_approach,
 )
+from touchdown.bearings.angular.statics import Mounted, balance, balls_on
 from touchdown.bearings.contact.laws import race_contact_stiffness
 from touchdown.bearings.contact.materials import SILICON_NITRIDE, STEEL_NUMBERS, Elastic, effective_modulus
 from touchdown.bearings.rolling.ball_set import BallSet
