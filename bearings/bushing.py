@@ -29,8 +29,12 @@ from .contact.journal import (
 )
 from .contact.laws import elastic_energy
 from .contact.line import BoreContact
+from .heat import parts
+from .heat.parts import HeatReport, Sources
 
 LOSS = seat.INSIDE
+HEAT = LOSS + 1
+STATES = HEAT + parts.SIZE
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,7 @@ class Outputs:
     housing: MountReaction = group(MountReaction)
     contact: ContactReport = group(ContactReport)
     energy: Energy = group(Energy)
+    heat: HeatReport = group(HeatReport)
 
 
 @dataclass(frozen=True)
@@ -71,7 +76,7 @@ class Hidden:
     touched: Touched = group(Touched)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, LOSS + 1, derived=Derived, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
 STATIC = Parameters().friction.static
 MASSLESS = len(bore.PROBLEMS) + 1  # number of the problem
 CONSTANTS, PROBLEMS = constants(
@@ -92,6 +97,7 @@ def react(t, q, dq, m):
     j = touch(seat.journal_motion(q), housing, p.journal_radius, p.clearance, m.d.contact, m.d.friction)
     note(m.s.touched, j)
     dq[LOSS] = j.loss
+    parts.set_rates(Sources(j.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, HEAT)
     return Load(j.fx, j.fy, j.journal_moment, -j.fx, -j.fy)
 
 
@@ -116,6 +122,7 @@ def report(q, m):
     c.reach = time_to_touch(seat.journal_motion(q), seat.housing_motion(q), m.p.clearance)
     m.o.energy.potential = elastic_energy(s.indentation, m.d.contact)
     m.o.energy.dissipated = q[LOSS]
+    parts.report(q, HEAT, m)
 
 
 @kernel
@@ -131,7 +138,7 @@ def settle(words):
         return problem
     bore.settle(m.d, m.p, m.p.contact.mass)
     seat.set_weights(m.weight)
-    m.n = LOSS + 1
+    m.n = STATES
     return missing(words, CONSTANTS)
 
 

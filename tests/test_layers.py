@@ -34,7 +34,17 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "bearings": (
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
-        *("catalogue", "rating", "surroundings", "magnetic", "angular", "rolling", "contact", "seat"),
+        *(
+            "catalogue",
+            "rating",
+            "surroundings",
+            "magnetic",
+            "angular",
+            "rolling",
+            "heat",
+            "contact",
+            "seat",
+        ),
     ),
     "rotor": (
         *(
