@@ -129,11 +129,8 @@ def _overview(cases: Mapping[str, Case], shown: Shown) -> str:
 
 def _section(one: Case, rows: Sequence[Row] | str) -> str:
     source = f"Figures: {one.source}{'' if one.looked_at else ' (not looked at)'}."
-    parts = [
-        f"({one.name})=\n### {one.title[0].upper()}{one.title[1:]}\n",
-        f"`touchdown validate {one.name}`\n",
-    ]
-    parts += [f"{one.what}\n", f"{source}\n"]
+    title = f"{one.title[0].upper()}{one.title[1:]}: `touchdown validate {one.name}`."
+    parts = [f"### {one.name}\n", f"{title}\n", f"{one.what}\n", f"{source}\n"]
     if one.command:
         parts.append(f"Made by: {one.command}.\n")
     late = " Set afterwards." if one.afterwards else ""
