@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "src")
+PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation", "src")
 KERNELS = {"kernel", "inlined", "njit"}
 LONG, MANY, STRETCH = 40, 6, 6
 

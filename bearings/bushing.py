@@ -39,9 +39,12 @@ from .contact.journal import (
 )
 from .contact.laws import elastic_energy
 from .contact.line import BoreContact
+from .heat import parts
+from .heat.parts import HeatReport, Sources
 
 LOSS, FACE_LOSS = range(seat.INSIDE, seat.INSIDE + 2)  # J, heat of the bore and of the faces
-SIZE = FACE_LOSS + 1
+HEAT = FACE_LOSS + 1
+STATES = HEAT + parts.SIZE
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class Outputs:
     housing: MountReaction = group(MountReaction)
     contact: ContactReport = group(ContactReport)
     energy: Energy = group(Energy)
+    heat: HeatReport = group(HeatReport)
     shoulder: ShoulderReport = group(ShoulderReport)
 
 
@@ -85,7 +89,7 @@ class Hidden:
     shoulder: ShoulderMemory = group(ShoulderMemory)
 
 
-MEMORY = seat.bearing_memory(Parameters, Outputs, SIZE, derived=Derived, hidden=Hidden)
+MEMORY = seat.bearing_memory(Parameters, Outputs, STATES, derived=Derived, hidden=Hidden)
 STATIC = Parameters().friction.static
 MASSLESS = len(bore.PROBLEMS) + 1  # number of the problem
 CONSTANTS, PROBLEMS = constants(
@@ -115,6 +119,7 @@ def react(t, q, dq, m):
     f = land(slip, p.shoulder, m.d.friction)
     note_landing(m.s.shoulder, f)
     dq[LOSS], dq[FACE_LOSS] = j.loss, f.loss
+    parts.set_rates(Sources(j.loss + f.loss, 0.0, 0.0, 0.0, 0.0), j.sliding, dq, HEAT)
     fx, fy = j.fx + f.fx, j.fy + f.fy
     return Load(fx, fy, j.journal_moment + f.moment, -fx, -fy, f.fz, -f.fz)
 
@@ -142,6 +147,7 @@ def report(q, m):
     faces = report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
     m.o.energy.potential = elastic_energy(s.indentation, m.d.contact) + faces
     m.o.energy.dissipated = q[LOSS] + q[FACE_LOSS]
+    parts.report(q, HEAT, m)
 
 
 @kernel
@@ -157,7 +163,7 @@ def settle(words):
         return problem
     bore.settle(m.d, m.p, m.p.contact.mass)
     seat.set_weights(m.weight)
-    m.n = SIZE
+    m.n = STATES
     return missing(words, CONSTANTS)
 
 

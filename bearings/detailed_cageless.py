@@ -150,7 +150,9 @@ def react(t, q, dq, m):
     _neighbour_contacts(q, m)
     j, inner, outer = rub_races(q, dq, m)
     ring.accelerate(q, dq, m, j, inner)
-    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + _rubbing(dq, m)
+    among = _rubbing(dq, m)
+    dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
+    ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
     return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy, 0.0, 0.0)
 
 

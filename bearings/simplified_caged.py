@@ -59,6 +59,8 @@ from .contact.friction import FrictionLaw
 from .contact.laws import ContactLaw, elastic_force
 from .contact.materials import elastic_of
 from .contact.peaks import Largest
+from .heat import parts
+from .heat.parts import Sources
 from .rolling import bending, declarations, ring
 from .rolling.ball_set import (
     EVEN_SPREAD,
@@ -268,7 +270,7 @@ def _springs(q, gap, cage_angle, m):
         moment -= elastic * (gap.ey * nx - gap.ex * ny + bent.slope)
         heat += (force - elastic) * rate
         bending.press(-force, nx, ny, m.d.bending, m.s.shape)
-        note(m.s.balls, b, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
+        note(m.s.balls, b, Pressed(force, elastic, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     return Total(fx, fy, moment, heat)
 
 
@@ -300,7 +302,7 @@ def _springs_in_space(q, gap, cage_angle, m):
             bending.press(-across, nx, ny, d.bending, m.s.shape)
             if force > balls.force:
                 m.s.thrust.sine = ball.sine
-            note(balls, b, Pressed(force, ball.force, indentation, 0.0, 0.0, 0.0, 0.0, 0.0))
+            note(balls, b, Pressed(force, ball.force, indentation, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     m.s.thrust.force = fz
     return Total(fx, fy, moment, heat)
 
@@ -345,7 +347,9 @@ def _rolling(q, gap, m):
     moment *= p.balls.pitch_diameter * math.tanh(p.rolling.slope * q[ring.RW] * d.inner_radius)
     moment += _rolling_loss(d.cage_ratio * q[ring.RW], m)
     on_ring = d.cage_ratio * springs.moment - moment
-    return Total(springs.fx, springs.fy, on_ring, springs.loss + moment * q[ring.RW])
+    heat = springs.loss + moment * q[ring.RW]
+    m.s.balls.outside = 0.5 * heat
+    return Total(springs.fx, springs.fy, on_ring, heat)
 
 
 @kernel
@@ -367,7 +371,7 @@ def _slipping(q, dq, gap, m):
     p, d, count = m.p, m.d, m.p.balls.count
     orbit, spin = q[CAGE_SPEED], q[BALL_SPIN]
     ca, sa = math.cos(q[CAGE_ANGLE]), math.sin(q[CAGE_ANGLE])
-    fx, fy, moment, along, turning, heat = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    fx, fy, moment, along, turning, heat, outside = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for b in range(count):
         c0, s0 = d.cosine[b], d.sine[b]
         c, s = ca * c0 - sa * s0, sa * c0 + ca * s0
@@ -382,6 +386,8 @@ def _slipping(q, dq, gap, m):
         along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
+        outside += ball.outside
+    m.s.balls.outside = outside
     dq[CAGE_ANGLE] = orbit
     dq[CAGE_SPEED] = d.pitch_radius * along / d.orbiting
     dq[BALL_SPIN] = d.ball_radius * turning / d.spinning
@@ -403,17 +409,22 @@ def react(t, q, dq, m):
     bent = bending.accelerate(q, 0.0, m.d.bending, m.s.shape)
     bending.hand_over(q, dq, m.d.bending, m.s.shape)
     dq[ring.RW] = balls.moment / inertia + j.ring_moment / inertia
-    dq[ring.LOSS] = j.loss + balls.loss + bent + p.damping * (gap.ux * gap.ux + gap.uy * gap.uy)
+    damped, outside = p.damping * (gap.ux * gap.ux + gap.uy * gap.uy), m.s.balls.outside
+    if m.d.rows > 0:
+        uz = q[RVZ] - q[seat.HVZ]
+        damped += p.damping * uz * uz
+    dq[ring.LOSS] = j.loss + balls.loss + bent + damped
+    inside, outside = balls.loss - outside + 0.5 * damped, outside + 0.5 * damped
     if m.d.rows == 0:
+        parts.set_rates(Sources(j.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
         return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0)
     f = _move_along(q, dq, seat.journal_motion(q), m)
+    parts.set_rates(Sources(j.loss + f.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
     dq[ring.RVX] -= f.fx / p.ring.mass
     dq[ring.RVY] -= f.fy / p.ring.mass
     dq[ring.RW] -= f.moment / inertia
-    uz = q[RVZ] - q[seat.HVZ]
-    dq[ring.LOSS] += p.damping * uz * uz
-    moment = j.journal_moment + f.moment
-    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, p.damping * uz - m.s.thrust.force)
+    moment, held = j.journal_moment + f.moment, m.s.thrust.force - p.damping * (q[RVZ] - q[seat.HVZ])
+    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -held)
 
 
 @kernel

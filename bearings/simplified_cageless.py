@@ -208,7 +208,9 @@ def react(t, q, dq, m):
     neighbour_forces(q, m)
     j, balls = rub_balls(q, dq, m)
     ring.accelerate(q, dq, m, j, balls)
-    dq[ring.LOSS] = j.loss + balls.loss + rubbing(dq, m)
+    among, outside = rubbing(dq, m), m.s.balls.outside
+    dq[ring.LOSS] = j.loss + balls.loss + among
+    ring.share_heat(dq, j, balls.loss - outside, outside, among, m)
     return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0)
 
 

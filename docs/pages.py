@@ -42,7 +42,7 @@ NAMED = {  # files whose pages have other names
 NOTEBOOKS = ROOT / "docs" / "notebooks"
 FLEXIBLE = "rotor_I"  # any rotor file: their models are one
 PATH = re.compile(
-    r"`((?:modelkit|rotor|bearings|fmus|master|src|docs|tests|benchmarks|examples)/[\w./-]*)`"
+    r"`((?:modelkit|rotor|bearings|fmus|master|validation|src|docs|tests|benchmarks|examples)/[\w./-]*)`"
 )
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)#\s]+)(#[^)\s]*)?\)")
 CONTENTS = {  # pages in the order of the site
@@ -54,7 +54,7 @@ CONTENTS = {  # pages in the order of the site
         *("own-machine", "bearings", "levitation", "studies", "results", "reports", "systems", "elsewhere"),
         *("native", "rotors", "rotor-file", "mounts", "friction", "coupling", "bonds", "api"),
     ),
-    "Background": ("physics", "reproduction", "stability", "speed", "peers"),
+    "Background": ("physics", "validation", "reproduction", "stability", "speed", "peers"),
     "Theory": (),  # of the models
     "Development": ("architecture", "contract", "contributing", "changelog"),
 }

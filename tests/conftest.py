@@ -24,7 +24,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # tests run beside each other: on
 # Head of every process that must do without the project, which may be installed in the interpreter.
 WALL = """
 import importlib.abc, sys
-PROJECT = ("touchdown", "modelkit", "rotor", "bearings", "fmus", "master")
+PROJECT = ("touchdown", "modelkit", "rotor", "bearings", "fmus", "master", "validation")
 class Wall(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
         if name.partition(".")[0] in PROJECT:

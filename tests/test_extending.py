@@ -21,7 +21,7 @@ from places import ROOT
 
 pytestmark = pytest.mark.slow
 
-PARTS = ("src/touchdown", "modelkit", "rotor", "bearings", "fmus", "master")
+PARTS = ("src/touchdown", "modelkit", "rotor", "bearings", "fmus", "master", "validation")
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INSERTED = re.compile(r"# in (\S+), after: (.*)\n")

@@ -26,6 +26,7 @@ LAYERS = {  # package: what it may import beside itself and the standard library
         *("argcomplete", "tqdm", "fmpy", "h5py", "matplotlib", "fmu_manipulation_toolbox", "distributed"),
         *("numpy", "scipy", "pandas", "xarray", "jinja2", "markupsafe", "imageio_ffmpeg"),
     },
+    "validation": {"touchdown", "fmpy"} | SCIENCE,  # above all others
 }
 STREETS = {  # folder: its rooms and single files, each importing only from those after it
     "master": (
@@ -34,7 +35,17 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "bearings": (
         *("detailed_caged", "detailed_cageless", "simplified_caged", "simplified_cageless", "bushing"),
-        *("catalogue", "rating", "surroundings", "magnetic", "angular", "rolling", "contact", "seat"),
+        *(
+            "catalogue",
+            "rating",
+            "surroundings",
+            "magnetic",
+            "angular",
+            "rolling",
+            "heat",
+            "contact",
+            "seat",
+        ),
     ),
     "rotor": (
         *(
@@ -53,6 +64,11 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
         *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
         *("variables", "units", "status", "messages"),
     ),
+    "validation": (
+        "registry",
+        *("statics", "contacts"),
+        *("page", "case"),
+    ),
     "fmus": (
         *("native", "build", "presentation", "recipes", "scripts", "slave", "variants", "description"),
         *("python", "messages", "version"),
@@ -64,6 +80,7 @@ RATED = {
     "touchdown.master.studies.rotor.whirl",
 }
 READERS = {  # of physics beside the co-simulation: what may be read, and by whom
+    "touchdown.validation": {"touchdown.master.verbs.held"},
     "touchdown.rotor": {
         *("touchdown.master.studies.rotor", "touchdown.master.verbs.machines"),
         "touchdown.master.api.rotor",
@@ -74,6 +91,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.magnetic": {"touchdown.master.studies.loop"},
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
+    "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
     "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl"},
     "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},

@@ -17,7 +17,7 @@ from places import ROOT
 
 pytest.importorskip("hatchling", reason="hatchling, which builds the project, is not installed")
 
-PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master")
+PACKAGES = ("modelkit", "rotor", "bearings", "fmus", "master", "validation")
 NEEDED = ("pyproject.toml", "README.md", "LICENSE", ".gitignore", ".ci", "src", *PACKAGES)
 LAYOUTS = ("wheel", "editable", "checkout")
 

@@ -109,6 +109,7 @@ class Touch(NamedTuple):
     indentation: float  # m; negative: the gap
     rate: float  # of the indentation, m/s
     loss: float  # W, heat
+    sliding: float  # W, normal force times sliding speed
 
 
 @kernel
@@ -146,11 +147,15 @@ def time_to_touch(journal, ring, clearance):
 
 
 @kernel
-def touch_of(press, indentation, loss):
-    """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m); loss: W."""
+def touch_of(press, indentation, loss, sliding):
+    """The `Touch` of a journal that presses (`Press`) its bore, indented by `indentation` (m).
+
+    loss: W; sliding: mean speed of the kick (m/s).
+    """
     c = press
-    elastic = c.normal - c.damped
-    return Touch(c.fx, c.fy, c.first_moment, c.second_moment, c.normal, elastic, indentation, c.rate, loss)
+    elastic, rubbed = c.normal - c.damped, c.normal * abs(sliding)
+    moments = c.first_moment, c.second_moment
+    return Touch(c.fx, c.fy, moments[0], moments[1], c.normal, elastic, indentation, c.rate, loss, rubbed)
 
 
 @kernel
@@ -168,9 +173,9 @@ def touch_at(place, journal, ring, law, friction):
     """`touch` at a `Place` in the bore, which moves there as `ring` (Motion) does."""
     if place.indentation <= 0.0:
         _, rate = slip(journal, ring, place, INSIDE)
-        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0)
+        return Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, place.indentation, rate, 0.0, 0.0)
     pressed = press(journal, ring, place, INSIDE, law, friction, NO_KICK)
-    return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0))
+    return touch_of(pressed, place.indentation, heat(pressed, 0.0, 0.0), pressed.sliding)
 
 
 @dataclass(frozen=True)
@@ -192,6 +197,12 @@ class ContactReport:
         "at which the journal swings on its contact, indented as expected",
         constant=True,
     )
+    sliding_work: float = real(
+        0.0,
+        "N.m",
+        "normal force times sliding way since the start, which wear goes by",
+        local=True,
+    )
     reach: float = real(
         0.0,
         "s",
@@ -212,6 +223,7 @@ class Touched:
     nx: float = real(0.0, "1", "direction of the journal from the middle of the bore")
     ny: float = real(0.0, "1", "direction of the journal from the middle of the bore")
     stored: float = real(0.0, "J", "as `bearings.contact.passivity`")
+    bent: float = real(0.0, "W", "heat of the bore's own bending, which the contact's loss contains")
 
 
 @kernel

@@ -114,10 +114,11 @@ def fastest(m):
 def kicked(q, dq, kick, m):
     """Settle all contacts' accounts after a `kick` (s) under dq; what they withheld is in q as heat."""
     s, n, off = m.s, m.p.balls.count, missed(dq, kick, m)
-    withheld = settle_race(s.inner, OUTSIDE, n, kick, off.part, 0.0, 0.0)
-    withheld += settle_race(s.outer, INSIDE, n, kick, off.part, off.hx, off.hy)
-    withheld += settle_sides(s.side, n, kick, off.part)
-    withhold(q, withheld + ring.settle_bore(kick, off.part, off.jx, off.jy, m), m)
+    inner = settle_race(s.inner, OUTSIDE, n, kick, off.part, 0.0, 0.0)
+    outer = settle_race(s.outer, INSIDE, n, kick, off.part, off.hx, off.hy)
+    sides = settle_sides(s.side, n, kick, off.part)
+    bore = ring.settle_bore(kick, off.part, off.jx, off.jy, m)
+    withhold(q, (inner, outer), sides, bore, m)
 
 
 @kernel

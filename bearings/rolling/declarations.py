@@ -15,6 +15,7 @@ from ..contact.journal import RATE_FROM, ContactMemory, ContactReport, Touched, 
 from ..contact.line import BoreContact
 from ..contact.materials import elastic_of
 from ..contact.peaks import PeakMemory
+from ..heat.parts import HeatReport
 from . import ball_set, bending, ring
 from .ball_set import BallReport, BallSet, Coordinates, RaceStiffness
 from .balls import Springs, resting_place
@@ -82,6 +83,7 @@ class RollingOutputs:
     ring: ring.RingReport = group(ring.RingReport)
     balls: BallReport = group(BallReport)
     energy: Energy = group(Energy)
+    heat: HeatReport = group(HeatReport)
     stiffness: RaceStiffness = group(RaceStiffness)
     size: Coordinates = group(Coordinates)
 

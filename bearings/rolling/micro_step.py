@@ -16,6 +16,8 @@ from ...modelkit.kernel import inlined, kernel
 from ...modelkit.variables import array, group, real
 from .. import seat
 from ..contact.passivity import Beat
+from ..heat import parts
+from ..heat.parts import Sources
 from . import ring
 from .ring import MAX_STATES
 
@@ -78,6 +80,8 @@ def book(dq, load, m):
     dq[seat.JE] += load.jx * jx + load.jy * jy + load.jm * jw
     dq[seat.HE] += load.hx * hx + load.hy * hy
     dq[ring.LOSS] -= b.jx * jx + b.jy * jy + b.jm * jw + b.hx * hx + b.hy * hy
+    at_bore, at_outer = b.jx * jx + b.jy * jy + b.jm * jw, b.hx * hx + b.hy * hy
+    parts.share(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)
 
 
 class Missed(NamedTuple):
@@ -106,10 +110,15 @@ def beat_of(m):
 
 
 @kernel
-def withhold(q, energy, m):
-    """Book `energy` (J) that contacts withheld as heat in the state q, and as what the steps cost."""
+def withhold(q, races, sides, bore, m):
+    """Book what contacts withheld (J) as heat in the state q, and as what the steps cost.
+
+    races: at the inner and at the outer one; sides: of the balls; bore: of the journal.
+    """
+    energy = races[0] + races[1] + sides + bore
     q[ring.LOSS] += energy
     m.s.withheld += energy
+    parts.share(Sources(bore, 0.0, races[0], races[1], sides), q, ring.HEAT)
 
 
 @kernel

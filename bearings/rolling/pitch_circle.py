@@ -70,6 +70,7 @@ class Pressed(NamedTuple):
     held: float  # of the narrowing gap and of rolling resistance on the ball, against t
     lever: float  # of the inner contact from the ring's centre, m
     heat: float
+    outside: float  # what of it arises at the outer race
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class LoadedBalls:
     total: float = real(0.0, "N", "of all forces between the rings")
     indentation: float = real(0.0, "m", "largest")
     energy: float = real(0.0, "J", "stored in the contacts")
+    outside: float = real(0.0, "W", "what of the balls' heat arises at the outer race")
     most_loaded: int = integer(0, "which ball bears the largest force")
     deepest: int = integer(0, "at which ball the rings come closest")
 
@@ -174,10 +176,11 @@ def between_races(gap, c, s, orbit, spin, rm, bent, m):
     ball = squeeze_ball(at, elastic_at(at, way), across, orbit, way, 0.0, 0.0)
     inner = coefficient(at.inner, d.race_friction) * ball.force
     outer = coefficient(at.outer, d.race_friction) * ball.outer
-    heat = (
-        (ball.force - ball.elastic) * at.rate + inner * at.inner + outer * at.outer + ball.drag * rm * orbit
-    )
-    return Pressed(ball.force, ball.elastic, at.indentation, inner, outer, ball.held, at.lever, heat)
+    damped, dragged = (ball.force - ball.elastic) * at.rate, ball.drag * rm * orbit
+    heat = damped + inner * at.inner + outer * at.outer + dragged
+    outside = outer * at.outer + 0.5 * (damped + dragged)
+    depth = at.indentation
+    return Pressed(ball.force, ball.elastic, depth, inner, outer, ball.held, at.lever, heat, outside)
 
 
 @kernel

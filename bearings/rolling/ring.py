@@ -1,7 +1,7 @@
 """The inner ring, in which the journal lands, and where balls lie behind it in the state.
 
 Behind the copies of journal and housing (`bearings.seat`) a rolling bearing's state starts with the
-ring's seven components; balls and cage follow.
+ring's six components and the heat of the parts; balls and cage follow.
 
 How all balls of a bearing lie in its state: component by component, behind the ring.
 
@@ -24,6 +24,8 @@ from ..contact.laws import elastic_energy, elastic_force
 from ..contact.materials import MATERIALS, STEEL
 from ..contact.pair import INSIDE, Place, friction_line, heat, kick_of, rubbed, squeeze
 from ..contact.passivity import Beat, middle_of, settled
+from ..heat import parts
+from ..heat.parts import Sources
 from . import bending
 from .ball_set import MAX_BALLS
 from .bending import AUTOMATIC, MAX_HARMONICS
@@ -31,7 +33,8 @@ from .friction import Around, Bore, Moved, Push, over_ring, rub, rubbed_of
 from .pitch_circle import Gap
 
 RX, RY, RVX, RVY, RANGLE, RW, LOSS = range(seat.INSIDE, seat.INSIDE + 7)
-NEXT = seat.INSIDE + 7
+HEAT = seat.INSIDE + 7  # quadratures of the heat of each part
+NEXT = HEAT + parts.SIZE
 
 SYNCHRONOUS = 0.99  # of the journal's surface speed: the ring has caught up
 
@@ -204,8 +207,10 @@ def rub_journal(at, squeezed, friction, moved, bent, m):
     s, pressed = m.s, rubbed(at, INSIDE, squeezed, friction)
     ahead = over_ring(at.nx, at.ny, at.second, moved)
     opening = moved.x * at.nx + moved.y * at.ny + bent[0]
-    t = touch_of(pressed, at.indentation, heat(pressed, -ahead, -opening) + bent[1])
+    loss, sliding = heat(pressed, -ahead, -opening), pressed.sliding - 0.5 * ahead
+    t = touch_of(pressed, at.indentation, loss + bent[1], sliding)
     note(s.ring, t)
+    s.ring.bent = bent[1]
     s.ring.middle, s.ring.nx, s.ring.ny = squeezed.rate - 0.5 * opening, at.nx, at.ny
     s.rubbed = friction
     s.brake.jx, s.brake.jy, s.brake.jm = (
@@ -299,6 +304,14 @@ def accelerate(q, dq, m, journal, balls):
 
 
 @inlined
+def share_heat(dq, journal, inner, outer, among, m):
+    """Set in dq the heat of each part: of the journal's `Touch`, at both races, among the balls (W)."""
+    bent = m.s.ring.bent
+    sources = Sources(journal.loss - bent, bent, inner, outer, among)
+    parts.set_rates(sources, journal.sliding, dq, HEAT)
+
+
+@inlined
 def drift(trial, q, mid, h):
     """The ring's position in the state `trial`: that in q and h (s) times its velocity in `mid`."""
     trial[RX] = q[RX] + h * mid[RVX]
@@ -317,6 +330,7 @@ def report_energy(q, m, kinetic, potential, inertia):
     o.potential = potential + elastic_energy(m.s.ring.indentation, m.d.contact)
     o.potential += p.ring.mass * p.gravity * q[RY]
     o.dissipated = q[LOSS]
+    parts.report(q, HEAT, m)
 
 
 @kernel

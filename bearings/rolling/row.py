@@ -26,7 +26,7 @@ from typing import NamedTuple
 from ...modelkit.kernel import inlined, kernel
 from ...modelkit.numerics import cosine_and_sine
 from ...modelkit.ports import Motion
-from ...modelkit.variables import array
+from ...modelkit.variables import array, real
 from .. import seat
 from ..contact.friction import slope
 from ..contact.laws import elastic_energy
@@ -65,8 +65,10 @@ class RaceBalls:
     stored: tuple = array(MAX_BALLS)  # J, as `bearings.contact.passivity`
     damped: tuple = array(MAX_BALLS)  # N, what of the force between the rings is damping
     drag: tuple = array(MAX_BALLS)  # N, rolling resistance
+    rolled: tuple = array(MAX_BALLS)  # W, heat of damping and rolling resistance, of both races
     faster: tuple = array(MAX_BALLS)  # rad/s2, of the orbit, on its way through an evaluation
     turning: tuple = array(MAX_BALLS)  # rad/s2, of the spin, likewise
+    outside: float = real(0.0, "W", "what of the balls' heat arises at the outer race")
 
 
 class Course(NamedTuple):
@@ -324,7 +326,8 @@ def _rub(q, share, moved, m):
         middle = at.rate[b] + 0.5 * closing
         along = at.radius[b] * (orbit[b] + half * at.faster[b])
         at.middle[b] = middle + at.across[b] * (orbit[b] + half * at.faster[b])
-        s.inner.loss[b] += at.damped[b] * middle + at.drag[b] * along
+        at.rolled[b] = at.damped[b] * middle + at.drag[b] * along
+        s.inner.loss[b] += at.rolled[b]
 
 
 @inlined
@@ -351,12 +354,15 @@ def _pressing(m):
 def _with_friction(pressed, m):
     """`Total` (N, N m, W) on the ring that is `pressed` (Total) and rubbed."""
     fx, fy, moment, heat, at, s = pressed.fx, pressed.fy, 0.0, 0.0, m.s.balls, m.s
+    outside = 0.0
     for b in range(m.p.balls.count):
         rub = s.inner.tangential[b]
         fx += rub * at.sine[b]
         fy -= rub * at.cosine[b]
         moment -= rub * at.lever[b]
         heat += s.inner.loss[b] + s.outer.loss[b]
+        outside += s.outer.loss[b] + 0.5 * at.rolled[b]
+    at.outside = outside
     return Total(fx, fy, moment, heat)
 
 
@@ -371,8 +377,9 @@ def kicked(q, dq, kick, m):
         closing -= off.hx * at.cosine[b] + off.hy * at.sine[b]
         at.stored[b], lost = settled(at.stored[b], at.indentation[b], kick * at.elastic[b] * closing)
         withheld += lost
-    withheld += settle_sides(m.s.side, m.p.balls.count, kick, off.part)
-    withhold(q, withheld + ring.settle_bore(kick, off.part, off.jx, off.jy, m), m)
+    sides = settle_sides(m.s.side, m.p.balls.count, kick, off.part)
+    bore = ring.settle_bore(kick, off.part, off.jx, off.jy, m)
+    withhold(q, (0.5 * withheld, 0.5 * withheld), sides, bore, m)
 
 
 @kernel

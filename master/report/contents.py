@@ -16,6 +16,7 @@ from .chapters.basis import accuracy, model, repeat, settings
 from .chapters.bearings import balls, life, run_up
 from .chapters.contact import forces, spectra, stresses
 from .chapters.drop import drop, test_figures
+from .chapters.heat import heat
 from .chapters.levitation import levitation
 from .chapters.machine import machine
 from .chapters.mounts import mounts
@@ -55,7 +56,7 @@ CHAPTERS = (
     Chapter(
         "environment",
         "Environment",
-        never("temperature, pressure and medium are not modelled."),
+        never("pressure, medium and the temperature around the machine are not modelled."),
         "d",
     ),
     Chapter("drop", "The contact event", drop, "e"),
@@ -66,6 +67,7 @@ CHAPTERS = (
     Chapter("balls", "Ball loads and Hertz pressure", balls, "g"),
     Chapter("life", "Static safety, and drops until a limit", life, "g"),
     Chapter("mounts", "What the bearings sit in: stroke, stop, heat", mounts, "g"),
+    Chapter("heat", "Heat of the bearings, and what it does to their gaps", heat, "g"),
     Chapter("stresses", "Shaft stresses", stresses, "g"),
     Chapter("accuracy", "Energy, and what it says about accuracy", accuracy, "g"),
     Chapter("test", "What a drop test would show", test_figures, "h"),

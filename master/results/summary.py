@@ -19,6 +19,7 @@ from .capture import capture_figures
 from .ending import Finished, Readable, housing_port
 from .first_impact import FIRST_IMPACT_PREFIX, Reported, latest, over_at, stresses_at, values_at
 from .gaps import gap_figures
+from .heat import PARTS, heat_figures
 from .mounts import mount_figures
 from .ratings import rating_figures
 from .recording import NotRecordedError, Recording
@@ -175,6 +176,7 @@ def _strain_figures(run: Finished, a: Attachment) -> dict[str, object]:
         figures["bearing_heat_J"] = float(run.recording[heat][-1] - run.recording[heat][0])
     elif heat in run.system:
         figures["bearing_heat_J"] = None
+    figures |= heat_figures(run, a)
     if port and f"{port}.x" in run.recording and f"{port}.y" in run.recording:
         x, y = (
             run.recording[f"{port}.{axis}"] for axis in "xy"
@@ -459,6 +461,8 @@ def _run_figures(
 NUMERICS = (
     *("energy_", "exchange", "macro_step", "wall_time", "start_up", "simulated", "time_at_"),
     *("not_", "proposed_", "requirement_margin_", "drops_until_fatigue"),
+    *(f"bearing_heat_{part}" for part in PARTS),
+    *("bearing_sliding_work", "temperature_rise_", "play_change", "clearance_change"),
 )
 
 

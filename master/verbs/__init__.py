@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from . import comparisons, fmus, loops, machines, runs, source, sweeps
+from . import comparisons, fmus, held, loops, machines, runs, source, sweeps
 from .verb import Verb
 
 GROUPS: Mapping[str, tuple[Verb, ...]] = {
@@ -34,10 +34,11 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         comparisons.ADVISE,
         comparisons.STABILITY,
     ),
-    "the source": (
+    "the source and others": (
         source.FIGURE,
         source.COMPARE_BEARINGS,
         source.COMPARE_ROTORS,
+        held.VALIDATE,
     ),
     "FMUs and systems": (
         fmus.BUILD,

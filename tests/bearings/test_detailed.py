@@ -165,7 +165,7 @@ def inside_at_end(scene: Scene) -> np.ndarray:
     record = system.components["bearing"].instance.record  # type: ignore[attr-defined]
     assert record["o"]["contact"]["peak_force"] > 100.0
     q = record["q"][: int(record["n"])].copy()
-    q[[ring.RANGLE, ring.LOSS]] = 0.0
+    q[[ring.RANGLE, ring.LOSS, *range(ring.HEAT, ring.NEXT)]] = 0.0
     return q[[seat.JX, seat.JY, seat.JVX, seat.JVY, *range(seat.INSIDE, len(q))]]
 
 
@@ -337,10 +337,14 @@ def test_energy_at_the_default_steps(name: str) -> None:
         for c in ("rotor", "bearing", "housing")
         for k in ("kinetic", "potential", "dissipated")
     ]
-    _, found, _ = history(drop(name, 0.01), [*parts, "rotor.A.work"])
+    heats = [f"bearing.heat.{part}" for part in ("journal", "inner", "balls", "outer")]
+    _, found, _ = history(drop(name, 0.01), [*parts, *heats, "rotor.A.work"])
     total = sum(found[p] for p in parts)
     after = found["rotor.A.work"] != 0.0
     assert np.max(np.abs(total[after] - total[after][0])) < 0.02 * 1.65 * 9.81 * 0.3e-3
+    lost = found["bearing.energy.dissipated"]
+    assert lost[-1] > 1e-3
+    assert sum(found[h] for h in heats) == pytest.approx(lost, rel=1e-11, abs=1e-15)  # 1e5 sums, rounded
 
 
 LIGHT = {"detailed_cageless": (24, 3.608e-3, 0.02), "detailed_caged": (14, 3.5e-3, 0.1)}

@@ -15,6 +15,7 @@ from touchdown.bearings.rolling import ring
 ROLLING = ["simplified_caged", "simplified_cageless"]
 BEARINGS = ["bushing", *ROLLING]
 BENT = [(bearing, -1) for bearing in ROLLING]  # with rings that bend
+HEATS = [f"bearing.heat.{part}" for part in ("journal", "inner", "balls", "outer")]
 
 
 def accurate(bearing: str) -> dict[str, object]:
@@ -48,7 +49,8 @@ def test_no_energy_is_made(bearing: str, harmonics: int) -> None:
         for c in ("rotor", "bearing", "housing")
         for k in ("kinetic", "potential", "dissipated")
     ]
-    _, found, _ = history(scene, [*names, "bearing.contact.peak_force"])
+    sliding = "bearing.contact.sliding_work"
+    _, found, _ = history(scene, [*names, *HEATS, sliding, "bearing.contact.peak_force"])
     assert found["bearing.contact.peak_force"][-1] > 200.0
     total = sum(found[name] for name in names)
     lost = found["bearing.energy.dissipated"][-1]
@@ -56,6 +58,10 @@ def test_no_energy_is_made(bearing: str, harmonics: int) -> None:
     assert np.all(np.diff(found["bearing.energy.dissipated"]) >= -1e-9)
     gained = np.max(np.abs(total - total[0]))
     assert gained < 1e-6 * lost + 1e-7
+    parts = sum(found[part] for part in HEATS)
+    assert parts == pytest.approx(found["bearing.energy.dissipated"], rel=1e-12)  # rounding of 1e4 sums
+    assert np.all(np.diff(found[sliding]) >= 0.0)
+    assert found[sliding][-1] > 0.0
 
 
 @pytest.mark.parametrize("bearing", BEARINGS)

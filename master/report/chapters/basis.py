@@ -34,7 +34,8 @@ from ..subject import Subject, number, run_origin
 FOREIGN_FMU = "an FMU of another's; its own documentation says what is in it"
 ALWAYS_LEFT_OUT = (
     "Axial motion and axial loads: all is in the radial planes of the bearings.",
-    "Temperature: friction's heat is counted in the energy ledger, but nothing warms up or expands.",
+    "Temperature: friction's heat is counted, by part, but what it warms does not expand in the run; the "
+    "chapter on heat says what that would come to.",
     "Lubricant, wear and damage: the laws of friction and contact stay the same, drop after drop.",
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",

@@ -101,9 +101,9 @@ def test_without_a_contact_angle_it_is_the_one_of_the_plane() -> None:
     for instance in (flat, spatial):
         instance.start(0.0)
     sizes = [int(instance.record["n"]) for instance in (flat, spatial)]
-    common = slice(seat.INSIDE, ring.NEXT)
+    common = slice(seat.INSIDE, ring.LOSS)
     for _ in range(10):
-        moved = draw.uniform(-1.0, 1.0, ring.NEXT - seat.INSIDE) * (2e-5, 2e-5, 0.1, 0.1, 3.0, 100.0, 0.0)
+        moved = draw.uniform(-1.0, 1.0, 6) * (2e-5, 2e-5, 0.1, 0.1, 3.0, 100.0)
         found = []
         for instance, size in zip((flat, spatial), sizes, strict=True):
             q = instance.record["q"][:size].copy()

@@ -191,7 +191,7 @@ def test_no_force_inside_the_gap(seed, law):
 def test_concentric_bodies_do_not_touch():
     """Without a line of centres there is a gap all round, and no division by zero."""
     found = touched((Motion(0.0, 0.0, 0.1, 0.2, 900.0), Motion(0.0, 0.0, 0.0, 0.0, 0.0)))
-    assert found == Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -CLEARANCE, 0.0, 0.0)
+    assert found == Touch(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -CLEARANCE, 0.0, 0.0, 0.0)
 
 
 @every_law

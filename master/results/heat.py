@@ -1,0 +1,139 @@
+"""What a run's heat is to its bearings: heat by part, temperatures, and what they do to play and clearance.
+
+Temperatures are those of `bearings.heat`, above the start, worked out when the run is over from the heat
+that a bearing tells; nothing in the run knew of them, unless the bearing carries its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...bearings.heat import bodies, network
+from ..coupling.connections import Attachment
+from .ending import Finished, Readable
+
+PARTS = ("journal", "inner", "balls", "outer")  # as `bearings.heat.bodies` counts them
+WORK = "contact.sliding_work"
+MOST_STEPS = 2000  # rows of the recording that temperatures are followed over
+SAME_STEP = 1e-9  # of a step, up to which its matrices serve the next
+GEOMETRY = ("balls.", "ring.", "journal_radius", "clearance", "contact.length", "housing.inv_m")
+UM = 1e6
+
+
+@dataclass(frozen=True)
+class Warmed:
+    """Temperatures of a bearing's parts above the start, from its heat."""
+
+    bodies: bodies.Bodies
+    time: np.ndarray  # s, (rows,)
+    warmth: np.ndarray  # K, (rows, 5), journal, inner ring, balls, outer ring, housing
+    adiabatic: np.ndarray  # K, (4,), at the end, if every part kept what it took
+    capacities: np.ndarray  # J/K, (4,)
+
+    @property
+    def rise(self) -> np.ndarray:
+        """The largest temperature of each part (K, (5,))."""
+        return self.warmth.max(axis=0)
+
+    @property
+    def play(self) -> np.ndarray:
+        """Change of the radial play (m, (rows,))."""
+        return np.array([bodies.play_change(self.bodies, row) for row in self.warmth])
+
+    @property
+    def clearance(self) -> np.ndarray:
+        """Change of the journal's radial clearance (m, (rows,))."""
+        return np.array([bodies.clearance_change(self.bodies, row) for row in self.warmth])
+
+
+def has_heat(system: Readable, a: Attachment) -> bool:
+    """Whether a bearing tells its heat by part."""
+    return all(f"{a.bearing}.heat.{part}" in system for part in PARTS)
+
+
+def heat_of(system: Readable, a: Attachment) -> dict[str, float]:
+    """Heat (J) that each part has taken by the end."""
+    return {part: system.value(f"{a.bearing}.heat.{part}") for part in PARTS}
+
+
+def warmed(run: Finished, a: Attachment) -> Warmed | None:
+    """Temperatures of a bearing's parts over the recorded times; None where it is not known enough of it.
+
+    Each lies between those of no conduction and of steady state; housing and shaft are `bearings.heat`'s.
+    """
+    own = _bodies_of(run.system, a)
+    names = [f"{a.bearing}.heat.{part}" for part in PARTS]
+    if own is None or not all(name in run.recording for name in names):
+        return None
+    rows = _chosen(len(run.recording.time))
+    time = run.recording.time[rows]
+    heat = np.stack([run.recording[name][rows] for name in names], axis=1)
+    inverse, conductances = np.zeros(bodies.NODES), np.zeros((bodies.NODES, bodies.NODES))
+    bodies.set_inverse_capacities(own, inverse)
+    bodies.set_conductances(own, conductances)
+    capacities = 1.0 / inverse[: len(PARTS)]
+    warmth = _followed(inverse, conductances, time, heat)
+    return Warmed(own, time, warmth, (heat[-1] - heat[0]) / capacities, capacities)
+
+
+def _bodies_of(system: Readable, a: Attachment) -> bodies.Bodies | None:
+    component = system.components[a.bearing]
+    names = [n for n in component.variables if n.startswith(GEOMETRY)]
+    try:
+        return bodies.bodies_by(dict(zip(names, component.read(names), strict=True)))
+    except KeyError:
+        return None
+
+
+def _chosen(rows: int) -> np.ndarray:
+    """Which of the recorded `rows` temperatures are followed over, the first and the last among them."""
+    return np.unique(np.linspace(0, rows - 1, min(rows, MOST_STEPS)).astype(int))
+
+
+def _followed(
+    inverse: np.ndarray, conductances: np.ndarray, time: np.ndarray, heat: np.ndarray
+) -> np.ndarray:
+    """Temperatures (K, (rows, 5)) of parts that took `heat` (J, (rows, 4)) by `time` (s, (rows,))."""
+    nodes = len(inverse)
+    warmth, kept, gained = np.zeros((len(time), nodes)), np.zeros((nodes, nodes)), np.zeros((nodes, nodes))
+    last, now, given = 0.0, np.zeros(nodes), np.zeros(nodes)
+    for row in range(1, len(time)):
+        step = time[row] - time[row - 1]
+        if abs(step - last) > SAME_STEP * step:
+            network.set_step(inverse, conductances, step, kept, gained)
+            last = step
+        given[: len(PARTS)] = heat[row] - heat[row - 1]
+        network.take_step(kept, gained, given, now)
+        warmth[row] = now
+    return warmth
+
+
+def heat_figures(run: Finished, a: Attachment) -> dict[str, object]:
+    """Heat by part, work of sliding, highest temperatures, and largest changes of play and clearance.
+
+    Figures of temperature are None where heat was not recorded; none of them of a bearing without balls.
+    """
+    if not has_heat(run.system, a):
+        return {}
+    figures: dict[str, object] = {
+        f"bearing_heat_{part}_J": heat for part, heat in heat_of(run.system, a).items()
+    }
+    if f"{a.bearing}.{WORK}" in run.system:
+        figures["bearing_sliding_work_J"] = run.system.value(f"{a.bearing}.{WORK}")
+    if f"{a.bearing}.balls.count" not in run.system:
+        return figures
+    found = warmed(run, a)
+    for k, part in enumerate(PARTS):
+        figures[f"temperature_rise_{part}_K"] = None if found is None else float(found.rise[k])
+        key = f"temperature_rise_{part}_adiabatic_K"
+        figures[key] = None if found is None else float(found.adiabatic[k])
+    figures["play_change_um"] = None if found is None else UM * largest(found.play)
+    figures["clearance_change_um"] = None if found is None else UM * largest(found.clearance)
+    return figures
+
+
+def largest(values: np.ndarray) -> float:
+    """The one farthest from 0, with its sign; values: (rows,)."""
+    return float(values[np.argmax(np.abs(values))])

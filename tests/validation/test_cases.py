@@ -1,0 +1,98 @@
+"""The cases say where their figures are from; those that are cheap hold; pages show what they give."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from places import ROOT
+
+from touchdown.master.cli import main
+from touchdown.validation import page
+from touchdown.validation.case import Case, Kind, Row, Verdict, case
+from touchdown.validation.registry import MISSING, cases
+
+CASES = cases()
+PAGE = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("one", CASES.values(), ids=CASES)
+def test_a_case_says_what_it_is(one: Case) -> None:
+    assert re.fullmatch(r"[a-z0-9-]+", one.name)
+    assert len(one.source) > 20
+    assert len(one.what) > 40
+    assert len(one.why) > 10
+    assert 0.0 < one.tolerance < 1.0
+    assert one.command or one.kind is not Kind.PROGRAM or "command" in one.source or "maker" in one.source
+    for text in (one.title, one.what, one.why, one.source):
+        assert text == text.strip().removesuffix(".") or text is one.what
+
+
+@pytest.mark.parametrize("one", [c for c in CASES.values() if c.cheap], ids=lambda one: one.name)
+def test_a_cheap_case_holds_and_is_on_the_page(one: Case) -> None:
+    rows = one.rows()
+    assert rows
+    for row in rows:
+        assert one.verdict(row) is not Verdict.DIFFERS
+        quantity, theirs, ours, *_ = page.cells(one, row)
+        assert f"| {quantity} | {theirs} | {ours} |" in PAGE
+
+
+def test_every_case_is_on_the_page() -> None:
+    assert set(re.findall(r": `touchdown validate ([\w-]+)`\.$", PAGE, re.MULTILINE)) == set(CASES)
+
+
+def made(known: str = "") -> Case:
+    """A case of which one row agrees and one does not."""
+
+    @case("made-up", "a made-up case", Kind.CLOSED_FORM, source="here", tolerance=0.01, why="to see it")
+    def rows() -> list[Row]:
+        """Two figures."""
+        return [Row("one", "m", 1.0, 1.001), Row("other", "m", 1.0, 1.1, known=known)]
+
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("known", "verdict", "count"),
+    [("", "differs", Verdict.DIFFERS), ("it is", "differs, known", Verdict.KNOWN)],
+)
+def test_a_row_outside_its_tolerance_is_shown(known: str, verdict: str, count: Verdict) -> None:
+    one = made(known)
+    shown = {one.name: one.rows()}
+    assert page.counted({one.name: one}, shown) == {
+        **dict.fromkeys(Verdict, 0),
+        Verdict.AGREES: 1,
+        count: 1,
+    }
+    written = page.page({one.name: one}, shown, MISSING)
+    assert f"| other | 1 m | 1.1 m | +10.00 % | 1 % | {verdict} |" in written
+    assert f"| 2 | +10.00 % | {verdict} |" in written
+
+
+def test_what_is_no_number_differs() -> None:
+    assert made("known").verdict(Row("x", "", 1.0, float("nan"))) is Verdict.DIFFERS
+
+
+def test_the_command_runs_one_and_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "hertz-impact", "--quiet"]) == 0
+    assert "1 case, 3 rows: 3 agree, " in capsys.readouterr().out
+    assert main(["validate", "--list"]) == 0
+    listed = capsys.readouterr().out
+    assert all(f"  {name} " in listed for name in CASES)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("herz-impact",), "touchdown: unknown case herz-impact; did you mean hertz-impact"),
+        (("hertz-impact", "-o", "x"), "touchdown: -o writes the page of all cases; name none of them"),
+    ],
+)
+def test_what_cannot_be_asked_for_is_one_line(
+    arguments: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["validate", *arguments]) == 2
+    complaint = capsys.readouterr().err
+    assert complaint.startswith(said)
+    assert complaint.count("\n") == 1

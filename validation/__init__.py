@@ -1,0 +1,1 @@
+"""Figures of the world beside ours: closed forms, other programs, published computations, measurements."""

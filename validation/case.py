@@ -1,0 +1,110 @@
+"""What a case is: a figure from elsewhere, ours beside it, how far apart they may be, and why."""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+
+
+class Kind(Enum):
+    """Where the figure beside ours is from."""
+
+    CLOSED_FORM = "closed form"
+    PROGRAM = "other program"
+    COMPUTATION = "published computation"
+    MEASUREMENT = "measurement"
+
+
+class Verdict(Enum):
+    """What a row shows."""
+
+    AGREES = "agrees"
+    KNOWN = "differs, known"
+    DIFFERS = "differs"
+
+
+class UnavailableError(Exception):
+    """A case needs what is not on this machine; the text says what."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure and ours.
+
+    unit: of both, as it is printed; tolerance: relative, None for that of the case; known: why the row
+    lies outside of it, where it does and that is understood or at least looked into.
+    """
+
+    quantity: str
+    unit: str
+    theirs: float
+    ours: float
+    tolerance: float | None = None
+    known: str = ""
+
+    @property
+    def deviation(self) -> float:
+        """Of ours, over theirs."""
+        return self.ours / self.theirs - 1.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A comparison that runs by its name.
+
+    what: is computed, and how; source: the citation; looked_at: whether the figures were read there for
+    this case, else they are quoted from memory or from another text; tolerance: relative; why: it is as
+    large as that; afterwards: whether it was set with the result known; command: which made the figures
+    of another program, with its version and date; cheap: less than a second once its kernels are compiled.
+    """
+
+    name: str
+    title: str
+    kind: Kind
+    what: str
+    source: str
+    tolerance: float
+    why: str
+    compute: Callable[[], Sequence[Row]] = field(repr=False)
+    looked_at: bool = True
+    afterwards: bool = False
+    command: str = ""
+    cheap: bool = True
+
+    def rows(self) -> list[Row]:
+        """The rows, computed. Raises `UnavailableError` where they cannot be."""
+        return list(self.compute())
+
+    def verdict(self, row: Row) -> Verdict:
+        """What one of its rows shows; what is not a number differs."""
+        allowed = self.tolerance if row.tolerance is None else row.tolerance
+        if abs(row.deviation) <= allowed and math.isfinite(row.ours):
+            return Verdict.AGREES
+        return Verdict.KNOWN if row.known else Verdict.DIFFERS
+
+
+def case(
+    name: str,
+    title: str,
+    kind: Kind,
+    *,
+    source: str,
+    tolerance: float,
+    why: str,
+    looked_at: bool = True,
+    afterwards: bool = False,
+    command: str = "",
+    cheap: bool = True,
+) -> Callable[[Callable[[], Sequence[Row]]], Case]:
+    """Make a case of a function that gives its rows; the function's docstring says what is computed."""
+
+    def make(compute: Callable[[], Sequence[Row]]) -> Case:
+        what = " ".join((inspect.getdoc(compute) or "").split())
+        return Case(
+            name, title, kind, what, source, tolerance, why, compute, looked_at, afterwards, command, cheap
+        )
+
+    return make
