@@ -586,6 +586,8 @@ def start(words):
     q, d = m.q, m.d
     seat.take_inputs(q, m)
     ring.place(q, d.rest_x, d.rest_y)
+    if d.rows > 0:
+        q[RZ], q[RVZ] = q[seat.HZ], q[seat.HVZ]
     state_constants(m)
     seat.begin(react, report, m)
 

@@ -139,7 +139,7 @@ def _seat(
         }
         return {n: settings.get((name, n), start) for n, start in own.items() if start is not None}
 
-    chosen = scene.components[a.bearing].preset
+    chosen, moves = scene.components[a.bearing].preset, values(a.body).get("axial")
     return Seat(
         bearing=a.bearing,
         values=values(a.bearing),
@@ -149,6 +149,7 @@ def _seat(
         speed=values(a.body).get("speed"),
         bare_speed=is_bare(scene.components[a.body].set.get("speed")),
         gravity=values(a.body).get("gravity"),
+        axial=None if moves is None else moves == 1.0,
     )
 
 

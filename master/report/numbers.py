@@ -78,6 +78,9 @@ SEAT = re.compile(r"whirl_(?P<seat>.+?)(?P<tail>|_trend|_revolutions|_radius_um|
 FIGURE_NAMES = {  # key without its component: words, and the unit of the value
     "first_contact_time_s": ("First contact, after the shutdown", "s"),
     "first_contact_speed_m_s": ("Speed of the first contact", "m/s"),
+    "face_landing_time_s": ("First landing on a face", "s"),
+    "face_landing_speed_m_s": ("Speed of that landing", "m/s"),
+    "peak_face_force_N": ("Largest force on a face", "N"),
     "peak_contact_force_N": ("Largest contact force", "N"),
     "peak_indentation_rotor_ring_um": ("Largest indentation, journal in ring", "µm"),
     "peak_indentation_rings_um": ("Largest approach of the rings", "µm"),

@@ -107,7 +107,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     courses: dict[str, Course] = {}  # by the bearing's name
     for a, over in zip(seats, overs, strict=True):
         tail = f"_{a.bearing}" if len(seats) > 1 else ""
-        own = _bearing_figures(system, a, outcome)
+        own = _bearing_figures(system, a, outcome) | _face_figures(system, a, outcome)
         own |= values_at(over, system, a.bearing, FIRST_IMPACTS, recording)
         figures |= {f"{key}{tail}": value for key, value in own.items()}
         with suppress(NotRecordedError):
@@ -143,6 +143,28 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     return {key: _finite(value) for key, value in figures.items()}
 
 
+FACES = (  # of a shoulder's landing along the shaft
+    Figure("face_landing_time_s", "shoulder.first_time", from_zero=True),
+    Figure("face_landing_speed_m_s", "shoulder.first_speed"),
+    Figure("peak_face_force_N", "shoulder.peak_force"),
+)
+
+
+def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
+    """Of a bearing with faces for a shoulder to land on: when, how fast and how hard it did."""
+    values = {key: f"{a.bearing}.shoulder.{key}" for key in ("gap_minus", "gap_plus", "first_time")}
+    if any(name not in system for name in values.values()):
+        return {}
+    if system.value(values["gap_minus"]) <= 0.0 and system.value(values["gap_plus"]) <= 0.0:
+        return {}
+    landed = system.value(values["first_time"]) != -1.0
+    found: dict[str, object] = {}
+    for figure in FACES:
+        value = system.value(f"{a.bearing}.{figure.variable}")
+        found[figure.key] = value - (outcome.zero if figure.from_zero else 0.0) if landed else None
+    return found
+
+
 def _finite(figure: object) -> object:
     """A figure; None for one that is no finite number, which JSON has not."""
     return None if isinstance(figure, float) and not math.isfinite(figure) else figure
@@ -151,7 +173,9 @@ def _finite(figure: object) -> object:
 def _bearing_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str, object]:
     component = system.components[a.bearing]
     figures: dict[str, object] = {}
-    touched = component.read(["contact.first_time"])[0] != -1.0
+    landed = "shoulder.first_time"
+    times = ["contact.first_time", *([landed] if landed in component.variables else [])]
+    touched = any(time != -1.0 for time in component.read(times))
     for figure in FIGURES:
         if figure.variable not in component.variables:
             continue
@@ -287,9 +311,15 @@ def _force_on_journal(
     a: Attachment, orbit: tuple[np.ndarray, np.ndarray], recording: Recording
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """The bearing's force on the journal (N), x and y, or its normal part alone; None where unknown."""
-    if (whole := _whole_force(a, recording)) is not None:
-        return whole
     normal = f"{a.bearing}.contact.force"
+    whole = _whole_force(a, recording)
+    if whole is not None:
+        along = f"{a.bearing}.journal.fz"
+        if along not in recording or not np.any(recording[along]):
+            return whole
+        # friction of the faces presses nothing into the bore
+        touches = recording[normal] > 0.0 if normal in recording else np.ones(len(whole[0]), dtype=bool)
+        return whole[0] * touches, whole[1] * touches
     if normal not in recording:
         return None
     angle = np.arctan2(orbit[1], orbit[0])

@@ -7,7 +7,7 @@ than was meant. Whatever runs a scene looks at it once its components are set, b
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ..common.errors import TouchdownError
@@ -20,6 +20,7 @@ MIN_BORE_FILL = 0.7  # of the bore that journal and clearance fill at least, whe
 HIGH_FRICTION = 1.0  # coefficient of friction; dry steel has 0.1 to 0.5
 MAX_FRICTION = 5.0  # above which nothing rubs
 BALLS = "balls."  # begins the names of what a ball bearing says of its balls
+FACES = ("shoulder.gap_minus", "shoulder.gap_plus")
 COEFFICIENTS = ("friction.dynamic", "friction.static")
 
 
@@ -35,6 +36,12 @@ class Seat:
     speed: float | None  # rad/s, at the start
     bare_speed: bool = False  # whether it was given as a number without a unit
     gravity: float | None = None  # m/s2, of that body
+    axial: bool | None = None  # whether that body moves along its shaft; None: it cannot
+
+    @property
+    def has_faces(self) -> bool:
+        """Whether a shoulder of the body lands on it along the shaft."""
+        return any(self.values.get(name, 0.0) > 0.0 for name in FACES)
 
     @property
     def width(self) -> float | None:
@@ -48,7 +55,9 @@ def plausibility_warnings(seats: Iterable[Seat]) -> list[str]:
 
     Raises TouchdownError for what cannot be.
     """
-    return list(dict.fromkeys(line for seat in seats for line in _of_seat(seat)))
+    every = list(seats)
+    told = [line for seat in every for line in _of_seat(seat)]
+    return list(dict.fromkeys((*told, *_along(every))))
 
 
 def _of_seat(seat: Seat) -> Iterator[str]:
@@ -113,12 +122,33 @@ def _speed(seat: Seat) -> Iterator[str]:
 
 
 def _weight(seat: Seat) -> Iterator[str]:
-    if seat.gravity == 0.0:
+    if seat.gravity == 0.0 and not seat.axial:
+        remedy = f"; {seat.body}.axial = 1 lets it move along its shaft, too" if seat.axial is False else ""
         yield (
             f"{seat.body}.gravity = 0 m/s2: nothing presses {seat.body} into its bearings, and it drops "
-            "nowhere. Motion is in the plane across the shaft; the landing of a vertical machine along its "
-            "axis is not modelled"
+            f"nowhere in the plane across its shaft{remedy}"
         )
+
+
+def _along(seats: Sequence[Seat]) -> Iterator[str]:
+    """What is not carried along the shaft."""
+    for body in dict.fromkeys(seat.body for seat in seats if seat.axial):
+        mine = [seat for seat in seats if seat.body == body]
+        if not any(seat.has_faces for seat in mine):
+            able = [seat.bearing for seat in mine if FACES[0] in seat.values]
+            remedy = (
+                f"set {able[0]}.{FACES[0]} or {FACES[1]}"
+                if able
+                else "take a bushing, or a simplified_caged bearing, which have faces"
+            )
+            yield f"{body}.axial = 1: no bearing holds {body} along its shaft; {remedy}"
+    for seat in seats:
+        if seat.has_faces and not seat.axial:
+            remedy = f"; set {seat.body}.axial = 1" if seat.axial is False else ""
+            yield (
+                f"{seat.bearing} has faces for a shoulder to land on, and {seat.body} does not move along "
+                f"its shaft{remedy}"
+            )
 
 
 def _mm(length: float) -> str:

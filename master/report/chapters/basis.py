@@ -32,14 +32,21 @@ from ..numbers import digits, quantity, share
 from ..subject import Subject, number, run_origin
 
 FOREIGN_FMU = "an FMU of another's; its own documentation says what is in it"
+IN_THE_PLANE = "Axial motion and axial loads: all is in the radial planes of the bearings."
+ALONG = (
+    "Tilt of the bearings' rings; and in bearings whose ring stays in its plane, what a thrust does to the "
+    "balls."
+)
+RIGID_RINGS = (
+    "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs."
+)
+BENDING_RINGS = "Bending of the outer rings, which their seats hold round, and of the housing."
 ALWAYS_LEFT_OUT = (
-    "Axial motion and axial loads: all is in the radial planes of the bearings.",
     "Temperature: friction's heat is counted, by part, but what it warms does not expand in the run; the "
     "chapter on heat says what that would come to.",
     "Lubricant, wear and damage: the laws of friction and contact stay the same, drop after drop.",
     "Forces of the process, the motor and the magnetic bearings after the shutdown, but for what a drag or "
     "an FMU of the scene states.",
-    "Bending of the bearings' rings and of the housing: they are rigid, but for contacts and springs.",
 )
 LEFT_OUT = {  # model: what it has not
     "rigid_rotor": ("The rotor's tilting and bending: it is a disc that moves in one plane.",),
@@ -111,7 +118,16 @@ def _left_out(subject: Subject) -> Iterator[str]:
         for text in LEFT_OUT.get(spec.fmu, ()):
             said.setdefault(text, []).append(name)
     yield from (text.format(name=" and ".join(names)) for text, names in said.items())
+    yield ALONG if _is_on(subject, "axial") else IN_THE_PLANE
     yield from ALWAYS_LEFT_OUT
+    yield BENDING_RINGS if _is_on(subject, "ring.harmonics") else RIGID_RINGS
+
+
+def _is_on(subject: Subject, variable: str) -> bool:
+    """Whether a component of the scene has this parameter, and not at 0."""
+    system = subject.run.system
+    names = (f"{name}.{variable}" for name in subject.result.scene.components)
+    return any(name in system and system.value(name) != 0.0 for name in names)
 
 
 # Of the turnover: what the coupling makes or loses says nothing against the figures

@@ -191,6 +191,38 @@ def slowing(figure: FigureBase, run: Finished, a: Attachment) -> Axes:
     return _over_time(axes, run)
 
 
+def has_faces(run: Finished, a: Attachment) -> bool:
+    """Whether a shoulder of the rotor can land on the bearing."""
+    names = (f"{a.bearing}.shoulder.gap_{side}" for side in ("minus", "plus"))
+    faces = any(name in run.system and run.system.value(name) > 0.0 for name in names)
+    return faces and a.motion("z") in run.recording and f"{a.bearing}.shoulder.force" in run.recording
+
+
+def along(figure: FigureBase, run: Finished, a: Attachment) -> list[Axes]:
+    """Rotor and ring along the shaft between the faces [µm], and the forces there [N]."""
+    recording, time = run.recording, run.recording.time
+    upper, lower = sized(figure, 9, 6).subplots(2, 1, sharex=True)
+    port = housing_port(run.system, a)
+    housing = recording[f"{port}.z"] if port and f"{port}.z" in recording else 0.0
+    upper.plot(*thinned(time, UM * (recording[a.motion("z")] - housing)), color=BLACK, label="rotor")
+    if (ring := f"{a.bearing}.along.z") in recording:
+        upper.plot(*thinned(time, UM * (recording[ring] - housing)), color=ORANGE, label="inner ring")
+    for side, sign in (("minus", -1.0), ("plus", 1.0)):
+        gap = run.system.value(f"{a.bearing}.shoulder.gap_{side}")
+        if gap > 0.0:
+            upper.axhline(sign * UM * gap, ls="--", color=GREY, lw=1, label=f"face at {side} z")
+    upper.set_ylabel("along the shaft [µm]")
+    upper.legend()
+    lower.plot(*thinned(time, recording[f"{a.bearing}.shoulder.force"]), color=BLUE, label="face")
+    if (balls := f"{a.bearing}.along.force") in recording:
+        lower.plot(*thinned(time, recording[balls]), color=GREEN, lw=0.6, label="balls on the ring")
+    lower.set_ylabel("force along the shaft [N]")
+    lower.set_xlabel(TIME)
+    lower.legend()
+    upper.set_title(f"{run.scene.title}\n{a.bearing}, along the shaft")
+    return [upper, lower]
+
+
 def _over_time(axes: Axes, run: Finished) -> Axes:
     time = run.recording.time
     axes.set_xlim(beginning(time), float(time[-1]))

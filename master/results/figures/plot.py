@@ -21,7 +21,7 @@ from ..summary import energy_total, is_estimated, touchdown_seats
 from .energy import energy
 from .forces import contacts, forces, has_contacts
 from .gaps import gaps_left
-from .motion import distance, orbits, paths, slowing, speeds
+from .motion import along, distance, has_faces, orbits, paths, slowing, speeds
 from .spectra import has_spectrum, has_waterfall, motion_waterfall, spectrum
 from .stress import has_stress, stress
 from .style import darkened, sheet, styled
@@ -49,6 +49,7 @@ class OfBearing:
 
 OF_BEARING = [
     OfBearing("orbit", paths),
+    OfBearing("along", along, has_faces),
     OfBearing("force", forces, lambda run, a: f"{a.bearing}.contact.force" in run.recording),
     OfBearing("speeds", speeds, lambda run, a: f"{a.bearing}.speed.ring" in run.recording),
     OfBearing("distance", distance, lambda run, a: is_estimated(run.system, a)),
@@ -156,6 +157,19 @@ class Plot:
         self._require(f"{seat.bearing}.contact.force")
         with self._drawing(figure) as whole:
             return forces(whole, self._run(), seat)
+
+    def along(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
+        """Rotor and ring along the shaft between the faces [µm], and the forces there [N]."""
+        from .motion import along, has_faces
+
+        run, seat = self._run(), self._seat(bearing)
+        if not has_faces(run, seat):
+            raise TouchdownError(
+                f"{seat.bearing} has no faces for a shoulder to land on; set its shoulder.gap_minus or "
+                "shoulder.gap_plus, and axial = 1 of the rotor"
+            )
+        with self._drawing(figure) as whole:
+            return along(whole, run, seat)
 
     def speeds(self, figure: FigureBase | None = None, bearing: str | None = None) -> list[Axes]:
         """Circumferential speeds of rotor, ring, balls and cage over time [m/s]."""

@@ -26,6 +26,7 @@ def unbalanced(system: Readable) -> list[str]:
 NEAR = (0.75, 1.25)  # turns one way: about the one that makes a whirl; a turn is a hop or two more or less
 MARCHED = "_most_turns_one_way"  # behind the key of a verdict
 CONTACT = "first_contact_time_s"  # begins the key of a bearing's; no value: not yet
+LANDING = "face_landing_time_s"  # likewise, of a shoulder along the shaft
 SWUNG = math.degrees(MIN_SWING)  # of a pendulum, either way in contact
 COARSELY = (
     "from one recorded row in contact to the next the contact mostly moves by a quarter turn or more; "
@@ -37,6 +38,8 @@ SLIDES = 1.0  # deg of the force's phase; below it the force neither drives a wh
 def evidence(summary: Mapping[str, object]) -> list[str]:
     """A line for each verdict of a run's summary: what it rests on, and whether that is near an edge."""
     if not touched(summary):
+        if any(key.startswith(LANDING) and value is not None for key, value in summary.items()):
+            return ["the rotor landed along its shaft, and touched no bore"]
         return ["no bearing has been touched: the run ends before; a longer run.duration shows the drop"]
     return [_rests_on(summary, key.removesuffix(MARCHED)) for key in summary if key.endswith(MARCHED)]
 

@@ -106,3 +106,28 @@ def test_a_sweep_keeps_what_its_runs_warn_of(tmp_path: Path) -> None:
         journal.add(member)
     back = read_journal(journal.path, {1: {}, 2: {}, 3: {}}).members
     assert warned([back[n] for n in (1, 2, 3)]) == ["  2 x it is fast (member 2)"]
+
+
+FACED = replace(SEAT, values={**VALUES, "shoulder.gap_minus": 1e-4, "shoulder.gap_plus": 0.0}, axial=True)
+BARE = replace(FACED, values={**VALUES, "shoulder.gap_minus": 0.0, "shoulder.gap_plus": 0.0})
+
+
+@pytest.mark.parametrize(
+    ("seats", "said"),
+    [
+        ([FACED, replace(BARE, bearing="other")], None),  # one of two is enough
+        ([BARE], "rotor.axial = 1: no bearing holds rotor along its shaft; set bearing.shoulder.gap_minus"),
+        ([replace(SEAT, axial=True)], "take a bushing, or a simplified_caged bearing"),
+        (
+            [replace(FACED, axial=False)],
+            "bearing has faces for a shoulder to land on, and rotor does not move along its shaft; "
+            "set rotor.axial = 1",
+        ),
+        ([replace(FACED, gravity=0.0)], None),
+        ([replace(SEAT, axial=False, gravity=0.0)], "rotor.axial = 1 lets it move along its shaft, too"),
+    ],
+)
+def test_what_is_not_carried_along_the_shaft_is_said(seats: list[Seat], said: str | None) -> None:
+    found = plausibility_warnings(seats)
+    assert found == [] if said is None else len(found) == 1
+    assert said is None or said in found[0]
