@@ -29,7 +29,8 @@ ONE = np.eye(2)
 
 def beam(count: int, length: float = LENGTH, **changes: float) -> Shaft:
     """A shaft of 60 mm in `count` elements."""
-    element = Element(**({"length": length / count, "outer_diameter": 0.06, **STEEL} | changes))
+    settings: dict[str, Any] = {"length": length / count, "outer_diameter": 0.06, **STEEL, **changes}
+    element = Element(**settings)
     return Shaft("beam", (element,) * count)
 
 
@@ -53,7 +54,7 @@ def free_beam() -> list[Row]:
     rows = []
     for k, hz in enumerate(found, start=1):
         middle = (k + 0.5) * math.pi
-        b = brentq(lambda x: math.cos(x) - 1.0 / math.cosh(x), middle - 0.5, middle + 0.5)
+        b: Any = brentq(lambda x: math.cos(x) - 1.0 / math.cosh(x), middle - 0.5, middle + 0.5)
         rows.append(Row(f"bending mode {k}", "Hz", float(b) ** 2 * unit, float(hz)))
     return rows
 
