@@ -7,7 +7,7 @@ by one command, and besides by the matrices M, K and G of the free rotor alone. 
 solved here without its axial and torsional coordinates, undamped, and with all coefficients of its
 bearings, damping and cross-coupling, as complex roots ("damped"); `run_modal` and `run_ucs` (critical
 speeds over the stiffness of the bearings) are solved as they are. With -o it leaves saved files, matrices
-and ROSS's figures in FOLDER, which is how tests/rotor/imports/saved came to be.
+and ROSS's figures in FOLDER, which is how validation/ross came to be.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
     ),
     "validation": (
         "registry",
-        *("statics", "contacts"),
+        *("rig", "rotors", "statics", "rings", "mounts", "contacts"),
         *("page", "case"),
     ),
     "fmus": (

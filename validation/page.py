@@ -35,7 +35,7 @@ How to read it:
 
 def listing(cases: Iterable[Case]) -> str:
     """Which cases there are, a line each."""
-    return "\n".join(f"  {one.name:<26}{one.title} ({one.kind.value})" for one in cases)
+    return "\n".join(f"  {one.name:<34}{one.title} ({one.kind.value})" for one in cases)
 
 
 def number(value: float) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from .case import Case, Row, UnavailableError
 
-MODULES = ("contacts", "statics")
+MODULES = ("contacts", "mounts", "rings", "statics", "rotors", "rig")
 
 MISSING = """## Not yet possible
 

@@ -13,6 +13,7 @@ from ....bearings.angular.row import ARRANGEMENTS, BACK_TO_BACK, SINGLE, TANDEM
 from ....bearings.angular.statics import Mounted, balance, balls_on
 from ....bearings.catalogue import NUMBERS, OWN_FILE, Bearing, CatalogueError, speed_limits
 from ....bearings.catalogue.load_sharing import HELD, Seat, ball_loads, harmonics_for
+from ....bearings.catalogue.spinning import WORTH_GROWTH, spun
 from ...common.errors import TouchdownError, one_of, with_remedy
 
 DISPLAY_UNITS = {"m": (1e3, "mm"), "N": (1e-3, "kN"), "rad": (math.degrees(1.0), "deg"), "1": (1.0, "")}
@@ -91,7 +92,7 @@ def shared(bearing: Bearing, load: float) -> str:
 
 
 def fast_enough(bearing: Bearing, speed: float) -> str:
-    """Which cages run the bearing at `speed` (rad/s) for long, by its bore times that."""
+    """Which cages run the bearing at `speed` (rad/s) for long, and by how much its inner ring grows."""
     unit = speed_limits.MM_RPM
     given = speed_limits.speed_factor(bearing, speed) / unit
     lines = [
@@ -104,7 +105,22 @@ def fast_enough(bearing: Bearing, speed: float) -> str:
         "  Makers' limits (NHBB; hybrids 20 % more) are of lubricated bearings that run for hours; without "
         "a cage they\n  state none. A landing lasts seconds: beyond them ask the maker."
     )
+    lines += _growth_lines(bearing, speed)
     return "\n".join(lines)
+
+
+def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
+    """What spin adds to the clearance and takes from the play, once the inner ring runs with the shaft."""
+    ring = spun(bearing, speed)
+    over = "above" if ring.matters else "below"
+    yield (
+        f"  inner ring by its spin: the bore grows by {1e6 * ring.bore:.4g} um on radius, the race by "
+        f"{1e6 * ring.race:.4g} um, which comes off the play"
+    )
+    yield (
+        f"  the race runs at {ring.surface:.3g} m/s, {over} the {WORTH_GROWTH:g} m/s from which growth is "
+        "worth a thought; drops leave it out"
+    )
 
 
 def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mounted:

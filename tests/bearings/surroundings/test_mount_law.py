@@ -125,17 +125,6 @@ def film(cavitation: int) -> Any:
     return as_record(law.Film(0.03, 0.012, 1e-4, 0.01, cavitation))
 
 
-@pytest.mark.parametrize("e", [0.0, 0.2, 0.5, 0.8])
-def test_films_on_the_axes(e: float) -> None:
-    """Closed forms of a short bearing: whole, and torn while it circles."""
-    radial, _, across = law.film_matrix(film(0), e * 1e-4, 0.0, 0.0, 1.0)
-    assert across == pytest.approx(math.pi * S * (1 - e * e) ** -1.5, rel=1e-11)
-    assert radial == pytest.approx(math.pi * (1 + 2 * e * e) * S * (1 - e * e) ** -2.5, rel=1e-11)
-    _, mixed, across = law.film_matrix(film(1), e * 1e-4, 0.0, 0.0, 1.0)
-    assert across == pytest.approx(0.5 * math.pi * S * (1 - e * e) ** -1.5, rel=1e-11)
-    assert mixed == pytest.approx(2.0 * S * e / (1 - e * e) ** 2, rel=1e-11, abs=1e-9)
-
-
 def test_a_torn_film_in_any_direction() -> None:
     """Against quadrature of n n^T/H^3 over the half that is squeezed."""
     generator = np.random.default_rng(4)

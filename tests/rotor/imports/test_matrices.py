@@ -24,7 +24,7 @@ from touchdown.rotor.modal.modes import basis, flexibility
 from touchdown.rotor.modal.whirl_speeds import whirl_frequencies
 from touchdown.rotor.statics import at_rest
 
-SAVED = Path(__file__).parent / "saved"
+SAVED = ROOT / "validation" / "ross"
 THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
 EXAMPLE = ROOT / "examples" / "spindle_matrices"
 U, R = ("UX", "UY", "UZ"), ("ROTX", "ROTY", "ROTZ")

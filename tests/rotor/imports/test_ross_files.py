@@ -1,6 +1,6 @@
 """Rotors of ROSS: its published examples by its own frequencies, its objects, and what cannot be imported.
 
-The files in `saved` and the frequencies beside them are ROSS's; `benchmarks/ross_rotors.py` makes them.
+The files in validation/ross are ROSS's; `benchmarks/ross_rotors.py` makes them.
 """
 
 from __future__ import annotations
@@ -14,16 +14,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from places import ROOT
 
 from touchdown.rotor.beams.shaft import Shaft, Station, Support
 from touchdown.rotor.file import parse, written
 from touchdown.rotor.imports import ImportedRotorError, from_ross, read
 from touchdown.rotor.imports.ross import of_elements
-from touchdown.rotor.modal.modes import basis
-from touchdown.rotor.modal.supported import HeldRotor, LinearBearing
-from touchdown.rotor.modal.whirl_speeds import critical_speeds, whirl_frequencies
 
-SAVED = Path(__file__).parent / "saved"
+SAVED = ROOT / "validation" / "ross"
 THEIRS = json.loads((SAVED / "frequencies.json").read_text(encoding="utf-8"))["hz"]
 AGREE = 1e-9  # relative; found: 9e-11
 STEEL = {"name": "Steel", "rho": 7810.0, "E": 211e9, "G_s": 81.2e9, "color": "#525252"}
@@ -38,42 +36,6 @@ OLD: dict[str, dict[str, Any]] = {  # as versions before 2.0 wrote them
     "BearingElement_Bearing 0": {"n": 0, "kxx": [1e6], "kyy": [2e6], "cxx": [0.0], "cyy": [5.0]},
     "BearingElement_Bearing 1": {"n": 2, "kxx": [1e6, 3e6], "cxx": [0.0, 0.0], "frequency": [0.0, 100.0]},
 }
-
-
-def bent(whirl: np.ndarray, shaft: Shaft) -> np.ndarray:
-    """Without the free rotor's precession."""
-    return whirl[whirl > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)]
-
-
-@pytest.mark.parametrize(
-    ("name", "kind"), [(n, kind) for n, kinds in THEIRS.items() for kind in ("free", "held") if kinds[kind]]
-)
-def test_six_modes_of_a_published_example(name: str, kind: str) -> None:
-    """Backward and forward, at rest and spinning, free and on its bearings."""
-    shaft = read(SAVED / f"{name}.toml")
-    for rpm, theirs in THEIRS[name][kind].items():
-        speed = float(rpm) * math.pi / 30.0
-        if kind == "free":
-            found = bent(np.abs(whirl_frequencies(basis(shaft, 0), [speed])[0]) / (2.0 * math.pi), shaft)
-        else:
-            springs = [Support(s.node, s.stiffness, s.stiffness_y) for s in shaft.supports]
-            found = (
-                HeldRotor(basis(shaft, 0), [LinearBearing.of(s) for s in springs]).whirl(speed).frequencies
-            )
-        ours = np.sort(found)
-        assert len(theirs) >= 10
-        assert ours[: len(theirs)] == pytest.approx(theirs, rel=AGREE)
-
-
-@pytest.mark.parametrize("name", THEIRS)
-def test_its_critical_speeds_over_the_stiffness_of_its_bearings(name: str) -> None:
-    """Those of `ross.Rotor.run_ucs`, synchronous."""
-    shaft = read(SAVED / f"{name}.toml")
-    modes = basis(shaft, 0)
-    for stiffness, theirs in THEIRS[name]["critical"].items():
-        ours = critical_speeds(modes, [Support(s.node, float(stiffness)) for s in shaft.stations])
-        assert len(theirs) == 4
-        assert ours[:4] == pytest.approx(theirs, rel=1e-7)  # found: 8e-9
 
 
 @pytest.mark.parametrize("name", THEIRS)

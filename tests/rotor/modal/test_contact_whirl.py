@@ -32,24 +32,6 @@ def spring(stiffness: float, ratio: float) -> Seat:
     return Seat(CLEARANCE, bearing, rigid)
 
 
-@pytest.mark.parametrize("beta", [1.0, 10.0, 40.0])
-def test_the_threshold_of_dry_whip(beta: float) -> None:
-    """Jeffcott's rotor on a rigid stator: least friction 2 zeta sqrt(1 + beta)/beta, beta = k_contact/k."""
-    mass, k, zeta = 1.0, 1e6, 0.05
-    damping = 2.0 * zeta * math.sqrt(k * mass)
-
-    def rotor(omega: float) -> np.ndarray:
-        return np.array([[1.0 / (k - mass * omega**2 + 1j * omega * damping)]])
-
-    whirl = ContactWhirl(rotor, [spring(beta * k, 1.0)])
-    end = 2.0 * math.sqrt((1.0 + beta) * k / mass)
-    circles = list(whirl.faster(-100.0, -end))
-    assert min(c.drive for c in circles) == pytest.approx(
-        2.0 * zeta * math.sqrt(1.0 + beta) / beta, rel=1e-3
-    )
-    assert abs(circles[-1].omega) < end  # where the rotor on its contact runs away
-
-
 def test_a_free_mass_on_a_damped_carrier() -> None:
     """N = m W^2 (c + X + d): drive by hand from the carrier's loss, N T = c_d W^2 X^2 over W r."""
     mass, k, damping, contact, mu = 20.0, 1e7, 2000.0, 1e9, 0.02

@@ -12,7 +12,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 
 PUMP = str(ROOT / "examples" / "pump_sections.csv")
-SAVED = ROOT / "tests" / "rotor" / "imports" / "saved"
+SAVED = ROOT / "validation" / "ross"
 
 
 def test_a_table_becomes_a_rotor_with_its_places(

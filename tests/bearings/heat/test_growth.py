@@ -1,0 +1,58 @@
+"""Growth by spin against the equation of the spinning disc, solved in small steps, and its limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from touchdown.bearings.catalogue import bearing
+from touchdown.bearings.catalogue.spinning import spun
+from touchdown.bearings.contact.materials import STEEL_DENSITY, STEEL_NUMBERS
+from touchdown.bearings.heat.growth import ring_growth
+
+RPM = math.pi / 30.0
+E, NU = STEEL_NUMBERS
+
+
+@pytest.mark.parametrize(("bore", "rim"), [(10e-3, 11.85e-3), (35e-3, 39.5e-3), (5e-3, 20e-3)])
+def test_a_ring_meets_the_equation_of_the_spinning_disc(bore: float, rim: float) -> None:
+    """u'' + u'/r - u/r^2 = -(1 - nu^2) rho w^2 r/E with no stress at either rim; r and u scaled."""
+    speed = 18000.0 * RPM
+    load = (1.0 - NU**2) * STEEL_DENSITY * speed**2 * rim**3 / E
+
+    def slope(r: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return np.array([u[1], u[0] / r**2 - u[1] / r - r])
+
+    def free(at_bore: np.ndarray, at_rim: np.ndarray) -> np.ndarray:
+        return np.array([at_bore[1] + NU * at_bore[0] * rim / bore, at_rim[1] + NU * at_rim[0]])
+
+    r = np.linspace(bore / rim, 1.0, 41)
+    solved = solve_bvp(slope, free, r, np.ones((2, len(r))), tol=1e-9)
+    assert solved.success
+    grown = ring_growth(bore, rim, speed, STEEL_DENSITY, STEEL_NUMBERS)
+    assert grown.bore == pytest.approx(load * solved.sol(r[0])[0], rel=1e-7)
+    assert grown.rim == pytest.approx(load * solved.sol(1.0)[0], rel=1e-7)
+
+
+def test_thin_rings_and_shafts() -> None:
+    """rho w^2 r^3/E, and (1 - nu)/4 of it; a thickness of r/5000 is off by its like."""
+    speed, radius = 2000.0, 10e-3
+    thin = STEEL_DENSITY * speed**2 * radius**3 / E
+    grown = ring_growth(radius - 1e-6, radius + 1e-6, speed, STEEL_DENSITY, STEEL_NUMBERS)
+    assert grown.bore == pytest.approx(thin, rel=1e-4)
+    assert grown.rim == pytest.approx(thin, rel=1e-4)
+    shaft = ring_growth(0.0, radius, speed, STEEL_DENSITY, STEEL_NUMBERS)
+    assert shaft.rim == pytest.approx(0.25 * (1.0 - NU) * thin, rel=1e-12)
+
+
+def test_bearings_by_name() -> None:
+    """The 6904 at 18 000 rpm: 0.1792 um at the bore; 150 m/s is beyond what its race reaches at 100 000."""
+    slow, fast = (spun(bearing("6904"), rpm * RPM) for rpm in (18000.0, 125000.0))
+    assert 1e6 * slow.bore == pytest.approx(0.1792, abs=5e-5)
+    assert slow.surface == pytest.approx(11.85e-3 * 18000.0 * RPM)
+    assert not slow.matters
+    assert fast.matters
+    assert fast.bore == pytest.approx(slow.bore * (125.0 / 18.0) ** 2)

@@ -1,0 +1,83 @@
+"""What a touchdown bearing sits in: dry friction, and a squeeze film."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..bearings.surroundings import mount_law as law
+from ..modelkit.variables import as_record
+from .case import Kind, Row, case
+
+STIFFNESS, FORCE, REACH = 2e7, 400.0, 60e-6  # N/m, N, m
+STEPS = 1000
+
+
+def heat_of_a_turn(circle: bool) -> float:
+    """Of a Jenkins element (J) whose end goes to and fro, or in a circle, by `REACH`; the last of six."""
+    slides = (law.Slide(STIFFNESS, FORCE), *(law.Slide(),) * (law.SLIDES - 1))
+    p: Any = as_record(law.Elements(slide=slides))
+    angle = 2.0 * math.pi * np.arange(6 * STEPS + 1) / STEPS
+    path = REACH * np.stack((np.cos(angle), np.sin(angle) if circle else 0.0 * angle), 1)
+    z, heat, before = np.zeros(2 * law.SLIDES), np.zeros(law.HEATS), 0.0
+    for k, ((x, y), (dx, dy)) in enumerate(zip(path[:-1], np.diff(path, axis=0), strict=True)):
+        if k == 5 * STEPS:
+            before = float(heat.sum())
+        law.go(p, x, y, dx, dy, 1e-5, z, heat)
+    return float(heat.sum()) - before
+
+
+@case(
+    "jenkins-line",
+    "a Jenkins element to and fro",
+    Kind.CLOSED_FORM,
+    source="area of the loop of a spring and a slider in series: 4 F (X - F/k)",
+    looked_at=False,
+    tolerance=1e-10,
+    why="exact where steps end at the turns; what is left is rounding of six turns",
+)
+def jenkins_line() -> list[Row]:
+    """Heat of a cycle of 60 um, with 2e7 N/m and 400 N, from the area of the loop."""
+    exact = 4.0 * FORCE * (REACH - FORCE / STIFFNESS)
+    return [Row("heat of a cycle", "J", exact, heat_of_a_turn(False))]
+
+
+@case(
+    "jenkins-circle",
+    "a Jenkins element in a circle",
+    Kind.CLOSED_FORM,
+    source="a dragged slider, whose spring lags by acos(F/(k X)): 2 pi F sqrt(X^2 - (F/k)^2)",
+    tolerance=5e-5,
+    why="second order in the step: a thousand to a turn leave 2e-5",
+)
+def jenkins_circle() -> list[Row]:
+    """Heat of a turn of a circle of 60 um once it is steady."""
+    exact = 2.0 * math.pi * FORCE * math.sqrt(REACH**2 - (FORCE / STIFFNESS) ** 2)
+    return [Row("heat of a turn", "J", exact, heat_of_a_turn(True))]
+
+
+@case(
+    "squeeze-film",
+    "a short squeeze film",
+    Kind.CLOSED_FORM,
+    source="Reynolds' equation of a short bearing, as in W. J. Chen, E. J. Gunter, "
+    "Introduction to Dynamics of Rotor-Bearing Systems (2005)",
+    looked_at=False,
+    tolerance=1e-9,
+    why="quadrature by Gauss' rule; the closed forms are of the same equation",
+)
+def squeeze_film() -> list[Row]:
+    """Damping at half the clearance: of 30 mm radius, 12 mm length, 0.1 mm clearance, 10 mPa s; whole, and
+    torn to half by cavitation while it circles."""
+    unit, e = 0.01 * 0.03 * (0.012 / 1e-4) ** 3, 0.5
+    whole, torn = (law.Film(0.03, 0.012, 1e-4, 0.01, cavitation) for cavitation in (0, 1))
+    radial, _, across = law.film_matrix(as_record(whole), e * 1e-4, 0.0, 0.0, 1.0)
+    _, mixed, half = law.film_matrix(as_record(torn), e * 1e-4, 0.0, 0.0, 1.0)
+    return [
+        Row("whole, radial", "N s/m", math.pi * (1 + 2 * e * e) * unit * (1 - e * e) ** -2.5, radial),
+        Row("whole, circling", "N s/m", math.pi * unit * (1 - e * e) ** -1.5, across),
+        Row("torn, circling", "N s/m", 0.5 * math.pi * unit * (1 - e * e) ** -1.5, half),
+        Row("torn, radial by circling", "N s/m", 2.0 * unit * e / (1 - e * e) ** 2, mixed),
+    ]

@@ -1,0 +1,144 @@
+"""A measured rotor on magnetic bearings: the test rig MLPS of TU Darmstadt and TU Munich."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from ..bearings.magnetic.magnet import Circuit, Magnet, lay_out
+from ..modelkit.variables import as_record
+from ..rotor.beams.body import PointMass
+from ..rotor.beams.element import Element
+from ..rotor.beams.shaft import Shaft
+from ..rotor.modal.modes import basis
+from ..rotor.modal.supported import HeldRotor, LinearBearing
+from .case import Kind, Row, case
+
+AMROTOR = "AMrotor (github.com/AppliedMechanics/AMrotor), folder Simulationen/MLPS_AMB_Modalanalyse"
+MAGNETS = (0.113, 0.623)  # m
+DISCS = {  # at m: kg, kg m2 polar and diametral
+    0.113: (0.85074, 4.036839e-4, 4.840066e-4),
+    0.363: (1.276499, 2.832751e-3, 1.487212e-3),
+    0.623: (0.85074, 4.036839e-4, 4.840066e-4),
+}
+SLEEVES = ((0.094, 0.132), (0.350, 0.376), (0.604, 0.642))  # m, where hubs are clamped to the shaft
+RADIUS, LENGTH, ELEMENT = 4e-3, 0.702, 0.01  # m
+FREE = (22.647, 106.131, 176.616, 215.302)  # Hz, by hammer
+ESTIMATE = 1.1e5  # N/m, of a magnetic bearing at P = 5000, by the rig's authors
+
+
+def rotor(sleeve: float) -> tuple[Shaft, dict[float, int]]:
+    """The rotor, and its nodes by place (m); sleeve: radius under the hubs over that of the shaft."""
+    marks = sorted({0.0, LENGTH, *DISCS, *(edge for pair in SLEEVES for edge in pair)})
+    elements: list[Element] = []
+    nodes = {0.0: 1}
+    for start, end in pairwise(marks):
+        clamped = any(a < 0.5 * (start + end) < b for a, b in SLEEVES)
+        count = max(1, round((end - start) / ELEMENT))
+        size = 2.0 * RADIUS * (sleeve if clamped else 1.0)
+        piece = Element(
+            length=(end - start) / count, outer_diameter=size, modulus=211e9, density=7860.0, poisson=0.3
+        )
+        elements += [piece] * count
+        nodes[end] = len(elements) + 1
+    points = tuple(PointMass(nodes[at], *body) for at, body in DISCS.items())
+    return Shaft("MLPS", tuple(elements), points), nodes
+
+
+def held(stiffness: float, count: int) -> np.ndarray:
+    """Frequencies (Hz) of the first planes' modes on magnetic bearings of a stiffness (N/m), at rest."""
+    shaft, nodes = rotor(1.2)
+    bearings = [LinearBearing(nodes[at], stiffness * np.eye(2), np.zeros((2, 2))) for at in MAGNETS]
+    return HeldRotor(basis(shaft, 0), bearings).whirl(0.0).frequencies[: 2 * count : 2]
+
+
+@case(
+    "rig-free",
+    "bending of a rig's free rotor",
+    Kind.MEASUREMENT,
+    source=f"{AMROTOR}/Auswertungen/Param_verteilteDiscs/Kennfeld_EF_ueber_raLraS.m (hammer), "
+    "parameters of Config_Sim_freefree.m",
+    tolerance=0.02,
+    why="what a model of beams and rigid hubs gives of a hammer test; the authors chose the factor 1.2 for "
+    "the radius under the hubs by these four figures, so it is fitted, by them",
+    afterwards=True,
+)
+def rig_free() -> list[Row]:
+    """A shaft of 8 mm by 0.702 m with three hubs of 0.85, 1.28 and 0.85 kg, hung up: four frequencies. The
+    shaft's radius is 1.2 times as large where hubs are clamped on it."""
+    found = basis(rotor(1.2)[0], 6).omega[2:] / (2.0 * math.pi)
+    return [
+        Row(f"bending mode {k}", "Hz", a, float(b))
+        for k, (a, b) in enumerate(zip(FREE, found, strict=True), start=1)
+    ]
+
+
+@case(
+    "rig-free-plain",
+    "the same, without a stiffening by hubs",
+    Kind.MEASUREMENT,
+    source=f"{AMROTOR}, as above",
+    tolerance=0.12,
+    why="hubs of 26 to 38 mm stiffen a tenth of the shaft; nothing is fitted here, so all come out low",
+    afterwards=True,
+)
+def rig_plain() -> list[Row]:
+    """The rotor by its drawing's dimensions alone, hubs as rigid bodies that touch the shaft at a point."""
+    found = basis(rotor(1.0)[0], 6).omega[2:] / (2.0 * math.pi)
+    return [
+        Row(f"bending mode {k}", "Hz", a, float(b))
+        for k, (a, b) in enumerate(zip(FREE, found, strict=True), start=1)
+    ]
+
+
+@case(
+    "rig-held",
+    "the rig's rotor on its magnetic bearings",
+    Kind.MEASUREMENT,
+    source=f"{AMROTOR}/Auswertungen/Param_verteilteDiscs/Kennfeld_EF_ueber_raLraS.m and "
+    "Abschaetzung_ML_k.m, parameters of Config_Sim_eingebaut.m",
+    tolerance=0.05,
+    why="the stiffness of 1.1e5 N/m is the authors' estimate for a controller's P of 5000; at which P the "
+    "first two rows were measured is not said",
+    afterwards=True,
+)
+def rig_held() -> list[Row]:
+    """Frequencies at rest, levitated; assumed: magnetic bearings without damping, lag or tilt stiffness,
+    their force at the middle of their hubs. 52.013 Hz was once taken for the whole rotor on two springs,
+    which gives 1.748e5 N/m each."""
+    estimate, rigid = held(ESTIMATE, 4), held(1.748e5, 2)
+    return [
+        Row("first bending", "Hz", 16.7, float(estimate[0])),
+        Row("next bending", "Hz", 103.0, float(estimate[3])),
+        Row("on its springs, 1.1e5 N/m", "Hz", 52.013, float(estimate[1])),
+        Row(
+            "on its springs, 1.748e5 N/m",
+            "Hz",
+            52.013,
+            float(rigid[1]),
+            known="1.748e5 N/m takes the rotor for rigid, so that all of its 3.274 kg swings; "
+            "it bends at 17 Hz already, the middle disc stays behind, and less mass swings. The authors' "
+            "own later estimate of 1.1e5 N/m, above, is without that",
+        ),
+    ]
+
+
+@case(
+    "rig-magnets",
+    "force factor of the rig's magnets",
+    Kind.MEASUREMENT,
+    source="AMrotor, Matlab_Code/Examples/Config_Sim_Mag1.m: k = 3.63e-6 N m2/A2, of a characteristic "
+    "measured by K. Baumann",
+    tolerance=0.02,
+    why="the digits it was written down with are 0.3 %; stray fields of such magnets are a few percent",
+)
+def rig_magnets() -> list[Row]:
+    """K of F = K i^2/g^2 from poles of 2.9 cm2, 2 x 104 turns and 22.5 degrees between force and pole."""
+    circuit: Any = as_record(Circuit())
+    magnet = Magnet(gap=780e-6, area=2.9e-4, turns=208.0, pole_angle=math.pi / 8.0)
+    lay_out(circuit, as_record(magnet), 2.5)
+    ours = float(circuit["factor"]) * math.cos(magnet.pole_angle)
+    return [Row("force factor", "1e-6 N m2/A2", 3.63, 1e6 * ours)]

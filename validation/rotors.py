@@ -1,0 +1,226 @@
+"""Rotors: beams, whirls in bearings, ROSS's published examples, the threshold of dry whip."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..rotor.beams.body import PointMass, disc
+from ..rotor.beams.element import Element, split
+from ..rotor.beams.shaft import Shaft, Support, assemble
+from ..rotor.imports import read
+from ..rotor.modal.contact_whirl import ContactWhirl, Seat, rigid
+from ..rotor.modal.modes import basis
+from ..rotor.modal.supported import HeldRotor, LinearBearing
+from ..rotor.modal.whirl_speeds import critical_speeds, whirl_frequencies
+from .case import Case, Kind, Row, case
+
+STEEL: dict[str, Any] = {"modulus": 207e9, "density": 7830.0, "poisson": 0.3}
+LENGTH = 0.8
+ONE = np.eye(2)
+
+
+def beam(count: int, length: float = LENGTH, **changes: float) -> Shaft:
+    """A shaft of 60 mm in `count` elements."""
+    settings: dict[str, Any] = {"length": length / count, "outer_diameter": 0.06, **STEEL, **changes}
+    element = Element(**settings)
+    return Shaft("beam", (element,) * count)
+
+
+@case(
+    "free-beam",
+    "bending of a slender free beam",
+    Kind.CLOSED_FORM,
+    source="cos(b) cosh(b) = 1, as in S. Timoshenko, Vibration Problems in Engineering",
+    looked_at=False,
+    tolerance=1e-3,
+    why="rotary inertia takes off some (pi n r/L)^2/2 with a radius of gyration r of L/533, here 0.02 to "
+    "0.03 %; shear is stiff",
+    afterwards=True,
+)
+def free_beam() -> list[Row]:
+    """First three frequencies of a free shaft of 60 mm by 8 m in 60 elements, stiff in shear."""
+    shaft = beam(60, 8.0, shear_factor=1e6)
+    element = shaft.elements[0]
+    found = basis(shaft, 5).omega[2:] / (2.0 * math.pi)
+    unit = math.sqrt(element.EI / element.mass_per_length) / 64.0 / (2.0 * math.pi)
+    rows = []
+    for k, hz in enumerate(found, start=1):
+        middle = (k + 0.5) * math.pi
+        b: Any = brentq(lambda x: math.cos(x) - 1.0 / math.cosh(x), middle - 0.5, middle + 0.5)
+        rows.append(Row(f"bending mode {k}", "Hz", float(b) ** 2 * unit, float(hz)))
+    return rows
+
+
+@case(
+    "clamped-cone",
+    "a clamped cone bends",
+    Kind.CLOSED_FORM,
+    source="integral of M^2/(E I) and Q^2/(kGA) along a cone: L^3/(3 E I r) + L/(kGA r)",
+    tolerance=6e-4,
+    why="of second order in the elements' length; 64 leave 2e-4",
+)
+def clamped_cone() -> list[Row]:
+    """Deflection of the thin end of a steel cone of 0.5 m, 100 to 40 mm, under 1 kN there."""
+    cone = Element(
+        length=0.5, outer_diameter=0.1, outer_diameter_end=0.04, modulus=211e9, density=7810.0, poisson=0.3
+    )
+    wide, ratio = cone.section(0.0), 0.4
+    exact = cone.length**3 / (3.0 * wide.EI * ratio) + cone.length / (wide.kGA * ratio)
+    stiffness = assemble(Shaft("cone", tuple(split(cone, 64)))).stiffness[2:, 2:]
+    force = np.zeros(len(stiffness))
+    force[-2] = 1.0
+    found = float(np.linalg.solve(stiffness, force)[-2])
+    return [Row("deflection under 1 kN", "um", 1e9 * exact, 1e9 * found)]
+
+
+@case(
+    "spinning-top",
+    "whirl of a spinning rigid rotor",
+    Kind.CLOSED_FORM,
+    source="G. Genta, Dynamics of Rotating Systems (2005): the rigid rotor on two equal springs",
+    looked_at=False,
+    tolerance=1e-9,
+    why="both are solutions of the same four equations",
+)
+def spinning_top() -> list[Row]:
+    """Tilting whirls at 2000 rad/s, Ip/Id W/2 -+ sqrt(w0^2 + (Ip W/2 Id)^2), and the bounce."""
+    shaft = Shaft("top", beam(2, modulus=2e14).elements, (disc(2, 0.4, 0.06, 0.02, 7830.0),))
+    k, speed = 1e6, 2000.0
+    own = math.sqrt(2.0 * k * (LENGTH / 2.0) ** 2 / shaft.diametral_inertia)
+    half = 0.5 * shaft.polar_inertia / shaft.diametral_inertia * speed
+    bounce = math.sqrt(2.0 * k / shaft.mass)
+    expected = sorted([half - math.hypot(own, half), half + math.hypot(own, half), bounce, -bounce])
+    found = sorted(whirl_frequencies(basis(shaft, 2), [speed], [(1, k), (3, k)])[0])
+    names = {expected.index(bounce): "bounce, forward", expected.index(-bounce): "bounce, backward"}
+    tilts = iter(("tilt, backward", "tilt, forward"))
+    return [
+        Row(names.get(n) or next(tilts), "rad/s", theirs, float(ours))
+        for n, (theirs, ours) in enumerate(zip(expected, found, strict=True))
+    ]
+
+
+@case(
+    "jeffcott",
+    "Jeffcott's rotor on springs",
+    Kind.CLOSED_FORM,
+    source="H. H. Jeffcott, Philosophical Magazine 37 (1919) 304; L^3/(48 E I) + L/(4 kGA) + 1/(2 k)",
+    looked_at=False,
+    tolerance=3e-4,
+    why="the shaft has a thousandth of steel's density, of the disc's frequency it takes 1e-4",
+)
+def jeffcott() -> list[Row]:
+    """A disc of 20 kg amid a light shaft of 0.6 m by 50 mm on springs of 1 N/um."""
+    element = Element(length=0.15, outer_diameter=0.05, modulus=2e11, density=7.83, poisson=0.3)
+    rotor = Shaft("Jeffcott", (element,) * 4, points=(PointMass(3, 20.0),))
+    held = [LinearBearing(node, 1e6 * ONE, 0.0 * ONE) for node in (1, 5)]
+    found = HeldRotor(basis(rotor, 0), held).whirl(900.0).roots[0].imag
+    give = 0.6**3 / (48.0 * element.EI) + 0.6 / (4.0 * element.kGA) + 0.5e-6
+    return [Row("frequency", "rad/s", math.sqrt(1.0 / (20.0 * give)), float(found))]
+
+
+ROSS = Path(__file__).parent / "ross"
+MADE = "python benchmarks/ross_rotors.py -o validation/ross, with ROSS 2.3.0"
+
+
+def ross_modes(name: str) -> list[Row]:
+    """Of an example's stored frequencies the one farthest off, by speed, free and on its bearings."""
+    theirs: dict[str, dict[str, list[float]]] = stored()["hz"][name]
+    shaft = read(ROSS / f"{name}.toml")
+    modes = basis(shaft, 0)
+    springs = [LinearBearing.of(Support(s.node, s.stiffness, s.stiffness_y)) for s in shaft.supports]
+    rows = []
+    for rpm, hz in theirs["free"].items():
+        found = np.abs(whirl_frequencies(modes, [turning(rpm)])[0]) / (2.0 * math.pi)
+        bent = found[found > 0.5 * basis(shaft, 3).omega[2] / (2.0 * math.pi)]
+        rows.append(farthest(f"free, {rpm} rpm", "Hz", hz, np.sort(bent)))
+    for rpm, hz in theirs["held"].items():
+        found = HeldRotor(modes, springs).whirl(turning(rpm)).frequencies
+        rows.append(farthest(f"on its bearings, {rpm} rpm", "Hz", hz, np.sort(found)))
+    for stiffness, speeds in theirs["critical"].items():
+        supports = [Support(s.node, float(stiffness)) for s in shaft.stations]
+        found = critical_speeds(modes, supports)
+        critical = f"critical speeds at {float(stiffness):.0e} N/m"
+        rows.append(replace(farthest(critical, "rad/s", speeds, found), tolerance=1e-7))
+    return rows
+
+
+def stored() -> dict[str, Any]:
+    """ROSS's figures."""
+    return json.loads((ROSS / "frequencies.json").read_text(encoding="utf-8"))
+
+
+def turning(rpm: str) -> float:
+    """In rad/s."""
+    return float(rpm) * math.pi / 30.0
+
+
+def farthest(what: str, unit: str, theirs: Sequence[float], ours: np.ndarray) -> Row:
+    """The worst of some ascending frequencies as a row."""
+    rows = [Row(what, unit, a, float(b)) for a, b in zip(theirs, ours[: len(theirs)], strict=True)]
+    worst = max(rows, key=lambda row: abs(row.deviation))
+    return replace(worst, quantity=f"{what}, the worst of {len(rows)}")
+
+
+def example(name: str) -> Case:
+    """The case of one of ROSS's example rotors."""
+
+    @case(
+        f"ross-{name.replace('_', '-')}",
+        f"ROSS's {name}",
+        Kind.PROGRAM,
+        source="ROSS (Timbó et al., Journal of Open Source Software 5 (2020) 2120), its own figures",
+        tolerance=1e-9,
+        why="the same beams; critical speeds are found to ROSS's own 1e-8, their tolerance is 1e-7",
+        command=MADE,
+    )
+    def rows() -> list[Row]:
+        """The example imported from what ROSS saved: twelve lowest whirls, backward and forward, at three
+        speeds, free and on its bearings without damping, and the first four critical speeds over the
+        stiffness of its bearings. A row is the frequency that is farthest off."""
+        return ross_modes(name)
+
+    return rows
+
+
+rotor_example = example("rotor_example")
+damped_example = example("rotor_example_with_damping")
+compressor = example("compressor_example")
+
+
+@case(
+    "dry-whip",
+    "threshold of dry whip",
+    Kind.CLOSED_FORM,
+    source="Jeffcott's rotor on a rigid stator: 2 zeta sqrt(1 + beta)/beta, beta = contact over shaft "
+    "stiffness, as in D. W. Childs, A. Bhattacharya, Journal of Vibration and Acoustics 129 (2007) 355",
+    looked_at=False,
+    tolerance=1e-3,
+    why="the least friction is taken over circles that are followed in steps, from above",
+)
+def dry_whip() -> list[Row]:
+    """Least ratio of friction to normal force that keeps a backward whirl up, zeta = 0.05."""
+    mass, k, zeta = 1.0, 1e6, 0.05
+    damping = 2.0 * zeta * math.sqrt(k * mass)
+
+    def rotor(omega: float) -> np.ndarray:
+        return np.array([[1.0 / (k - mass * omega**2 + 1j * omega * damping)]])
+
+    rows = []
+    for beta in (1.0, 10.0, 40.0):
+
+        def stator(depth: float, omega: float, beta: float = beta) -> complex:
+            return complex(-beta * k * depth, math.copysign(beta * k * depth, omega))
+
+        whirl = ContactWhirl(rotor, [Seat(0.2e-3, stator, rigid)])
+        circles = list(whirl.faster(-100.0, -2.0 * math.sqrt((1.0 + beta) * k / mass)))
+        exact = 2.0 * zeta * math.sqrt(1.0 + beta) / beta
+        rows.append(Row(f"friction, beta = {beta:g}", "", exact, min(c.drive for c in circles)))
+    return rows
