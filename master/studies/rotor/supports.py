@@ -20,7 +20,7 @@ from ....rotor.modal.supported import Foundation, HeldRotor, LinearBearing, stat
 from ....rotor.modal.whirl_speeds import Held, held
 from ....rotor.statics import at_rest
 from ...common.errors import TouchdownError
-from ...components.component import GAINS, POSITION, SENSED
+from ...components.component import POSITION, SENSED, STIFFNESS
 from ...coupling.connections import Attachment
 from ...coupling.simulation import opened
 from ...coupling.system import System
@@ -229,7 +229,7 @@ def _place(system: System, a: Attachment, sensors: dict[str, str], mounts: dict[
 
 def foundation_of(system: System, mount: str) -> Foundation | None:
     """What the body at COMPONENT.PORT is, as the contract has it; None: it does not give way."""
-    names = [f"{mount}.{gain}" for gain in GAINS if gain != "inv_I"]
+    names = [f"{mount}.{gain}" for gain in ("inv_m", STIFFNESS, "c_over_m")]
     inv_m, stiffness, damping = (system.value(name) if name in system else 0.0 for name in names)
     return Foundation(1.0 / inv_m, stiffness / inv_m, damping / inv_m, mount) if inv_m > 0.0 else None
 

@@ -125,14 +125,18 @@ def test_ctrl_c_is_no_error_of_the_run() -> None:
 def test_the_contract_names_what_docs_have() -> None:
     """Derived from the ports' declarations, in their order."""
     assert (
-        *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "omega", "alpha_free", "inv_I"),
-        *("k_over_m", "c_over_m", "static_fx", "static_fy"),
+        *("x", "y", "vx", "vy", "ax_free", "ay_free", "inv_m", "z", "vz", "az_free", "inv_m_z"),
+        *("omega", "alpha_free", "inv_I", "k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z"),
+        *("static_fx", "static_fy"),
     ) == component.MOTION
     assert component.SENSED == ("x", "y", "vx", "vy")
-    assert (component.LOAD, component.SLOPE) == (("fx", "fy", "mz"), ("dfx", "dfy", "dmz"))
+    assert (component.LOAD, component.SLOPE) == (
+        ("fx", "fy", "mz", "fz"),
+        ("dfx", "dfy", "dmz", "dfz"),
+    )
     assert component.SPIN == ("omega", "alpha_free", "inv_I", "mz", "dmz")
-    assert component.MOUNT == ("k_over_m", "c_over_m")
-    assert (*component.MOTION[:7], *component.MOUNT) == component.MODE_MOTION
+    assert component.MOUNT == ("k_over_m", "c_over_m", "k_over_m_z", "c_over_m_z")
+    assert (*component.MOTION[:7], *component.MOUNT[:2]) == component.MODE_MOTION
     assert component.MODE_LOAD == ("qx", "qy", "px", "py")
     assert (component.WORK, component.JUMP) == ("work", "jump")
     assert {component.UNITS[name] for name in component.LOAD} == {"N", "N.m"}

@@ -15,7 +15,10 @@ from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.interop.ssp.xml import NAMESPACES, SSD_FILE
 from touchdown.master.scene.scene import Scene
 
-CONSTANTS = {"inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"}
+CONSTANTS = {
+    *("inv_m", "inv_I", "k_over_m", "c_over_m", "static_fx", "static_fy"),
+    *("inv_m_z", "k_over_m_z", "c_over_m_z"),
+}
 
 
 def structure(package: Path) -> Element:
@@ -71,5 +74,5 @@ def test_the_command_writes_one(tmp_path: Path, capsys: pytest.CaptureFixture[st
     package = tmp_path / "disk.ssp"
     scheme = ["--scheme", "jacobi-lead", "--outputs-only"]
     assert main(["ssp", "disk-caged-simplified", *scheme, "-o", str(package)]) == 0
-    assert "4 components, 38 connections" in capsys.readouterr().out
+    assert "4 components, 53 connections" in capsys.readouterr().out
     assert started(structure(package))["interface.lead"] == 1.0

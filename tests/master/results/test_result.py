@@ -83,8 +83,8 @@ def test_columns_as_pandas_has_them(detailed: Result) -> None:
     assert frame.index.name == "time"
     assert frame["bearing.contact.force"].max() == float(detailed.data["bearing.contact.force"].max())
     assert set(detailed.to_pandas()) == set(detailed.data)
-    with pytest.raises(NotRecordedError, match=r"rotor\.A\.z was not recorded"):
-        detailed.to_pandas(["rotor.A.z"])
+    with pytest.raises(NotRecordedError, match=r"rotor\.A\.q was not recorded"):
+        detailed.to_pandas(["rotor.A.q"])
     with pytest.raises(NotRecordedError, match=r"rotor was not recorded"):
         detailed.to_pandas(["rotor"])
     assert list(detailed.to_pandas("rotor.A.x")) == ["rotor.A.x"]

@@ -105,8 +105,8 @@ def test_a_missing_scene_file(run: Command, tmp_path: Path):
 @pytest.mark.parametrize(
     ("connect", "named"),
     [
-        ('["rotor.A.z", "housing.seat.fx"]', "component rotor (rigid_rotor, in process) has no variable A"),
-        ('["rotor.A.x", "bearing.journal.z"]', "has no variable journal.z"),
+        ('["rotor.A.q", "housing.seat.fx"]', "component rotor (rigid_rotor, in process) has no variable A"),
+        ('["rotor.A.x", "bearing.journal.q"]', "has no variable journal.q"),
         ('["rotr.A.x", "bearing.journal.x"]', "no component rotr; did you mean rotor"),
         ('["bearing.housing.fy", "housing.seat.fx"]', "housing.seat.fx has two sources"),
         ('["rotor.A.x", "bearing.journal.vx"]', "the units m and m/s differ"),

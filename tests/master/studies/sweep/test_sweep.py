@@ -335,7 +335,10 @@ h5py.File.__init__ = dies
 
 def test_verdicts_are_counted() -> None:
     words = ["pendulum", "backward whirl, at 0.5 s still whirling, steady", "pendulum", None]
-    members = [Member(i + 1, {"a.b": i}, {"whirl_A": word, "x": 1.5}) for i, word in enumerate(words)]
+    members = [
+        Member(i + 1, {"a.b": i}, {"whirl_A": word, "whirl_A_revolutions": None, "x": 1.5})
+        for i, word in enumerate(words)
+    ]
     members.append(Member(5, {"a.b": 4}, {}, "broke"))
     assert verdict_lines(members) == ["  whirl_A: 2 x pendulum, 1 x backward whirl, still so at the end"]
     assert picked(members, []) == (["whirl_A"], [])
