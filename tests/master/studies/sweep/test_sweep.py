@@ -341,7 +341,7 @@ def test_verdicts_are_counted() -> None:
     ]
     members.append(Member(5, {"a.b": 4}, {}, "broke"))
     assert verdict_lines(members) == ["  whirl_A: 2 x pendulum, 1 x backward whirl, still so at the end"]
-    assert picked(members, []) == (["whirl_A"], [])
+    assert picked(members, []) == (["whirl_A", "whirl_A_revolutions"], [])
     assert picked(members, ["x", "whirl_?"]) == (["x", "whirl_A"], [])
     assert table(members, ["x"]).splitlines()[-1].split() == ["5", "4", "-", "failed:", "broke"]
     assert failures(members) == ["  1 x broke (member 5)"]
