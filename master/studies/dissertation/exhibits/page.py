@@ -23,7 +23,8 @@ dimensions, masses and clearances only show that the models were given the sourc
 on, and what was fitted, stands beside it; [physics.md](physics.md) explains the models and the source's
 errata.
 
-This page is made by `touchdown figure all -o docs`; `touchdown figure 25` makes one of them anew.
+This page is made by `touchdown figure all -o docs`; `touchdown figure 25` makes one of them anew. Figures
+of others than this source are held against ours in [validation.md](validation.md).
 """
 COLUMNS = ("quantity", "source", "here", "deviation", "within", "verdict")
 
