@@ -92,6 +92,7 @@ READERS = {  # of physics beside the co-simulation: what may be read, and by who
     "touchdown.bearings.rating": RATED,
     "touchdown.bearings.catalogue": RATED,
     "touchdown.bearings.heat": {"touchdown.master.results.heat", "touchdown.master.report.chapters.heat"},
+    "touchdown.bearings.surroundings.foundation": {"touchdown.master.studies.machine"},
     "touchdown.bearings.surroundings.mount_law": {"touchdown.master.studies.rotor.whirl"},
     "touchdown.bearings.contact.line": {"touchdown.master.report.chapters.machine"},
     "touchdown.bearings.contact.friction": {"touchdown.master.studies.dissertation.exhibits.disk_motion"},

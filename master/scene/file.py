@@ -32,6 +32,8 @@ every = 2             # macro steps of the run that it takes in one (default: 1)
 sampled = "100 us"    # or how long its steps are, a multiple of macro_step: those of a controller
 isolate = true        # step its FMU in a process of its own (default: false)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
+settings = "FILE.toml" # what that file's [set] has for a component of this name, as `import-mount` and
+                      # `import-foundation` write it; what [set] here or the component's own set says counts
 [components.rotor.set]
 mass = "1.65 kg"      # a number in SI, or text with a unit
 [components.rotor.names]
@@ -51,6 +53,7 @@ import os
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -172,7 +175,9 @@ def parse(data: Mapping[str, Any], name: str, folder: Path) -> Scene:
     around = gaps(laid_over(_around_rotors(given, folder), data.get("gap", [])), f"scene {name}: gap")
     touching, touched = contacts(around)
     components = {
-        component_name(key, f"scene {name}"): _component(part, f"scene {name}: [components.{key}]", folder)
+        component_name(key, f"scene {name}"): _component(
+            key, part, f"scene {name}: [components.{key}]", folder
+        )
         for key, part in {**touching, **given}.items()
     }
     if not given:
@@ -267,13 +272,15 @@ def _with_shared(scene: Scene, layers: Sequence[_Shared]) -> Scene:
     return replace(there, components=components, own=scene.own)
 
 
-def _component(value: object, where: str, folder: Path) -> ComponentSpec:
+def _component(name: str, value: object, where: str, folder: Path) -> ComponentSpec:
     """A table of [components]."""
     given = table(value, where)
-    refuse_unknown(given, ("fmu", "preset", "every", "sampled", "isolate", "native", "set", "names"), where)
+    known = ("fmu", "preset", "every", "sampled", "isolate", "native", "settings", "set", "names")
+    refuse_unknown(given, known, where)
     if not isinstance(given.get("fmu"), str):
         raise TouchdownError(f'{where} needs fmu = "NAME" or the path of an .fmu')
-    settings = flat(table(given.get("set", {}), where))
+    of_file = _settings_for(name, given["settings"], where, folder) if "settings" in given else {}
+    settings = of_file | flat(table(given.get("set", {}), where))
     preset = checked_preset(given.get("preset"), where, folder)
     every = whole(given.get("every", 1), f"{where} every")
     sampled = above_zero(given["sampled"], "s", f"{where} sampled") if "sampled" in given else 0.0
@@ -328,6 +335,20 @@ def read_settings(path: Path) -> dict[str, object]:
     found = flat(table(data.get("set", {}), f"settings {path}: [set]"))
     if not found:
         raise TouchdownError(f'settings {path} set nothing; add such as [set."housing_*"]')
+    return found
+
+
+def _settings_for(name: str, file: object, where: str, folder: Path) -> dict[str, object]:
+    """What the [set] of a file has for the component `name`. Raises TouchdownError where it has nothing."""
+    if not isinstance(file, str):
+        raise TouchdownError(f'{where} settings = {file!r}; write the path of a file, "FILE.toml"')
+    found: dict[str, object] = {}
+    for setting, value in read_settings(folder / file).items():
+        component, _, variable = setting.partition(".")
+        if variable and fnmatchcase(name, component):
+            found[variable] = value
+    if not found:
+        raise TouchdownError(f"{where}: settings {folder / file} say nothing of {name}")
     return found
 
 

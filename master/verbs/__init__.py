@@ -15,6 +15,7 @@ GROUPS: Mapping[str, tuple[Verb, ...]] = {
         machines.ROTOR,
         machines.IMPORT_ROTOR,
         machines.IMPORT_MOUNT,
+        machines.IMPORT_FOUNDATION,
     ),
     "run and look": (
         runs.RUN,

@@ -534,3 +534,60 @@ IMPORT_MOUNT = Verb(
     _declare_import_mount,
     _execute_import_mount,
 )
+
+
+IMPORT_FOUNDATION_EXAMPLES = (
+    "touchdown import-foundation examples/frame_matrices --at A=2,B=4 -o runs/frame.toml",
+    "touchdown import-foundation frame.npz --at A=12,B=40 --modes 3 --damping 0.02",
+)
+
+
+def _declare_import_foundation(verb: argparse.ArgumentParser) -> None:
+    """Its options."""
+    verb.add_argument(
+        "file", type=Path, help="folder of matrices (.mtx, .hb), or matrices or modal data (.npz)"
+    )
+    verb.add_argument(
+        "--at",
+        action="append",
+        required=True,
+        metavar="SEAT=NODE,...",
+        help="seats, A to D, that bearings have, and the node at which each is on the foundation",
+    )
+    verb.add_argument("--modes", default="8", help="at most, the slowest that move a seat (default: 8)")
+    verb.add_argument(
+        "--damping", default="0.01", help="ratio of critical, where the file tells none (default: 0.01)"
+    )
+    add_output(verb, "FILE-foundation.toml in this folder", "file of settings")
+    verb.add_argument("--force", action="store_true", help="replace a file that is there")
+
+
+def _execute_import_foundation(options: argparse.Namespace) -> int:
+    """Do it; returns the exit status."""
+    from ..common.files import keep_other, writing_to
+    from ..common.units import to_si
+    from ..results.run import make_writable
+    from ..studies.machine.foundation_file import MOST_MODES, foundation_text, read_modes, told
+
+    seats = _places(options.at, "--at")
+    most = count(options.modes, "--modes", MOST_MODES)
+    found = read_modes(options.file, seats, most, to_si(options.damping, "1", "--damping"))
+    path = options.output or Path(f"{options.file.stem}-foundation.toml")
+    make_writable(path.parent)
+    text = foundation_text(found, list(seats), options.file.name)
+    if not options.force:
+        keep_other(path, text, "file with -o")
+    with writing_to(path.parent):
+        path.write_text(text, encoding="utf-8")
+    print("\n".join(told(found)))
+    print(f'written to {path}; a scene\'s [components.foundation] takes it by settings = "{path.name}"')
+    return 0
+
+
+IMPORT_FOUNDATION = Verb(
+    "import-foundation",
+    "import the modes of a foundation from matrices or modal data",
+    IMPORT_FOUNDATION_EXAMPLES,
+    _declare_import_foundation,
+    _execute_import_foundation,
+)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import csv
 import math
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ from .matrices import of_matrices
 from .modal import of_modes
 from .tables import ImportedRotorError, named, separator, text_of
 
-MATRICES = ("M", "K", "G", "C")
+ARCHIVE = ".npz"
 
 
 def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
@@ -49,33 +49,41 @@ def of_arrays(data: Mapping[str, Any], file: str, title: str) -> Shaft:
 
 def from_archive(path: Path) -> Shaft:
     """The rotor in a NumPy archive. Raises ImportedRotorError."""
+    return of_arrays(read_archive(path), str(path), path.stem)
+
+
+def read_archive(path: Path) -> dict[str, Any]:
+    """The arrays of a NumPy archive by name. Raises ImportedRotorError."""
     try:
         with np.load(path, allow_pickle=False) as archive:
-            data = {name: archive[name] for name in archive.files}
+            return {name: archive[name] for name in archive.files}
     except OSError as error:
         raise ImportedRotorError(f"{path}: cannot be read: {error.strerror or error}") from None
     except (ValueError, AttributeError, EOFError, zipfile.BadZipFile, MemoryError) as error:
         raise ImportedRotorError(
             f"{path}: cannot be read: {error}; write it by numpy.savez, of numbers and texts"
         ) from None
-    return of_arrays(data, str(path), path.stem)
 
 
 def from_folder(folder: Path) -> Shaft:
     """The rotor in a folder of Matrix Market files. Raises ImportedRotorError."""
+    return of_matrices(read_folder(folder, ("M", "K", "G")), str(folder), folder.name)
+
+
+def read_folder(folder: Path, needed: Sequence[str]) -> dict[str, Any]:
+    """Matrices (`needed`, and C), nodes, coordinates and dofs of a folder. Raises ImportedRotorError."""
     data: dict[str, Any] = {}
-    for name in MATRICES:
+    for name in dict.fromkeys((*needed, "C")):
         read = {".mtx": _market, ".hb": _harwell_boeing}
         there = [folder / f"{name}{suffix}" for suffix in read if (folder / f"{name}{suffix}").is_file()]
         if there:
             data[name] = read[there[0].suffix](there[0])
-        elif name != "C":
-            raise ImportedRotorError(
-                f"{folder}: has no {name}.mtx, nor {name}.hb; there must be M, K and G"
-            )
+        elif name in needed:
+            listed = f"{', '.join(needed[:-1])} and {needed[-1]}"
+            raise ImportedRotorError(f"{folder}: has no {name}.mtx, nor {name}.hb; there must be {listed}")
     data["nodes"], data["coordinates"] = _nodes(folder / "nodes.csv")
     data["dofs"] = _dofs(folder / "dofs.csv")
-    return of_matrices(data, str(folder), folder.name)
+    return data
 
 
 def _market(path: Path) -> np.ndarray:

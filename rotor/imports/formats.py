@@ -11,7 +11,7 @@ from typing import Any
 
 from ...modelkit.units import UnitError, to_si
 from ..beams.shaft import Shaft, Station, node_at, with_node
-from .arrays import from_archive, from_folder
+from .arrays import ARCHIVE, from_archive, from_folder
 from .ross import of_elements
 from .sections import of_sections
 from .tables import ImportedRotorError, text_of
@@ -87,7 +87,6 @@ def _called(shaft: Shaft, name: str, text: str) -> int:
 
 TABLES = (".csv", ".tsv", ".txt")
 MODELS = (".toml", ".json")
-ARCHIVE = ".npz"
 
 
 def read(path: str | Path, speed: float | None = None) -> Shaft:

@@ -67,7 +67,7 @@ def rows(given: Given, n: int) -> Rows:
         nodes = given.names("nodes").ravel().tolist()
     if len(nodes) != count or len(set(nodes)) < count:
         raise given.error(f"nodes must be {count} different numbers or names, those of the coordinates")
-    places = _places(given, nodes, n)
+    places = row_places(given, nodes, n)
     x, y = (axis + 1) % 3, (axis + 2) % 3
     planes: list[list[int]] = []
     for wanted in ((x, 3 + y), (y, 3 + x)):
@@ -111,7 +111,7 @@ def _axis(given: Given) -> tuple[int, np.ndarray]:
     return axis, places[:, axis]
 
 
-def _places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int]:
+def row_places(given: Given, nodes: list[str], n: int) -> dict[tuple[int, int], int]:
     """The row of each degree of freedom (0 to 5) of each node (from 0)."""
     if not given.has("dofs"):
         raise given.error('dofs is missing: node and degree of freedom of each row, such as ("1", "UX")')
@@ -162,7 +162,7 @@ def of_matrices(data: Mapping[str, Any], file: str, title: str) -> Shaft:
     M = given.numbers("M")
     if M.ndim != 2 or M.shape[0] != M.shape[1]:
         raise given.error(f"M is {by(M.shape)}; it must be square")
-    planes = Planes(given, rows(given, len(M)), _unit(given))
+    planes = Planes(given, rows(given, len(M)), unit_of(given))
     planes.check_mass(M)
     try:
         body = checked(_body(given, planes, M))
@@ -200,14 +200,14 @@ def _mistaken(given: Given, M: np.ndarray) -> str:
         changes = {"coordinates": factor * places} | ({} if unit is None else {"units": unit})
         other = Given(given.file, {**given.data, **changes})
         try:
-            checked(_body(other, Planes(other, rows(other, len(M)), _unit(other)), M))
+            checked(_body(other, Planes(other, rows(other, len(M)), unit_of(other)), M))
         except ModelError:
             continue
         return says
     return ""
 
 
-def _unit(given: Given) -> float:
+def unit_of(given: Given) -> float:
     """The unit of length (m)."""
     name = str(np.asarray(given.data.get("units", "m")))
     if name not in LENGTHS:

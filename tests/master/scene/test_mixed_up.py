@@ -19,7 +19,7 @@ from touchdown.master.scene.file import restored
 
 PUMP = ROOT / "examples" / "pump_sections.csv"
 SPINDLE_MATRICES = ROOT / "examples" / "spindle_matrices"
-SAVED = ROOT / "tests" / "rotor" / "imports" / "saved"
+SAVED = ROOT / "validation" / "ross"
 ROSS, MATRICES = SAVED / "rotor_example.toml", SAVED / "rotor_example.npz"
 SPINDLE = ROOT / "examples" / "spindle_rotor.toml"
 

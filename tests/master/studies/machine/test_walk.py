@@ -71,4 +71,16 @@ def test_the_page_of_mounts_has_commands_that_are_some() -> None:
         verbs.append(words[1])
         if words[1] in ("run", "sweep") and not options.scene.startswith("runs/"):
             assert find_scene(options.scene).attach
-    assert verbs == ["run", "run", "report", "new", "run", "import-mount", "new", "whirl"]
+    assert verbs == [
+        "run",
+        "run",
+        "report",
+        "new",
+        "run",
+        "import-mount",
+        "new",
+        "import-foundation",
+        "run",
+        "whirl",
+        "whirl",
+    ]
