@@ -12,7 +12,7 @@ from pathlib import Path
 from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
 from .file import OWN_FILE, CatalogueError, as_file, read
-from .sizes import FROM_SOURCE, designations, size
+from .sizes import FROM_SOURCE, designations, size, usual
 
 __all__ = [
     "BALL_MATERIALS",
@@ -57,8 +57,8 @@ def reference(name: str, folder: Path) -> str:
         path = (folder / Path(file).expanduser()).absolute()
     elif (mine := own(folder)) and name in mine:
         path, inside = (folder / OWN_FILE).absolute(), name
-    elif name in built_in():
-        return name
+    elif (called := name if name in built_in() else usual(name)) in built_in():
+        return called
     else:
         raise CatalogueError(f"there is no preset {name}", [*mine, *built_in()])
     found = f"{path}:{inside}"
