@@ -417,14 +417,14 @@ def react(t, q, dq, m):
     inside, outside = balls.loss - outside + 0.5 * damped, outside + 0.5 * damped
     if m.d.rows == 0:
         parts.set_rates(Sources(j.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
-        return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0)
+        return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
     f = _move_along(q, dq, seat.journal_motion(q), m)
     parts.set_rates(Sources(j.loss + f.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
     dq[ring.RVX] -= f.fx / p.ring.mass
     dq[ring.RVY] -= f.fy / p.ring.mass
     dq[ring.RW] -= f.moment / inertia
     moment, held = j.journal_moment + f.moment, m.s.thrust.force - p.damping * (q[RVZ] - q[seat.HVZ])
-    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -held)
+    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -held, 0.0, 0.0)
 
 
 @kernel
