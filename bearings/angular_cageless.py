@@ -22,13 +22,14 @@ from ..modelkit.numerics import blank, missing
 from ..modelkit.ports import Load
 from ..modelkit.variables import group, real
 from . import seat
-from .angular import balls, declarations, neighbours, races, ring_in_space, rubbing
-from .angular.declarations import PROBLEMS as OWN_PROBLEMS
-from .angular.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
-from .angular.kick import book, leapfrog, missed
-from .angular.layout import MAX_STATES, RTX, RTY, RVZ, RWX, RWY, RZ
-from .angular.layout import FACE_LOSS as FACE_HEAT
-from .angular.ring_in_space import axes_of
+from .angular.bodies import balls, declarations, neighbours, races, rubbing
+from .angular.bodies import ring as space_ring
+from .angular.bodies.declarations import PROBLEMS as OWN_PROBLEMS
+from .angular.bodies.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
+from .angular.bodies.kick import book, leapfrog, missed
+from .angular.bodies.layout import MAX_STATES, RTX, RTY, RVZ, RWX, RWY, RZ
+from .angular.bodies.layout import FACE_LOSS as FACE_HEAT
+from .angular.bodies.ring import axes_of
 from .contact.face import report_faces, watch_faces
 from .contact.friction import curve
 from .contact.peaks import Largest, watch_peaks
@@ -76,7 +77,7 @@ def _press(q, axes, moved, m):
     """
     d, s, n, beat = m.d, m.s, balls.lanes(m), beat_of(m)
     answer, still = s.kick / d.mass, races.Moved(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    housing, body = ring_in_space.housing_frame(q), ring_in_space.ring_frame(q, axes)
+    housing, body = space_ring.housing_frame(q), space_ring.ring_frame(q, axes)
     races.find(s.balls, housing, d.outer_groove, d.ball_radius, n, s.outer)
     races.find(s.balls, body, d.inner_groove, d.ball_radius, n, s.inner)
     races.follow(n, s.outer, still)
@@ -106,19 +107,19 @@ def _rub(q, dq, axes, moved, m):
     rubbing.draw(s.outer, answer, law, n)
     rubbing.draw(s.inner, answer, law, n)
     rubbing.join(s.outer, s.inner, f, n)
-    ring_in_space.begin_six(q, h, m)
-    shaft = ring_in_space.shaft_of(q, axes)
-    ring_in_space.meet_rotor(shaft, moved, beat_of(m), m)
+    space_ring.begin_six(q, h, m)
+    shaft = space_ring.shaft_of(q, axes)
+    space_ring.meet_rotor(shaft, moved, beat_of(m), m)
     rubbing.load_ring(s.inner, f, h, d.balls, n, s.six)
-    ring_in_space.solve_six(s.six)
-    ring_in_space.accelerate(q, dq, axes, m)
-    now = ring_in_space.moved_by(dq, axes, h)
+    space_ring.solve_six(s.six)
+    space_ring.accelerate(q, dq, axes, m)
+    now = space_ring.moved_by(dq, axes, h)
     races.follow(n, s.inner, now)
     rubbing.settle(s.outer, s.inner, f, answer, n)
     rubbing.brake(s.balls, s.outer, s.inner, 1.0 / d.mass, d.ball_radius / d.inertia, n)
     rubbing.find_middle(s.balls, s.outer, h, n)
     rubbing.find_middle(s.balls, s.inner, h, n)
-    return ring_in_space.leave_rotor(shaft, axes, now, m)
+    return space_ring.leave_rotor(shaft, axes, now, m)
 
 
 @kernel
@@ -127,7 +128,7 @@ def react(t, q, dq, m):
     s, h = m.s, m.s.kick
     balls.gather(q, m)
     axes = axes_of(q[RTX], q[RTY])
-    moved = ring_in_space.moved_by(s.before, axes, h)
+    moved = space_ring.moved_by(s.before, axes, h)
     _press(q, axes, moved, m)
     neighbours.meet_neighbours(m)
     shaft = _rub(q, dq, axes, moved, m)
@@ -154,7 +155,7 @@ def rhs(t, q, dq, m):
 def drift(trial, q, mid, h, m):
     """Places in the state `trial`: those in q and h (s) times the velocities in `mid` (`verlet`)."""
     seat.drift(trial, q, mid, h, m)
-    ring_in_space.drift(trial, q, mid, h)
+    space_ring.drift(trial, q, mid, h)
     balls.drift(trial, q, mid, h, m)
 
 
@@ -162,7 +163,7 @@ def drift(trial, q, mid, h, m):
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s, count = m.d, m.s, m.p.balls.count
-    stiffest, below, turning, side = 0.0, ring_in_space.stiffness_below(m), 0.0, 0.0
+    stiffest, below, turning, side = 0.0, space_ring.stiffness_below(m), 0.0, 0.0
     for b in range(d.balls):
         k = s.inner.stiffness[b]
         lever = s.inner.zeta[b] * s.inner.outwards[b] - s.inner.rho[b] * s.inner.axial[b]
@@ -185,7 +186,7 @@ def kicked(q, dq, kick, m):
     outer = races.settle_race(s.outer, n, kick, off.part, off.hx, off.hy, off.hz)
     for row in range(m.d.rows):
         sides += settle_sides(s.side[row], m.p.balls.count, kick, off.part)
-    rotor = ring_in_space.settle_touches(kick, off.part, off.jx, off.jy, off.jz, axes, m)
+    rotor = space_ring.settle_touches(kick, off.part, off.jx, off.jy, off.jz, axes, m)
     withhold(q, (inner, outer), sides, rotor, m)
 
 
@@ -197,7 +198,7 @@ def fill_accounts(m):
     races.fill_race(s.outer, d.outer, d.balls)
     for row in range(d.rows):
         fill_sides(s.side[row], d.ball_contact, m.p.balls.count)
-    ring_in_space.fill_touches(m)
+    space_ring.fill_touches(m)
 
 
 @kernel
@@ -301,7 +302,7 @@ def _potential(q, m):
     elastic = races.stored_in(s.inner, d.inner, d.balls) + races.stored_in(s.outer, d.outer, d.balls)
     for row in range(d.rows):
         elastic += stored(s.side[row], d.ball_contact, p.balls.count)
-    return weight + elastic + ring_in_space.stored_in_touches(m)
+    return weight + elastic + space_ring.stored_in_touches(m)
 
 
 @kernel
@@ -343,7 +344,7 @@ def settle(words):
     declarations.settle(m)
     seat.set_weights(m.weight)
     ring.set_weights(m.weight)
-    ring_in_space.set_weights(m.weight)
+    space_ring.set_weights(m.weight)
     balls.set_weights(m)
     ring.append_bending(math.inf, m)
     return missing(words, CONSTANTS)

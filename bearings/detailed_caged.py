@@ -105,7 +105,7 @@ def react(t, q, dq, m):
     among = cage.rubbing(dq, turned, m)
     dq[ring.LOSS] = j.loss + inner.loss + outer.loss + among
     ring.share_heat(dq, j, inner.loss, outer.loss, among, m)
-    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy, 0.0, 0.0)
+    return Load(j.fx, j.fy, j.journal_moment, outer.fx, outer.fy, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel

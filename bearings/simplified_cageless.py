@@ -211,7 +211,7 @@ def react(t, q, dq, m):
     among, outside = rubbing(dq, m), m.s.balls.outside
     dq[ring.LOSS] = j.loss + balls.loss + among
     ring.share_heat(dq, j, balls.loss - outside, outside, among, m)
-    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0)
+    return Load(j.fx, j.fy, j.journal_moment, -balls.fx, -balls.fy, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel

@@ -186,7 +186,7 @@ def _inputs(m):
     total = 0.0
     for j in range(m.d.stations):
         u = m.u.station[j]
-        total += u.fx + u.fy + u.mz + u.dfx + u.dfy + u.dmz
+        total += u.fx + u.fy + u.mz + u.dfx + u.dfy + u.dmz + u.mx + u.my + u.dmx + u.dmy
         for i in range(int(m.d.slots[j])):
             z = u.mode[i]
             total += z.qx + z.qy + z.px + z.py
@@ -251,7 +251,7 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
     basis = ("modes", "residual")
     sag = (*basis, "gravity") if shaft.levitated_at else ()
     turning = ("speed", "drag", "viscous_drag", "unbalance_scale", "unbalance_angle")
-    loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz")]
+    loads = [f"{s.name}.{force}" for s in shaft.stations for force in ("fx", "fy", "mz", "mx", "my")]
     accelerations = (*basis, "gravity", *turning, *loads)
     causes = {
         "energy.kinetic": ("vx", "vy", "speed", "unbalance_scale", "unbalance_angle"),
@@ -261,15 +261,17 @@ def _starts_from(shaft: Shaft) -> dict[str, tuple[str, ...]]:
         causes |= {f"{place.name}.{name}": (name,) for name in ("x", "vx", "vy")}
         causes[f"{place.name}.y"] = ("y", *sag)
     for s in shaft.stations:
-        causes |= {f"{s.name}.{name}": accelerations for name in ("ax_free", "ay_free", "alpha_free")}
-        causes |= {f"{s.name}.inv_m": basis, f"{s.name}.omega": ("speed",)}
+        free = ("ax_free", "ay_free", "alpha_free", "alpha_x_free", "alpha_y_free")
+        causes |= {f"{s.name}.{name}": accelerations for name in free}
+        causes |= {f"{s.name}.{name}": basis for name in ("inv_m", "inv_I_t", "inv_mI")}
+        causes |= {f"{s.name}.rx": sag, f"{s.name}.omega": ("speed",)}
         if s.name in shaft.levitated_at:
             causes[f"{s.name}.static_fy"] = ("gravity",)
         for k in range(1, MODES + 1):
             mode = f"{s.name}.mode[{k}]"
             causes[f"{mode}.y"] = sag
             causes |= {f"{mode}.{name}": accelerations for name in ("ax_free", "ay_free")}
-            causes |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m")}
+            causes |= {f"{mode}.{name}": basis for name in ("inv_m", "k_over_m", "slope")}
             causes[f"{mode}.c_over_m"] = (*basis, "damping_ratio")
     return causes
 

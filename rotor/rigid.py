@@ -1,9 +1,15 @@
-"""A rigid rotor that does not tilt: a disk that floats, falls, bounces and spins, also along its shaft.
+"""A rigid rotor: a disk that floats, falls, bounces and spins, also along its shaft, and that may tilt.
 
-Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft. Its
-seats lie in the plane of the centre of mass; a rotor that tilts is a matter of the flexible model.
-Unbalance enters with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and
-the shaft centre feels
+Three coordinates: position of the shaft centre and rotation; with `axial` a fourth, along the shaft; with
+a `transverse_inertia` I_t two more, its small tilts. Its seats lie `bearing_position` and `amb_position`
+from the plane of the centre of mass. With the polar inertia I_p, the spin Omega and the moments M of all
+loads about the centre of mass,
+
+    I_t rx'' + I_p Omega ry' = M_x        I_t ry'' - I_p Omega rx' = M_y
+
+A moment about the shaft acts about the shaft as it is tilted, so that it brings no other. Unbalance enters
+with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre
+feels
 
     m e (omega^2 cos(theta + phase) + alpha sin(theta + phase)),   likewise in y.
 
@@ -27,7 +33,8 @@ from .motion.equations import drag
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
 Z, VZ = range(9, 11)  # along the shaft
-SIZE = 11
+RX, RY, WX, WY = range(11, 15)  # rad, rad/s: its tilt
+SIZE = 15
 
 
 @dataclass(frozen=True)
@@ -55,6 +62,19 @@ class Parameters:
     axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
     z: float = real(0.0, "m", "position along the shaft at the start")
     vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
+    transverse_inertia: float = real(
+        0.0, "kg.m2", "moment of inertia about a diameter; 0: it does not tilt", minimum=0.0
+    )
+    bearing_position: float = real(
+        0.0, "m", "of the seat A along the shaft, from the centre of mass; matters where it tilts"
+    )
+    amb_position: float = real(
+        0.0, "m", "of the magnetic bearing along the shaft, from the centre of mass; likewise"
+    )
+    rx: float = real(0.0, "rad", "tilt about x at the start, where it tilts")
+    ry: float = real(0.0, "rad", "tilt about y at the start, where it tilts")
+    wx: float = real(0.0, "rad/s", "rate of the tilt about x at the start")
+    wy: float = real(0.0, "rad/s", "rate of the tilt about y at the start")
 
 
 @dataclass(frozen=True)
@@ -80,7 +100,7 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 @kernel
 def rhs(t, q, dq, m):
-    """Newton and Euler: dq (11,) of the state q (11,) under the loads mean + slope (t - t_mid); t in s."""
+    """Newton and Euler: dq (15,) of the state q (15,) under the loads mean + slope (t - t_mid); t in s."""
     p, since_middle = m.p, t - m.half
     ax, ay, am = _load_at(m.u.A, since_middle)
     bx, by, bm = _load_at(m.u.amb, since_middle)
@@ -98,6 +118,20 @@ def rhs(t, q, dq, m):
     dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN] + az * q[VZ]
     dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN] + bz * q[VZ]
     dq[LOSS] = braking * q[SPIN]
+    a_tilts, b_tilts = _moments_of(m.u.A, since_middle), _moments_of(m.u.amb, since_middle)
+    about_x = a_tilts[0] - p.bearing_position * ay + b_tilts[0] - p.amb_position * by
+    about_y = a_tilts[1] + p.bearing_position * ax + b_tilts[1] + p.amb_position * bx
+    dq[RX], dq[RY] = q[WX], q[WY]
+    dq[WX], dq[WY] = _tilt_accelerations(q, about_x, about_y, p)
+    if p.transverse_inertia > 0.0:
+        dq[WORK_A] += _tilting_power(q, ax, ay, a_tilts, p.bearing_position)
+        dq[WORK_AMB] += _tilting_power(q, bx, by, b_tilts, p.amb_position)
+
+
+@kernel
+def _tilting_power(q, fx, fy, moments, at):
+    """Power (W) on the tilt of a load at a seat `at` (m) from the centre of mass; moments: N m."""
+    return (moments[0] - at * fy) * q[WX] + (moments[1] + at * fx) * q[WY]
 
 
 @kernel
@@ -117,6 +151,24 @@ def _thrust_of(load, since_middle):
 
 
 @kernel
+def _moments_of(load, since_middle):
+    """Moments (N m) about x and y of a load, `since_middle` (s) after the middle of the macro step."""
+    return load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle
+
+
+@kernel
+def _tilt_accelerations(q, about_x, about_y, p):
+    """(rad/s2, rad/s2) under moments about the centre of mass (N m); 0 where it does not tilt."""
+    if p.transverse_inertia == 0.0:
+        return 0.0, 0.0
+    spinning = p.inertia * q[SPIN]
+    return (
+        (about_x - spinning * q[WY]) / p.transverse_inertia,
+        (about_y + spinning * q[WX]) / p.transverse_inertia,
+    )
+
+
+@kernel
 def _axial_acceleration(force, p):
     """Along the shaft (m/s2), under gravity, thrust and the seats' `force` (N); 0 where it stays."""
     return p.axial_gravity + (p.axial_load + force) / p.mass if p.axial == 1 else 0.0
@@ -124,7 +176,7 @@ def _axial_acceleration(force, p):
 
 @kernel
 def _accelerations(q, fx, fy, moment, p):
-    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (11,), under gravity and loads.
+    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (15,), under gravity and loads.
 
     The loads act at the shaft centre: fx, fy (N), moment (N m). The centre of mass stands off by e (c, s):
     I alpha = M + e (Fx s - Fy c), gravity drops out.
@@ -140,10 +192,13 @@ def _accelerations(q, fx, fy, moment, p):
 
 @kernel
 def publish(q, m):
-    """Outputs m.o from the state q (11,) at the end of the step: what a seat does not cause is 'free'."""
+    """Outputs m.o from the state q (15,) at the end of the step: what a seat does not cause is 'free'."""
     p = m.p
     _publish_seat(q, p, m.o.A, m.u.amb, m.half)
     _publish_seat(q, p, m.o.amb, m.u.A, m.half)
+    if p.transverse_inertia > 0.0:
+        _publish_tilt(q, p, m.o.A, p.bearing_position, m.u.amb, p.amb_position, m.half)
+        _publish_tilt(q, p, m.o.amb, p.amb_position, m.u.A, p.bearing_position, m.half)
     m.o.A.work = q[WORK_A]
     m.o.amb.work = q[WORK_AMB]
     angle = q[ANGLE] + p.unbalance_angle
@@ -155,6 +210,8 @@ def publish(q, m):
     if p.axial == 1:
         e.kinetic += 0.5 * p.mass * q[VZ] ** 2
         e.potential -= (p.mass * p.axial_gravity + p.axial_load) * q[Z]
+    if p.transverse_inertia > 0.0:
+        e.kinetic += 0.5 * p.transverse_inertia * (q[WX] ** 2 + q[WY] ** 2)
     e.dissipated = q[LOSS]
 
 
@@ -173,16 +230,38 @@ def _publish_seat(q, p, seat, other, half):
 
 
 @kernel
-def settle(words):
-    """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s. Returns 0.
+def _publish_tilt(q, p, seat, at, other, other_at, half):
+    """Tilt at a seat `at` (m) from the centre of mass, and what it adds to the seat's motion there.
 
-    Nothing can be wrong between the parameters.
+    other: the other seat's load, `other_at` (m), at its end, `half` (s) after the middle.
+    """
+    fx, fy, _ = _load_at(other, half)
+    mx, my = _moments_of(other, half)
+    seat.x += at * q[RY]
+    seat.y -= at * q[RX]
+    seat.vx += at * q[WY]
+    seat.vy -= at * q[WX]
+    about_x, about_y = _tilt_accelerations(q, mx - other_at * fy, my + other_at * fx, p)
+    seat.rx, seat.ry, seat.wx, seat.wy = q[RX], q[RY], q[WX], q[WY]
+    seat.alpha_x_free, seat.alpha_y_free = about_x, about_y
+    seat.ax_free += at * about_y
+    seat.ay_free -= at * about_x
+    seat.inv_I_t, seat.inv_mI = 1.0 / p.transverse_inertia, at / p.transverse_inertia
+    seat.inv_m += at * at / p.transverse_inertia
+
+
+@kernel
+def settle(words):
+    """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s, tilts at 10 urad.
+
+    Returns 0: nothing can be wrong between the parameters.
     """
     m = words.view(MEMORY)[0]
     m.n = SIZE
     m.weight[X], m.weight[Y], m.weight[Z] = 1e6, 1e6, 1e6
     m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     m.weight[ANGLE], m.weight[SPIN] = 1e-1, 1e-1
+    m.weight[RX], m.weight[RY], m.weight[WX], m.weight[WY] = 1e5, 1e5, 1e1, 1e1
     return 0
 
 
@@ -195,16 +274,19 @@ def start(words):
     q[SPIN] = p.speed
     if p.axial == 1:
         q[Z], q[VZ] = p.z, p.vz
+    if p.transverse_inertia > 0.0:
+        q[RX], q[RY], q[WX], q[WY] = p.rx, p.ry, p.wx, p.wy
     m.half = 0.0
     publish(q, m)
-    weight = p.gravity / m.o.amb.inv_m  # unbalance turns, and is no static load
+    weight = p.gravity / (1.0 / p.mass)  # unbalance turns, and is no static load
     m.o.held.static_fy = weight if weight != 0.0 else NO_LOAD
 
 
 @kernel
 def _sum(load):
     """Sum of a load's values, in mixed units, by which one that is not finite is noticed."""
-    return load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz + load.fz + load.dfz
+    across = load.fx + load.fy + load.mz + load.dfx + load.dfy + load.dmz
+    return across + load.fz + load.dfz + load.mx + load.my + load.dmx + load.dmy
 
 
 @kernel
@@ -224,7 +306,7 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
     causes: dict[str, tuple[str, ...]] = {
         "energy.kinetic": (
             *("mass", "inertia", "speed", "vx", "vy", "eccentricity", "unbalance_angle"),
-            *("axial", "vz"),
+            *("axial", "vz", "transverse_inertia", "wx", "wy"),
         ),
         "energy.potential": (
             *("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
@@ -232,9 +314,21 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         ),
         "amb.static_fy": ("mass", "gravity"),
     }
+    at = {"A": "bearing_position", "amb": "amb_position"}
     for seat, other in (("A", "amb"), ("amb", "A")):
-        causes |= {f"{seat}.{name}": (name,) for name in ("x", "y", "vx", "vy")}
-        causes |= {f"{seat}.inv_m": ("mass",), f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
+        lever = ("transverse_inertia", at[seat])
+        crossed = {"x": "ry", "y": "rx", "vx": "wy", "vy": "wx"}
+        causes |= {f"{seat}.{name}": (name, tilt, *lever) for name, tilt in crossed.items()}
+        causes |= {f"{seat}.omega": ("speed",), f"{seat}.inv_I": ("inertia",)}
+        causes |= {f"{seat}.inv_m": ("mass", *lever), f"{seat}.inv_mI": lever}
+        causes |= {f"{seat}.{name}": ("transverse_inertia", name) for name in ("rx", "ry", "wx", "wy")}
+        causes[f"{seat}.inv_I_t"] = ("transverse_inertia",)
+        turned = ("transverse_inertia", "inertia", "speed", at[other])
+        about = {
+            "x": (*turned, "wy", f"{other}.mx", f"{other}.fy"),
+            "y": (*turned, "wx", f"{other}.my", f"{other}.fx"),
+        }
+        causes |= {f"{seat}.alpha_{axis}_free": named for axis, named in about.items()}
         causes |= {f"{seat}.{name}": ("axial", name) for name in ("z", "vz")}
         causes[f"{seat}.inv_m_z"] = ("axial", "mass")
         thrust = ("axial_gravity", "axial_load", f"{other}.fz")
@@ -242,16 +336,21 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
         spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
         causes[f"{seat}.alpha_free"] = spinning
-        causes[f"{seat}.ax_free"] = ("mass", *spinning)
-        causes[f"{seat}.ay_free"] = ("mass", "gravity", *spinning)
+        causes[f"{seat}.ax_free"] = _once("mass", *spinning, at[seat], *about["y"])
+        causes[f"{seat}.ay_free"] = _once("mass", "gravity", *spinning, at[seat], *about["x"])
     return causes
+
+
+def _once(*names: str) -> tuple[str, ...]:
+    """Each name once."""
+    return tuple(dict.fromkeys(names))
 
 
 MODEL = Model(
     name="rigid_rotor",
     title="Rigid rotor",
-    about="Rigid disk with spin, unbalance and drag, in the plane and along its shaft; one seat for a "
-    "touchdown bearing (A), one for a magnetic bearing (amb)",
+    about="Rigid rotor with spin, unbalance and drag, in the plane, along its shaft and tilting; one seat "
+    "for a touchdown bearing (A), one for a magnetic bearing (amb)",
     parameters=Parameters,
     inputs=Inputs,
     outputs=Outputs,

@@ -235,16 +235,20 @@ def preload_approach(b, rings, angle, preload):
 
 
 @kernel
-def rows_of(b, rings, angle, arrangement, distance, preload):
+def rows_of(b, rings, angle, arrangement, distance, clamped):
     """Both rows (`Row`) of a pair as mounted; of a single row the second has no stiffness.
 
     b: a record of `BallSet`; rings: `Elastic`; angle: contact angle (rad); arrangement: of `ARRANGEMENTS`;
-    distance: of the rows (m); preload: that clamps them against each other (N).
+    distance: of the rows (m); clamped: against each other, by a preload (N), and by an interference (m) of
+    both together.
     """
     if arrangement == SINGLE:
         row = row_of(b, rings, angle, 1.0, 0.0, 0.0)
         return row, Row(row.inner, row.outer, row.inner_at, row.outer_at, row.free, 0.0, row.lever)
-    approach = preload_approach(b, rings, angle, preload) if arrangement != TANDEM else 0.0
+    preload, interference = clamped
+    approach = 0.0
+    if arrangement != TANDEM:
+        approach = preload_approach(b, rings, angle, preload) + 0.5 * interference
     left, right = sides_of(arrangement)
     return (
         row_of(b, rings, angle, left, -0.5 * distance, approach),

@@ -45,6 +45,12 @@ class Ring:
 
     mass: float = real(0.015, "kg", "mass of the inner ring", above=0.0)
     inertia: float = real(1.9e-6, "kg.m2", "moment of inertia of the inner ring", above=0.0)
+    transverse_inertia: float = real(
+        0.0,
+        "kg.m2",
+        "its moment of inertia about a diameter, where it tilts; 0: half of inertia",
+        minimum=0.0,
+    )
     harmonics: int = integer(
         0,
         "highest harmonic in which the ring bends in its plane; 0: it is rigid; -1: as many as 0.4 times "
@@ -118,18 +124,24 @@ def _bent_bore(at, body, before, bent):
 
 @kernel
 def journal_on_ring(q, m):
-    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`.
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`."""
+    t = touch_in_bore(q, seat.journal_motion(q), ring_motion(q), m.d.contact, m)
+    note(m.s.ring, t)
+    return t
+
+
+@kernel
+def touch_in_bore(q, journal, body, law, m):
+    """`Touch` (N, N m, m) of a journal by a `law`, a record, in the bore of a ring; both `Motion`.
 
     It presses the modes of a ring that bends, in m.s.shape.
     """
-    journal, body = seat.journal_motion(q), ring_motion(q)
     round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.p.clearance)
     if m.d.bending.waves > 0:
         bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
         at, body, _ = _bent_bore(at, body, body, bent)
-    t = touch_at(at, journal, body, m.d.contact, m.d.friction)
+    t = touch_at(at, journal, body, law, m.d.friction)
     bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, m.s.shape)
-    note(m.s.ring, t)
     return t
 
 

@@ -116,13 +116,13 @@ def react(t, q, dq, m):
     p = m.p
     dq[SUPPLIED], dq[FX], dq[FY] = 0.0, 0.0, 0.0
     if t > m.s.span:
-        return Load(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Load(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     fx, fy = _law(t, q, m)
     if p.bandwidth > 0.0:
         dq[FX], dq[FY] = p.bandwidth * (fx - q[FX]), p.bandwidth * (fy - q[FY])
         fx, fy = q[FX], q[FY]
     dq[SUPPLIED] = fx * (q[seat.JVX] - q[seat.HVX]) + fy * (q[seat.JVY] - q[seat.HVY])
-    return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0)
+    return Load(fx, fy, 0.0, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel

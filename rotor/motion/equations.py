@@ -17,11 +17,13 @@ Motion of a rotor in modal coordinates, both planes in one complex number p = p_
 (3.29) with mass-normalised free-free modes, the same in both planes:
 
     p'' = -omega^2 p - 2 zeta omega p' + i Omega G p' + i alpha G p
-          + shape^T F - i g w + (Omega^2 - i alpha) U exp(i theta)
+          + shape^T F - i tilt^T M - i g w + (Omega^2 - i alpha) U exp(i theta)
     I alpha = M - Re sum p'' conj(i U exp(i theta))
 
-G: modal polar matrix (polar inertia per length), w: modal weight, U: modal unbalance. The last line gives
-the unbalance's reaction on the spin, without which it would make energy.
+F = F_x + i F_y and M = M_x + i M_y: forces and moments at the stations; shape, tilt: of the modes there,
+their deflection and its slope. G: modal polar matrix (polar inertia per length), w: modal weight, U: modal
+unbalance. In the last line M is the moment about the shaft; it gives the unbalance's reaction on the spin,
+without which it would make energy.
 """
 
 from __future__ import annotations
@@ -97,6 +99,7 @@ def modal_forces(m, since_middle, fx, fy):
     for j in range(m.d.stations):
         load = m.u.station[j]
         _add(m, j, load.fx + load.dfx * since_middle, load.fy + load.dfy * since_middle, fx, fy)
+        _tilt(m, j, load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle, fx, fy)
 
 
 @kernel
@@ -108,6 +111,7 @@ def modal_force_rates(m, dfx, dfy):
     for j in range(m.d.stations):
         load = m.u.station[j]
         _add(m, j, load.dfx, load.dfy, dfx, dfy)
+        _tilt(m, j, load.dmx, load.dmy, dfx, dfy)
 
 
 @kernel
@@ -117,6 +121,15 @@ def _add(m, j, x, y, fx, fy):
         for k in range(m.d.modes):
             fx[k] += m.d.shape[j, k] * x
             fy[k] += m.d.shape[j, k] * y
+
+
+@kernel
+def _tilt(m, j, about_x, about_y, fx, fy):
+    """Add moments about x and y at station j, in N m or N m/s, to modal forces (n,), as `_add` does."""
+    if about_x != 0.0 or about_y != 0.0:
+        for k in range(m.d.modes):
+            fx[k] += m.d.tilt[j, k] * about_y
+            fy[k] -= m.d.tilt[j, k] * about_x
 
 
 @kernel
@@ -255,7 +268,18 @@ def _power(m, j, since_middle, vx, vy, spin):
     power = (load.fx + load.dfx * since_middle) * station_vx + (
         load.fy + load.dfy * since_middle
     ) * station_vy
-    return power + (load.mz + load.dmz * since_middle) * spin
+    return power + (load.mz + load.dmz * since_middle) * spin + _tilting_power(m, j, since_middle, vx, vy)
+
+
+@kernel
+def _tilting_power(m, j, since_middle, vx, vy):
+    """`_power` of the moments that tilt the station."""
+    load = m.u.station[j]
+    about_x, about_y = load.mx + load.dmx * since_middle, load.my + load.dmy * since_middle
+    power = 0.0
+    for k in range(m.d.modes):
+        power += m.d.tilt[j, k] * (about_y * vx[k] - about_x * vy[k])
+    return power
 
 
 @kernel

@@ -57,6 +57,8 @@ def account(q, m, step, start, area, turned, swept):
     half = 0.5 * step
     for j in range(m.d.stations):
         u = m.u.station[j]
+        if u.mx != 0.0 or u.my != 0.0 or u.dmx != 0.0 or u.dmy != 0.0:
+            tail[WORK + j] += _tilting_work(q, m, j, half, start, area)
         if u.fx == 0.0 and u.fy == 0.0 and u.dfx == 0.0 and u.dfy == 0.0 and u.mz == 0.0 and u.dmz == 0.0:
             continue
         x, y, moment_x, moment_y = 0.0, 0.0, 0.0, 0.0
@@ -68,6 +70,19 @@ def account(q, m, step, start, area, turned, swept):
             moment_y += shape * (half * (py[k] + start_y[k]) - area_y[k])
         work = u.fx * x + u.fy * y + u.dfx * moment_x + u.dfy * moment_y
         tail[WORK + j] += work + u.mz * turned + u.dmz * swept
+
+
+@kernel
+def _tilting_work(q, m, j, half, start, area):
+    """What `account` adds for the moments that tilt station j (J); half: of the macro step (s)."""
+    px, py, _, _ = modal(q, m)
+    u, work = m.u.station[j], 0.0
+    for k in range(m.d.modes):
+        x, y = px[k] - start.x[k], py[k] - start.y[k]
+        moment_x = half * (px[k] + start.x[k]) - area.x[k]
+        moment_y = half * (py[k] + start.y[k]) - area.y[k]
+        work += m.d.tilt[j, k] * (u.my * x - u.mx * y + u.dmy * moment_x - u.dmx * moment_y)
+    return work
 
 
 @kernel

@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 import touchdown
 from tests.support.bearing_states import instance_of
 from touchdown.bearings import seat
-from touchdown.bearings.angular.statics import Mounted, balls_on
+from touchdown.bearings.angular import inner_ring
+from touchdown.bearings.angular.statics import Mounted, balls_on, energy_at
 from touchdown.bearings.contact.materials import SILICON_NITRIDE
 from touchdown.bearings.rolling import ring
 from touchdown.bearings.rolling.ball_set import BallSet
-from touchdown.bearings.simplified_caged import RVZ, RZ
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import opened
 from touchdown.modelkit.instance import Instance
@@ -75,22 +75,49 @@ def rates(instance: Instance, q: np.ndarray) -> np.ndarray:
 
 
 def test_balls_load_the_ring_as_at_rest() -> None:
-    """At ten places of the ring, with that of its cage: the sums of `balls_on`, which take no damping."""
+    """At ten poses of the ring, with that of its cage: the sums of `balls_on`, which take no damping."""
     instance, draw = paired(), np.random.default_rng(3)
     instance.start(0.0)
     m = instance.record
-    p, n = m["p"], int(m["n"])
+    p, n, at = m["p"], int(m["n"]), int(m["d"]["space"]["at"])
     mass, weight = float(p["ring"]["mass"]), float(p["ring"]["mass"]) * float(p["gravity"])
+    transverse = float(m["d"]["space"]["transverse_inertia"])
     for _ in range(10):
         q = m["q"][:n].copy()
-        q[ring.RX], q[ring.RY], q[RZ] = draw.uniform(-3e-6, 3e-6, 3)
+        pose = draw.uniform(-1.0, 1.0, 5) * (3e-6, 3e-6, 3e-6, 1e-4, 1e-4)
+        q[ring.RX], q[ring.RY] = pose[:2]
+        q[at + inner_ring.Z], q[at + inner_ring.RX], q[at + inner_ring.RY] = pose[2:]
         q[ring.RANGLE] = draw.uniform(0.0, 6.0)
         dq = rates(instance, q)
         turned = float(m["d"]["cage_ratio"]) * q[ring.RANGLE] + float(p["balls"]["first_angle"])
-        pose = np.array([q[ring.RX], q[ring.RY], q[RZ], 0.0, 0.0])
         load, _ = balls_on(PAIR.rows(), PAIR.angles() + turned, pose)
-        found = mass * np.array([dq[ring.RVX], dq[ring.RVY], dq[RVZ]]) + (0.0, weight, 0.0)
+        found = mass * np.array([dq[ring.RVX], dq[ring.RVY], dq[at + inner_ring.VZ]]) + (0.0, weight, 0.0)
         assert found == pytest.approx(-load[:3], rel=1e-9, abs=1e-9 * 100.0)
+        tilting = transverse * dq[[at + inner_ring.WX, at + inner_ring.WY]]
+        assert tilting == pytest.approx(-load[3:], rel=1e-9, abs=1e-9)
+
+
+def test_a_turning_row_makes_no_energy() -> None:
+    """The moment on the cage is the slope of the balls' energy over its angle, tilts included."""
+    instance = paired()
+    instance.start(0.0)
+    m = instance.record
+    n, at, ratio = int(m["n"]), int(m["d"]["space"]["at"]), float(m["d"]["cage_ratio"])
+    q = m["q"][:n].copy()
+    q[ring.RX], q[ring.RY], q[at + inner_ring.Z] = 2e-6, -1e-6, 1.5e-6
+    q[at + inner_ring.RX], q[at + inner_ring.RY] = 1e-4, -5e-5
+    pose = np.array([2e-6, -1e-6, 1.5e-6, 1e-4, -5e-5])
+
+    def energy(angle: float) -> float:
+        turned = ratio * angle + float(m["p"]["balls"]["first_angle"])
+        return energy_at(PAIR.rows(), PAIR.angles() + turned, pose)
+
+    step = 1e-4
+    q[ring.RANGLE] = 0.3
+    slope = (energy(0.3 + step) - energy(0.3 - step)) / (2.0 * step)
+    assert abs(slope) > 1e-9
+    turning = rates(instance, q)[ring.RW] * float(m["d"]["ring_inertia"])
+    assert turning == pytest.approx(-slope, rel=1e-5)
 
 
 def test_without_a_contact_angle_it_is_the_one_of_the_plane() -> None:
@@ -121,7 +148,7 @@ def landing(gap: float) -> tuple[float, float]:
     with opened(scene, in_process=True) as system:
         bearing, house = system.components["bearing"], system.components["housing"]
         system.initialise()
-        law = float(bearing.instance.record["d"]["row_damping"])  # type: ignore[attr-defined]
+        law = float(bearing.instance.record["d"]["space"]["damping"])  # type: ignore[attr-defined]
         housing = 1.0 / float(house.read(["seat.inv_m"])[0])
     peaks = [0.0, 0.0]
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...modelkit.kernel import kernel
-from ...modelkit.variables import array
-from ..contact.friction import curve
-from ..contact.laws import elastic_and_damping, elastic_force
-from ..contact.passivity import passive
-from ..rolling.ball_set import MAX_BALLS
-from ..rolling.micro_step import beat_of
-from ..rolling.sides import SideContacts, after, part_ways, share
+from ....modelkit.kernel import kernel
+from ....modelkit.variables import array
+from ...contact.friction import curve
+from ...contact.laws import elastic_and_damping, elastic_force
+from ...contact.passivity import passive
+from ...rolling.ball_set import MAX_BALLS
+from ...rolling.micro_step import beat_of
+from ...rolling.sides import SideContacts, after, part_ways, share
 from .layout import FIRST_BALL, WX, WY, WZ
 from .rubbing import lone_friction
 

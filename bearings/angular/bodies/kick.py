@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.integrators import verlet
-from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import array, group, real
-from .. import seat
-from ..heat import parts
-from ..heat.parts import Sources
-from ..rolling import ring
+from ....modelkit.integrators import verlet
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.variables import array, group, real
+from ... import seat
+from ...heat import parts
+from ...heat.parts import Sources
+from ...rolling import ring
 from .layout import MAX_STATES
 
 COPIES = (seat.JVX, seat.JVY, seat.JVZ, seat.JW, seat.HVX, seat.HVY, seat.HVZ)  # their velocities

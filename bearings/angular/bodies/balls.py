@@ -12,10 +12,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import array
-from .. import seat
-from ..rolling.ring import drift_balls, rounded
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.variables import array
+from ... import seat
+from ...rolling.ring import drift_balls, rounded
 from .layout import FIRST_BALL, ROOM, SIZE, VX, VY, VZ, WX, WY, WZ, X, Y, Z, component
 
 

@@ -6,10 +6,10 @@ those that it has in space, and the balls of both rows, component by component.
 
 from __future__ import annotations
 
-from ...modelkit.kernel import inlined
-from ..rolling import ring
-from ..rolling.ball_set import MAX_BALLS
-from ..rolling.ring import LANES
+from ....modelkit.kernel import inlined
+from ...rolling import ring
+from ...rolling.ball_set import MAX_BALLS
+from ...rolling.ring import LANES
 
 RZ, RVZ, RTX, RTY, RWX, RWY = range(ring.NEXT, ring.NEXT + 6)  # along the shaft; tilts and their rates
 FACE_LOSS = ring.NEXT + 6  # heat of the faces

@@ -17,7 +17,7 @@ with w = h (1/m + r^2/I) the same along both directions and taken into A = F'/(1
 
     f_i = held + G J Delta        G = (1 - A_i W' A_o W)^-1 A_i
 
-is put into the ring's six equations (`ring_in_space`), which give Delta.
+is put into the ring's six equations (`ring`), which give Delta.
 
 A ball goes round while it is kicked: its velocity at the end of a kick of h seconds at the angle rate O is
 turned by O h/2 against its place, and that at the beginning by as much backwards. Across the groove that is
@@ -30,10 +30,10 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import array
-from ..contact.friction import Rises, height_and_slope, rises
-from ..contact.pair import spot, steepest
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.variables import array
+from ...contact.friction import Rises, height_and_slope, rises
+from ...contact.pair import spot, steepest
 from .layout import ROOM
 
 SUMS = 27  # of the balls in the ring's equations: 21 of the symmetric matrix, 6 of the right-hand side

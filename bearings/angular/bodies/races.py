@@ -26,11 +26,11 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import array
-from ..contact.laws import elastic_energy, hertz
-from ..contact.pair import damped_normal
-from ..contact.passivity import middle_of, passive, settled
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.variables import array
+from ...contact.laws import elastic_energy, hertz
+from ...contact.pair import damped_normal
+from ...contact.passivity import middle_of, passive, settled
 from .layout import ROOM
 
 NOT_TOUCHING = 1e3  # m; r of what stands behind the last ball

@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...modelkit.kernel import kernel
-from ...modelkit.variables import array, choice, group, groups, integer, real
-from ..contact import friction
-from ..contact.face import Shoulder, ShoulderMemory, ShoulderReport, has_faces
-from ..contact.friction import FrictionLaw
-from ..contact.laws import ContactLaw, broadcast_law, damp, in_series
-from ..contact.line import BoreContact
-from ..contact.materials import elastic_of
-from ..contact.peaks import PeakMemory
-from ..rolling import declarations, ring
-from ..rolling.ball_set import (
+from ....modelkit.kernel import kernel
+from ....modelkit.variables import array, choice, group, groups, integer, real
+from ...contact import friction
+from ...contact.face import Shoulder, ShoulderMemory, ShoulderReport, has_faces
+from ...contact.friction import FrictionLaw
+from ...contact.laws import ContactLaw, broadcast_law, damp, in_series
+from ...contact.line import BoreContact
+from ...contact.materials import elastic_of
+from ...contact.peaks import PeakMemory
+from ...rolling import declarations, ring
+from ...rolling.ball_set import (
     BallContacts,
     FreeBallSet,
     ball_inertia,
@@ -25,18 +25,18 @@ from ..rolling.ball_set import (
     spread_of,
     start_angle,
 )
-from ..rolling.balls import place_balls
-from ..rolling.bodies import HardestHit
-from ..rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
-from ..rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
-from ..rolling.sides import Chain
+from ...rolling.balls import place_balls
+from ...rolling.bodies import HardestHit
+from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
+from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
+from ...rolling.sides import Chain
 from .balls import SpaceBalls
 from .kick import SpaceKickMemory
 from .layout import ROOM, ROWS
 from .neighbours import SpaceSides
 from .races import NOT_TOUCHING, Groove, RaceContacts
-from .ring_in_space import Six, SpaceRing, Touches
-from .row import ARRANGEMENTS, SINGLE, TANDEM, preload_approach, race_stiffness, sides_of
+from .ring import Six, SpaceRing, Touches
+from ..row import ARRANGEMENTS, SINGLE, TANDEM, preload_approach, race_stiffness, sides_of
 from .rubbing import BallFriction
 
 

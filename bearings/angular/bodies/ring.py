@@ -25,15 +25,15 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from ...modelkit.kernel import inlined, kernel
-from ...modelkit.variables import array, real
-from .. import seat
-from ..contact.face import PLACES, has_faces
-from ..contact.friction import curve
-from ..contact.laws import elastic_and_damping, elastic_energy
-from ..contact.pair import damped_normal
-from ..contact.passivity import middle_of, passive, settled
-from ..rolling import ring
+from ....modelkit.kernel import inlined, kernel
+from ....modelkit.variables import array, real
+from ... import seat
+from ...contact.face import PLACES, has_faces
+from ...contact.friction import curve
+from ...contact.laws import elastic_and_damping, elastic_energy
+from ...contact.pair import damped_normal
+from ...contact.passivity import middle_of, passive, settled
+from ...rolling import ring
 from .layout import RTX, RTY, RVZ, RWX, RWY, RZ
 from .races import Axes, Frame, Moved
 from .rubbing import line_over
