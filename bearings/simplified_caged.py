@@ -311,7 +311,7 @@ def react(t, q, dq, m):
     clear(m.s.balls)
     inner_ring.clear(m.s.space)
     m.s.shape.acceleration[:] = 0.0
-    j = inner_ring.journal_on_ring(q, m)
+    j = inner_ring.journal_on_ring(q, m.s.shape, m)
     gap = ring.gap(q)
     balls = _slipping(q, dq, gap, m) if p.slip == 1 else _rolling(q, gap, m)
     fx, fy = balls.fx - p.damping * gap.ux, balls.fy - p.damping * gap.uy
@@ -328,14 +328,15 @@ def react(t, q, dq, m):
     if m.d.space.rows == 0:
         parts.set_rates(Sources(j.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
         return Load(j.fx, j.fy, j.journal_moment, -fx, -fy, 0.0, 0.0, 0.0, 0.0)
-    f = inner_ring.move(q, dq, m)
+    held = m.s.space.fz - p.damping * (q[m.d.space.at + inner_ring.VZ] - q[seat.HVZ])
+    f = inner_ring.move(q, dq, held, m)
     parts.set_rates(Sources(j.loss + f.loss, bent, inside, outside, 0.0), j.sliding, dq, ring.HEAT)
     dq[ring.RVX] -= f.fx / p.ring.mass
     dq[ring.RVY] -= f.fy / p.ring.mass
     dq[ring.RW] -= f.moment / inertia
     s, moment = m.s.space, j.journal_moment + f.moment
     tilting = s.edge_mx + f.mx, s.edge_my + f.my
-    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -inner_ring.pull(q, m), *tilting)
+    return Load(j.fx + f.fx, j.fy + f.fy, moment, -fx, -fy, f.fz, -held, *tilting)
 
 
 @kernel
@@ -350,11 +351,9 @@ def observe(t, q, m):
     ring.watch(t, q, m)
     s = m.s.balls
     now = Largest(s.force / m.d.space.abreast, s.indentation, s.most_loaded, s.deepest)
+    inner_ring.note_orbit(now.force, m.d.cage_ratio * q[ring.RW], m)
     watch_balls(m.time + t, now, m)
     inner_ring.watch(m.time + t, m)
-    if m.d.space.rows > 0 and now.force > 0.0 and now.force >= m.o.balls.peak_force:
-        orbit = m.d.cage_ratio * q[ring.RW]
-        m.o.along.centrifugal = m.d.mass / m.p.balls.rows * m.d.pitch_radius * orbit * orbit / now.force
 
 
 @kernel

@@ -189,8 +189,8 @@ def thrust_218() -> list[Row]:
 )
 def stiffness_218() -> list[Row]:
     """Slope of the load at 17.8 kN, with the published 1.473318e10 N/m^1.5 for a ball on both races. A tilt
-    is one about the centre of the circle of the inner groove's centres; about the middle of the balls,
-    0.33 mm away, tilt stiffness is 1.15 % less."""
+    is one about the centre of the circle of the inner groove's centres; which point theirs is about is not
+    told, and about the middle of the balls, 0.33 mm away, it would be 1.15 % less."""
     found = b218(17.8e3, 1.473318e10).stiffness
     return [
         Row("radial stiffness", "N/m", 4.86428e8, found[0, 0]),

@@ -339,20 +339,20 @@ def _ring_at(q, at, m):
 
 
 @kernel
-def journal_on_ring(q, m):
+def journal_on_ring(q, shape, m):
     """`Touch` of the journal with the bore: at both edges of its land together, where it has one.
 
-    The moments that tilt the journal are kept in m.s.space.
+    The moments that tilt the journal are kept in m.s.space; shape: as for `ring.journal_on_ring`.
     """
     space, half = m.s.space, 0.5 * m.p.land
     space.edge_mx = space.edge_my = 0.0
     if m.d.space.rows == 0 or half == 0.0:
-        t = ring.journal_on_ring(q, m)
+        t = ring.journal_on_ring(q, shape, m)
         space.edge_stored = elastic_energy(t.indentation, m.d.contact)
         return t
     law = m.d.space.edge
-    a = ring.touch_in_bore(q, _journal_at(q, -half), _ring_at(q, -half, m), law, m)
-    b = ring.touch_in_bore(q, _journal_at(q, half), _ring_at(q, half, m), law, m)
+    a = ring.touch_in_bore(q, _journal_at(q, -half), _ring_at(q, -half, m), law, shape, m)
+    b = ring.touch_in_bore(q, _journal_at(q, half), _ring_at(q, half, m), law, shape, m)
     space.edge_mx, space.edge_my = half * (a.fy - b.fy), half * (b.fx - a.fx)
     space.edge_stored = elastic_energy(a.indentation, law) + elastic_energy(b.indentation, law)
     deeper = a.indentation > b.indentation
@@ -373,10 +373,11 @@ def journal_on_ring(q, m):
 
 
 @kernel
-def move(q, dq, m):
-    """Derivatives dq of the ring in space; returns the `Landing` of the journal's shoulders on its faces.
+def move(q, dq, held, m):
+    """Derivatives dq of the ring in space, which is `held` (N) along the shaft by balls and damping.
 
-    The balls and the bore's edges are those of the last evaluation, in m.s.space.
+    Returns the `Landing` of the journal's shoulders on its faces. The balls' and the bore's moments are
+    those of the last evaluation, in m.s.space.
     """
     p, space, s, at = m.p, m.d.space, m.s.space, m.d.space.at
     journal, body = seat.journal_motion(q), ring.ring_motion(q)
@@ -395,7 +396,7 @@ def move(q, dq, m):
     )
     faces = land_tilted(slip, tilt, p.shoulder, m.d.friction)
     note_landing(s.shoulder, faces)
-    dq[at + Z], dq[at + VZ] = q[at + VZ], (pull(q, m) - faces.fz) / p.ring.mass
+    dq[at + Z], dq[at + VZ] = q[at + VZ], (held - faces.fz) / p.ring.mass
     dq[at + RX], dq[at + RY] = q[at + WX], q[at + WY]
     spinning = p.ring.inertia * q[ring.RW]
     about_x, about_y = s.mx - s.edge_mx - faces.mx, s.my - s.edge_my - faces.my
@@ -406,12 +407,14 @@ def move(q, dq, m):
 
 
 @kernel
-def pull(q, m):
-    """Force (N) along the shaft on the ring by balls and damping; the housing has minus it.
+def note_orbit(force, orbit, m):
+    """Keep the centrifugal force of a ball over the largest `force` (N) on one, where that peaks.
 
-    The bearing's own damping, m.p.damping (N s/m), acts along the shaft as it does across.
+    orbit: rad/s; called before the peaks are kept.
     """
-    return m.s.space.fz - m.p.damping * (q[m.d.space.at + VZ] - q[seat.HVZ])
+    if m.d.space.rows > 0 and force > 0.0 and force >= m.o.balls.peak_force:
+        radius, mass = 0.5 * m.p.balls.pitch_diameter, m.d.mass / m.p.balls.rows
+        m.o.along.centrifugal = mass * radius * orbit * orbit / force
 
 
 @kernel

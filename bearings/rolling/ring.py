@@ -123,25 +123,28 @@ def _bent_bore(at, body, before, bent):
 
 
 @kernel
-def journal_on_ring(q, m):
-    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`."""
-    t = touch_in_bore(q, seat.journal_motion(q), ring_motion(q), m.d.contact, m)
+def journal_on_ring(q, shape, m):
+    """The journal's `Touch` with the ring (N, N m, m), laws as they stand, remembered for `watch`.
+
+    shape: the ring's (BendingMemory), whose modes it presses.
+    """
+    t = touch_in_bore(q, seat.journal_motion(q), ring_motion(q), m.d.contact, shape, m)
     note(m.s.ring, t)
     return t
 
 
 @kernel
-def touch_in_bore(q, journal, body, law, m):
+def touch_in_bore(q, journal, body, law, shape, m):
     """`Touch` (N, N m, m) of a journal by a `law`, a record, in the bore of a ring; both `Motion`.
 
-    It presses the modes of a ring that bends, in m.s.shape.
+    It presses the modes of a ring that bends, in `shape` (BendingMemory).
     """
     round_bore = at = place_in_bore(journal, body, m.p.journal_radius, m.p.clearance)
     if m.d.bending.waves > 0:
         bent = bending.shape_at(q, q, 0.0, at.nx, at.ny, m.d.bending)
         at, body, _ = _bent_bore(at, body, body, bent)
     t = touch_at(at, journal, body, law, m.d.friction)
-    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, m.s.shape)
+    bending.press(t.normal, round_bore.nx, round_bore.ny, m.d.bending, shape)
     return t
 
 

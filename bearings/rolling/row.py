@@ -499,6 +499,6 @@ def solve(stiff, shift, right, m):
         right[i + 2 * count] += spin
     for i in range(BALLS):
         right[i] /= shift
-    for i in range(m.d.bending.at, m.n):
+    for i in range(BALLS + 3 * count, m.n):
         right[i] /= shift
     right[ring.RW] = turned

@@ -126,9 +126,8 @@ def _growth_lines(bearing: Bearing, speed: float) -> Iterable[str]:
 def mounted(bearing: Bearing, arrangement: str = "", preload: float = 0.0) -> Mounted:
     """The bearing beside its like in an `arrangement`, a word of `ARRANGEMENTS`, with `preload` (N).
 
-    Without a word a pair stands as it is, other bearings of two rows back to back, one with a row alone; rows
-    are a width apart. Without a preload it is that of the pair.
-    Raises TouchdownError.
+    Without a word a pair stands as it is, other bearings of two rows back to back, one with a row alone;
+    rows are a width apart. Without a preload it is that of the pair. Raises TouchdownError.
     """
     words = ARRANGEMENTS.words
     if arrangement and arrangement not in words:
