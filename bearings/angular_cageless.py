@@ -1,10 +1,10 @@
 """Detailed touchdown bearing without a cage, every ball a body in space.
 
 Balls have three coordinates and three spins each, the inner ring six coordinates; the outer ring is the
-housing's and does not tilt. In one row or a pair of them balls run in grooves at a contact angle, which load,
-speed and tilt change: centrifugal force and the gyroscopic moment of balls follow from their motion. The rotor
-touches the ring at both edges of the bore, and with its shoulders on the faces. Each ball meets the next one
-of its row.
+housing's and does not tilt. In one row or a pair of them balls run in grooves at a contact angle, which
+load, speed and tilt change: centrifugal force and the gyroscopic moment of balls follow from their motion.
+The rotor touches the ring at both edges of the bore's land, and with its shoulders on the faces. Each ball
+meets the next one of its row.
 
 At contact angle 0, in the plane, this is `detailed_cageless`. Not in it: friction of balls that spin about
 their contact's normal, rings that bend, races that are no circles, an outer ring that tilts.
@@ -27,8 +27,8 @@ from .angular.bodies import ring as space_ring
 from .angular.bodies.declarations import PROBLEMS as OWN_PROBLEMS
 from .angular.bodies.declarations import SpaceDerived, SpaceMemory, SpaceOutputs, SpaceParameters
 from .angular.bodies.kick import book, leapfrog, missed
-from .angular.bodies.layout import MAX_STATES, RTX, RTY, RVZ, RWX, RWY, RZ
 from .angular.bodies.layout import FACE_LOSS as FACE_HEAT
+from .angular.bodies.layout import MAX_STATES, RTX, RTY, RVZ, RWX, RWY, RZ
 from .angular.bodies.ring import axes_of
 from .contact.face import report_faces, watch_faces
 from .contact.friction import curve
@@ -119,7 +119,7 @@ def _rub(q, dq, axes, moved, m):
     rubbing.brake(s.balls, s.outer, s.inner, 1.0 / d.mass, d.ball_radius / d.inertia, n)
     rubbing.find_middle(s.balls, s.outer, h, n)
     rubbing.find_middle(s.balls, s.inner, h, n)
-    return space_ring.leave_rotor(shaft, axes, now, m)
+    return space_ring.leave_rotor(shaft, axes, now, q, m)
 
 
 @kernel
@@ -140,7 +140,7 @@ def react(t, q, dq, m):
     dq[ring.LOSS] = at_rotor + inner.loss + outer.loss + among
     dq[FACE_HEAT] = shaft.faces
     parts.set_rates(Sources(at_rotor, 0.0, inner.loss, outer.loss, among), shaft.sliding, dq, ring.HEAT)
-    return Load(shaft.fx, shaft.fy, shaft.mz, outer.fx, outer.fy, shaft.fz, outer.fz)
+    return Load(shaft.fx, shaft.fy, shaft.spin, outer.fx, outer.fy, shaft.fz, outer.fz, shaft.mx, shaft.my)
 
 
 @kernel
@@ -163,7 +163,8 @@ def drift(trial, q, mid, h, m):
 def fastest(m):
     """Largest angular frequency of a body on its contacts, at the last evaluation (rad/s)."""
     d, s, count = m.d, m.s, m.p.balls.count
-    stiffest, below, turning, side = 0.0, space_ring.stiffness_below(m), 0.0, 0.0
+    stiffest, side = 0.0, 0.0
+    below, turning = space_ring.stiffness_below(m)
     for b in range(d.balls):
         k = s.inner.stiffness[b]
         lever = s.inner.zeta[b] * s.inner.outwards[b] - s.inner.rho[b] * s.inner.axial[b]
@@ -173,7 +174,7 @@ def fastest(m):
     for row in range(d.rows):
         for b in range(count):
             side = max(side, s.side[row].stiffness[b])
-    of_ring = max(below / m.p.ring.mass, turning / d.inertia_across)
+    of_ring = max(below / m.p.ring.mass, turning / d.transverse_inertia)
     return max(math.sqrt(max((stiffest + 2.0 * side) / d.mass, of_ring)), s.seat.fastest)
 
 
@@ -186,7 +187,7 @@ def kicked(q, dq, kick, m):
     outer = races.settle_race(s.outer, n, kick, off.part, off.hx, off.hy, off.hz)
     for row in range(m.d.rows):
         sides += settle_sides(s.side[row], m.p.balls.count, kick, off.part)
-    rotor = space_ring.settle_touches(kick, off.part, off.jx, off.jy, off.jz, axes, m)
+    rotor = space_ring.settle_touches(q, kick, off, axes, m)
     withhold(q, (inner, outer), sides, rotor, m)
 
 
@@ -310,12 +311,15 @@ def report(q, m):
     """Outputs wanted once per macro step, from the state q (m.n,)."""
     p, d, o, s = m.p, m.d, m.o, m.s
     ring.report(q, m, d.inner_radius)
-    o.ring.rx, o.ring.ry = q[RTX], q[RTY]
     o.along.z, o.along.vz, o.along.force = q[RZ], q[RVZ], s.along
+    o.along.rx, o.along.ry = q[RTX], q[RTY]
     kinetic = _report_balls(q, m)
     kinetic += 0.5 * p.ring.mass * (q[ring.RVX] ** 2 + q[ring.RVY] ** 2 + q[RVZ] ** 2)
-    kinetic += 0.5 * p.ring.inertia * q[ring.RW] ** 2 + 0.5 * d.inertia_across * (q[RWX] ** 2 + q[RWY] ** 2)
-    o.energy.kinetic, o.energy.potential, o.energy.dissipated = kinetic, _potential(q, m), q[ring.LOSS]
+    kinetic += 0.5 * p.ring.inertia * q[ring.RW] ** 2 + 0.5 * d.transverse_inertia * (
+        q[RWX] ** 2 + q[RWY] ** 2
+    )
+    e = o.energy
+    e.kinetic, e.potential, e.dissipated = kinetic, _potential(q, m), q[ring.LOSS]
     report_faces(q[FACE_HEAT], p.shoulder, o.shoulder, s.shoulder)
     parts.report(q, ring.HEAT, m)
     inner = largest(s.inner.normal, s.inner.indentation, d.balls, d.abreast)
@@ -343,6 +347,7 @@ def settle(words):
         return problem
     declarations.settle(m)
     seat.set_weights(m.weight)
+    seat.weigh_tilt(m.weight)
     ring.set_weights(m.weight)
     space_ring.set_weights(m.weight)
     balls.set_weights(m)

@@ -112,7 +112,7 @@ class Pressed(NamedTuple):
 
 @kernel
 def race_stiffness(b, rings, angle):
-    """Stiffness (N/m^1.5) of a ball on the inner and on the outer race, touching at a contact `angle` (rad).
+    """Stiffness (N/m^1.5) of a ball on the inner and on the outer race, at a contact `angle` (rad).
 
     b: a record of `BallSet`; rings: `Elastic`.
     """

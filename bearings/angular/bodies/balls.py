@@ -1,8 +1,8 @@
 """Balls as bodies in space: how they lie in the state, and where they start.
 
-A ball has a place, a velocity and a spin of three components each, in axes that do not turn; it is a sphere,
-so how it is turned is of no account. Balls of both rows lie one behind the other in the state, component by
-component, behind the ring (`layout`). An evaluation copies them into arrays of a fixed length
+A ball has a place, a velocity and a spin of three components each, in axes that do not turn; it is a
+sphere, so how it is turned is of no account. Balls of both rows lie one behind the other in the state,
+component by component, behind the ring (`layout`). An evaluation copies them into arrays of a fixed length
 (`SpaceBalls`), over which all loops run as vector code (`bearings.rolling.ring`). What lies behind the last
 ball is in no groove: it is far from touching.
 """
@@ -95,7 +95,11 @@ def lay_out(q, m):
     d, s, n = m.d, m.s.balls, m.d.balls
     for b in range(n):
         i = FIRST_BALL + b
-        q[i + X * n], q[i + Y * n], q[i + Z * n] = q[seat.HX] + d.x[b], q[seat.HY] + d.y[b], q[seat.HZ] + d.z[b]
+        q[i + X * n], q[i + Y * n], q[i + Z * n] = (
+            q[seat.HX] + d.x[b],
+            q[seat.HY] + d.y[b],
+            q[seat.HZ] + d.z[b],
+        )
         q[i + VX * n], q[i + VY * n], q[i + VZ * n] = q[seat.HVX], q[seat.HVY], q[seat.HVZ]
         q[i + WX * n] = q[i + WY * n] = q[i + WZ * n] = 0.0
     for b in range(n, ROOM):

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 from ....modelkit.kernel import kernel
-from ....modelkit.variables import array, choice, group, groups, integer, real
+from ....modelkit.variables import array, group, groups, integer, real
 from ...contact import friction
-from ...contact.face import Shoulder, ShoulderMemory, ShoulderReport, has_faces
+from ...contact.face import ShoulderMemory, ShoulderReport, has_faces
 from ...contact.friction import FrictionLaw
 from ...contact.laws import ContactLaw, broadcast_law, damp, in_series
 from ...contact.line import BoreContact
@@ -30,36 +30,30 @@ from ...rolling.bodies import HardestHit
 from ...rolling.declarations import RollingDerived, RollingMemory, RollingOutputs, RollingParameters
 from ...rolling.micro_step import MICRO_STEP, RESOLUTION, refined, step_in_hit
 from ...rolling.sides import Chain
+from .. import inner_ring
+from ..inner_ring import ContactAngle
+from ..row import SINGLE, race_stiffness, rows_of
 from .balls import SpaceBalls
 from .kick import SpaceKickMemory
 from .layout import ROOM, ROWS
 from .neighbours import SpaceSides
 from .races import NOT_TOUCHING, Groove, RaceContacts
-from .ring import Six, SpaceRing, Touches
-from ..row import ARRANGEMENTS, SINGLE, TANDEM, preload_approach, race_stiffness, sides_of
+from .ring import Six, Touches
 from .rubbing import BallFriction
 
 
 @dataclass(frozen=True)
-class FreeAngularBallSet(FreeBallSet):
+class FreeAngularBallSet(ContactAngle, FreeBallSet):
     """Balls without a cage, whose races they touch at an angle."""
-
-    contact_angle: float = real(0.0, "rad", "contact angle", minimum=0.0, maximum=1.2)
 
 
 @dataclass(frozen=True)
-class SpaceParameters(RollingParameters):
+class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
     """Defaults: Koyo 6904 under the disk of section 4.3, as `detailed_cageless`."""
 
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeAngularBallSet = group(FreeAngularBallSet)
-    ring: SpaceRing = group(SpaceRing, mass=0.0095, inertia=1.08e-6)
-    arrangement: int = choice(
-        SINGLE, ARRANGEMENTS, "how two rows with a contact angle, balls.rows = 2, stand beside each other"
-    )
-    row_distance: float = real(0.0, "m", "of the middles of a pair's rows", minimum=0.0)
-    preload: float = real(0.0, "N", "by which a pair is clamped along the shaft", minimum=0.0)
-    shoulder: Shoulder = group(Shoulder)
+    ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
     axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
     micro_step: float = real(
         MICRO_STEP,
@@ -75,14 +69,6 @@ class SpaceParameters(RollingParameters):
 
 
 @dataclass(frozen=True)
-class SpaceRingReport(ring.RingReport):
-    """Motion of the inner ring in space."""
-
-    rx: float = real(0.0, "rad", "tilt about x; positive moves its +z end to -y", local=True)
-    ry: float = real(0.0, "rad", "tilt about y; positive moves its +z end to +x", local=True)
-
-
-@dataclass(frozen=True)
 class SpaceBall:
     """One ball; rows one behind the other."""
 
@@ -94,18 +80,23 @@ class SpaceBall:
     outer: float = real(0.0, "N", "normal force of the outer race", local=True)
     side: float = real(0.0, "N", "normal force of the next ball", local=True)
     inner_angle: float = real(
-        0.0, "rad", "contact angle at the inner race; positive where it carries a shaft pushed in +z", local=True
+        0.0,
+        "rad",
+        "contact angle at the inner race; positive where it carries a shaft pushed in +z",
+        local=True,
     )
     outer_angle: float = real(0.0, "rad", "the same at the outer race", local=True)
 
 
 @dataclass(frozen=True)
 class Along:
-    """The ring along the shaft, and contact angles."""
+    """The ring along the shaft and its tilt, and contact angles."""
 
     z: float = real(0.0, "m", "position of the ring", local=True)
     vz: float = real(0.0, "m/s", "velocity of the ring", local=True)
     force: float = real(0.0, "N", "of the balls on the ring", local=True)
+    rx: float = real(0.0, "rad", "tilt of the ring about x", local=True)
+    ry: float = real(0.0, "rad", "tilt of the ring about y", local=True)
     contact_angle: float = real(0.0, "rad", "of the most loaded ball, at the inner race", local=True)
     outer_angle: float = real(0.0, "rad", "of that ball, at the outer race", local=True)
 
@@ -114,7 +105,7 @@ class Along:
 class SpaceOutputs(RollingOutputs):
     """Loads, and what to know of the inside."""
 
-    ring: SpaceRingReport = group(SpaceRingReport)
+    ring: ring.RingReport = group(ring.RingReport)
     inner: BallContacts = group(BallContacts)
     outer: BallContacts = group(BallContacts)
     hardest: HardestHit = group(HardestHit)
@@ -140,7 +131,7 @@ class SpaceDerived(RollingDerived):
     mass: float = real(0.0, "kg", "of a ball, or of those side by side")
     inertia: float = real(0.0, "kg.m2", "of a ball, or of those side by side")
     ball_radius: float = real(0.0, "m", "of a ball")
-    inertia_across: float = real(0.0, "kg.m2", "of the ring")
+    transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
     micro_step: float = real(0.0, "s", "longest step inside")
     resolution: float = real(0.0, "rad", "of the fastest contact, longest step inside")
     x: tuple = array(ROOM)  # where the balls start, from the middle
@@ -171,15 +162,10 @@ STATIC = SpaceParameters().race_friction.static
 SIDE_STATIC = SpaceParameters().ball_friction.static
 _SHARED = declarations.problems("race_friction", "ball_friction")
 SHARED = len(_SHARED)
+ROWS_PROBLEMS = SHARED + len(inner_ring.PROBLEMS)
 PROBLEMS = (
     *_SHARED,
-    "arrangement needs two rows with a contact angle; set balls.rows = 2, not {0:g}, and "
-    "balls.contact_angle above 0",
-    "balls.rows = {0:g} with a contact angle need an arrangement; set it to back to back, face to face "
-    "or tandem",
-    "balls.play = {0:g} m has no meaning with a contact angle; set it to 0, and preload where two rows "
-    "are clamped",
-    "preload = {0:g} N clamps two rows against each other; set arrangement to back to back or face to face",
+    *inner_ring.PROBLEMS,
     "ring.harmonics = {0:g} has the ring bend, which goes with balls in the plane; set it to 0",
 )
 
@@ -187,27 +173,17 @@ PROBLEMS = (
 @kernel
 def problem(p, told):
     """What is wrong between the parameters p: its number in `PROBLEMS`, or 0; told: `Model`'s m.told."""
-    b, paired = p.balls, p.arrangement != SINGLE
-    found = declarations.problem(p, b.crowded, told)
+    found = declarations.problem(p, p.balls.crowded, told)
     found = declarations.law_problem(found, p.race_friction, STATIC, declarations.OWN, told)
     found = declarations.law_problem(found, p.ball_friction, SIDE_STATIC, declarations.OWN + 2, told)
     if found != 0:
         return found
-    told[0] = b.rows
-    angular = b.contact_angle > 0.0
-    if paired and (b.rows != 2 or not angular):
-        return SHARED + 1
-    if angular and b.rows != 1 and not paired:
-        return SHARED + 2
-    if angular and b.play != 0.0:
-        told[0] = b.play
-        return SHARED + 3
-    if p.preload > 0.0 and (not paired or p.arrangement == TANDEM):
-        told[0] = p.preload
-        return SHARED + 4
+    found = inner_ring.problem(p, told)
+    if found != 0:
+        return SHARED + found
     if p.ring.harmonics != 0:
         told[0] = p.ring.harmonics
-        return SHARED + 5
+        return ROWS_PROBLEMS + 1
     return 0
 
 
@@ -236,19 +212,13 @@ def _settle_grooves(m):
     inner, outer = d.inner_groove, d.outer_groove
     conformity = b.outer_conformity if b.outer_conformity != 0.0 else b.conformity
     inner_arc, outer_arc = 0.5 * (b.conformity - 1.0) * b.diameter, 0.5 * (conformity - 1.0) * b.diameter
-    c, s, middle = math.cos(b.contact_angle), math.sin(b.contact_angle), 0.5 * b.pitch_diameter
-    approach = 0.0
-    if p.preload > 0.0:
-        approach = preload_approach(b, elastic_of(p.ring), b.contact_angle, p.preload)
-    sides = sides_of(p.arrangement)
+    clamped = p.preload, p.interference
+    first, second = rows_of(b, elastic_of(p.ring), b.contact_angle, p.arrangement, p.row_distance, clamped)
+    half = 0.5 * b.play if b.contact_angle == 0.0 else 0.0  # `row_of` has all of it at the inner race
     for k in range(ROOM):
-        row = k // b.count
-        side = sides[0] if row == 0 else sides[1]
-        at = 0.0
-        if p.arrangement != SINGLE:
-            at = -0.5 * p.row_distance if row == 0 else 0.5 * p.row_distance
-        inner.circle[k], outer.circle[k] = middle + inner_arc * c - 0.5 * b.play, middle - outer_arc * c + 0.5 * b.play
-        inner.along[k], outer.along[k] = at + side * (inner_arc * s + approach), at - side * outer_arc * s
+        row = first if k < b.count else second
+        inner.circle[k], outer.circle[k] = row.inner + half, row.outer + half
+        inner.along[k], outer.along[k] = row.inner_at, row.outer_at
         inner.arc[k] = inner_arc if k < d.balls else NOT_TOUCHING
         outer.arc[k] = outer_arc if k < d.balls else NOT_TOUCHING
 
@@ -256,7 +226,7 @@ def _settle_grooves(m):
 @kernel
 def _place_balls(m):
     """Set where the balls start: on the lines between their grooves, where both contacts balance."""
-    p, d, b = m.p, m.d, m.p.balls
+    d, b = m.d, m.p.balls
     spread = spread_of(b)
     for k in range(ROOM):
         d.x[k], d.y[k], d.z[k] = 0.5 * b.pitch_diameter, 0.0, 0.0
@@ -272,7 +242,11 @@ def _place_balls(m):
         reach = (outer.arc[k] + share * depth) / length
         angle = start_angle(b.first_angle, b.count, spread, k % b.count)
         radius = outer.circle[k] + reach * across
-        d.x[k], d.y[k], d.z[k] = radius * math.cos(angle), radius * math.sin(angle), outer.along[k] + reach * along
+        d.x[k], d.y[k], d.z[k] = (
+            radius * math.cos(angle),
+            radius * math.sin(angle),
+            outer.along[k] + reach * along,
+        )
 
 
 @kernel
@@ -286,7 +260,8 @@ def settle(m):
     d.rows = 1 if p.arrangement == SINGLE else 2
     d.balls = d.rows * b.count
     d.inner_radius = inner_radius(b) - 0.5 * b.play
-    d.inertia_across = p.ring.inertia_across if p.ring.inertia_across > 0.0 else 0.5 * p.ring.inertia
+    own = p.ring.transverse_inertia
+    d.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
     if b.contact_angle > 0.0:  # no play lets the ring sink
         d.rest_x = d.rest_y = 0.0
     _settle_laws(m)

@@ -17,7 +17,11 @@ from ...heat.parts import Sources
 from ...rolling import ring
 from .layout import MAX_STATES
 
-COPIES = (seat.JVX, seat.JVY, seat.JVZ, seat.JW, seat.HVX, seat.HVY, seat.HVZ)  # their velocities
+# their velocities
+COPIES = (
+    *(seat.JVX, seat.JVY, seat.JVZ, seat.JW, seat.HVX, seat.HVY, seat.HVZ),
+    *(seat.JWX, seat.JWY),
+)
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,7 @@ class SpaceBrake:
     jx: float = real(0.0, "N", "on the journal")
     jy: float = real(0.0, "N", "on the journal")
     jz: float = real(0.0, "N", "on the journal")
-    jm: float = real(0.0, "N.m", "on the journal, about the shaft")
+    jm: float = real(0.0, "N.m", "on the journal, about its own axis")
     jmx: float = real(0.0, "N.m", "on the journal, across it")
     jmy: float = real(0.0, "N.m", "on the journal, across it")
     hx: float = real(0.0, "N", "on the housing")
@@ -70,6 +74,8 @@ class Missed(NamedTuple):
     hx: float
     hy: float
     hz: float
+    jwx: float  # rad/s
+    jwy: float
 
 
 @kernel
@@ -79,7 +85,8 @@ def missed(dq, kick, m):
     part = kick / m.s.kick if m.s.kick > 0.0 else 1.0
     jx, jy, jz = h * dq[seat.JVX] - a[0], h * dq[seat.JVY] - a[1], h * dq[seat.JVZ] - a[2]
     hx, hy, hz = h * dq[seat.HVX] - a[4], h * dq[seat.HVY] - a[5], h * dq[seat.HVZ] - a[6]
-    return Missed(part, jx, jy, jz, h * dq[seat.JW] - a[3], hx, hy, hz)
+    jwx, jwy = h * dq[seat.JWX] - a[7], h * dq[seat.JWY] - a[8]
+    return Missed(part, jx, jy, jz, h * dq[seat.JW] - a[3], hx, hy, hz, jwx, jwy)
 
 
 @kernel
@@ -87,8 +94,10 @@ def book(dq, load, m):
     """Have the copies' work and heat in dq (W) be that of the middle of the kick; load: `Load` (N, N m)."""
     b, off = m.s.brake, missed(dq, m.s.kick, m)
     dq[seat.JE] += load.jx * off.jx + load.jy * off.jy + load.jz * off.jz + load.jm * off.jw
+    dq[seat.JE] += load.jmx * off.jwx + load.jmy * off.jwy
     dq[seat.HE] += load.hx * off.hx + load.hy * off.hy + load.hz * off.hz
     at_bore = b.jx * off.jx + b.jy * off.jy + b.jz * off.jz + b.jm * off.jw
+    at_bore += b.jmx * off.jwx + b.jmy * off.jwy
     at_outer = b.hx * off.hx + b.hy * off.hy + b.hz * off.hz
     dq[ring.LOSS] -= at_bore + at_outer
     parts.share(Sources(-at_bore, 0.0, 0.0, -at_outer, 0.0), dq, ring.HEAT)

@@ -1,7 +1,7 @@
 """Where ring and balls of a bearing in space lie in its state.
 
-Behind the copies of journal and housing come the components of a ring in the plane (`bearings.rolling.ring`),
-those that it has in space, and the balls of both rows, component by component.
+Behind the copies of journal and housing come the components of a ring in the plane
+(`bearings.rolling.ring`), those that it has in space, and the balls of both rows, component by component.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Balls of a row that touch the next one, in space; in the plane that is `bearings.rolling.sides`.
 
-n points from a ball to the next one, t is square to it and to the shaft's axis, m = n x t. Normal forces of a
-chain of balls are solved together; friction, along t and m, meets both of its balls and what else acts on
-them as it did in the kick before.
+n points from a ball to the next one, t is square to it and to the shaft's axis, m = n x t. Normal forces
+of a chain of balls are solved together; friction, along t and m, meets both of its balls and what else
+acts on them as it did in the kick before.
 """
 
 from __future__ import annotations

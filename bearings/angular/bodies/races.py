@@ -5,9 +5,9 @@ b touches on the line to the nearest centre G of an arc, which lies in the plane
 
     u = (G - b)/|G - b|        d = |G - b| - r        N = k d^1.5
 
-with r = (f - 1/2) D for grooves of radius f D. It feels N u, the body that has the groove -N u on the same
-line, so that forces and moments close. Along the race t = a x e points around the axis a (e from the axis to
-the ball), and m = u x t across the groove. In the body's own axes (e, t, a)
+with r = (f - 1/2) D for grooves of radius f D. It feels N u, the body that has the groove -N u on the
+same line, so that forces and moments close. Along the race t = a x e points around the axis a (e from the
+axis to the ball), and m = u x t across the groove. In the body's own axes (e, t, a)
 
     u = (u_r, 0, u_a)        m = (-u_a, 0, u_r)
 
@@ -16,8 +16,8 @@ along t, m and u, by
 
     W_a rho - W_r zeta        -W_t (u_a zeta + u_r rho)        W_t (u_r zeta - u_a rho)
 
-Normal forces over a kick are those of `bearings.contact.pair` and `bearings.contact.passivity`; in the plane
-they are those of `bearings.rolling.ball_bodies`.
+Normal forces over a kick are those of `bearings.contact.pair` and `bearings.contact.passivity`; in the
+plane they are those of `bearings.rolling.ball_bodies`.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class Moved(NamedTuple):
 
 @inlined
 def find(balls, frame, groove, radius, n, c):
-    """Set where `n` balls touch the groove of a body (`Frame`), in c (RaceContacts); radius: of a ball (m)."""
+    """Set where `n` balls of a `radius` (m) touch the groove of a body (`Frame`), in c (RaceContacts)."""
     f = frame.axes
     for b in range(n):
         dx, dy, dz = balls.x[b] - frame.x, balls.y[b] - frame.y, balls.z[b] - frame.z
@@ -262,7 +262,6 @@ def stored_in(c, law, n):
     for b in range(n):
         energy += elastic_energy(c.indentation[b], law)
     return energy
-
 
 
 @inlined

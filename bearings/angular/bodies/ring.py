@@ -1,20 +1,22 @@
 """The inner ring with six coordinates, and the rotor that lands in its bore and on its faces.
 
-The ring's state is its place, its velocity, two tilts and three spins. It is a body of revolution about its
-axis a, whose cosines the tilts are: a = (ry, -rx, 1) but for what makes that a unit vector. Spins are about
-its own axes (`axes_of`), which tilt with it and do not turn: w1, w2 across and w about a. To the first order
-in the tilt (1e-3 rad in a drop) the tilts' rates are w1 and w2. With I_t and I_p, and moments M in its axes,
+The ring's state is its place, its velocity, two tilts and three spins. It is a body of revolution about
+its axis a, whose cosines the tilts are: a = (ry, -rx, 1) but for what makes that a unit vector. Spins are
+about its own axes (`axes_of`), which tilt with it and do not turn: w1, w2 across and w about a. To the
+first order in the tilt (1e-3 rad in a drop) the tilts' rates are w1 and w2. With I_t and I_p, and moments M
+in its axes,
 
     I_t w1' + I_p w w2 = M_1        I_t w2' - I_p w w1 = M_2        I_p w' = M_3
 
 Over a kick the gyroscopic terms take the mean of w1 and of w2, and do no work.
 
-The journal touches the bore at both edges of its length, each with half of the stiffness: without tilt that
-is the one contact of a bearing in the plane. Shoulders touch a face at twelve places around, each with a
-twelfth of it. Each of these `TOUCHES` is a contact with friction along two directions (`rubbing`), that
-meets the ring's motion over the kick and a rotor that keeps its own.
+The journal touches the bore at both edges of its land, each with half of the stiffness: without tilt, or
+without a land, that is the one contact of a bearing in the plane. Shoulders touch a face, at the end of the
+land, at twelve places around, each with a twelfth of it. Each of these `TOUCHES` is a contact with friction
+along two directions (`rubbing`), that meets the ring's motion over the kick and a rotor that keeps its own.
 
-All of that is solved together with the balls on the inner race: six equations for the ring's acceleration A,
+All of that is solved together with the balls on the inner race: six equations for the ring's acceleration
+A,
 
     (M + h sum J' G J) A = F - sum J' f        friction of a contact: f + G h J A
 """
@@ -26,7 +28,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ....modelkit.kernel import inlined, kernel
-from ....modelkit.variables import array, real
+from ....modelkit.variables import array
 from ... import seat
 from ...contact.face import PLACES, has_faces
 from ...contact.friction import curve
@@ -41,15 +43,6 @@ from .rubbing import line_over
 EDGES = 2
 TOUCHES = EDGES + PLACES
 SIX = 6
-
-
-@dataclass(frozen=True)
-class SpaceRing(ring.Ring):
-    """Inner ring, or those of a pair as one, with six coordinates."""
-
-    inertia_across: float = real(
-        0.0, "kg.m2", "moment of inertia across the shaft; 0: half of `inertia`, as of a narrow ring", minimum=0.0
-    )
 
 
 @dataclass(frozen=True)
@@ -92,7 +85,10 @@ class Six:
 
 
 class Shaft(NamedTuple):
-    """The rotor at the seat, in the ring's axes: place and velocity relative to the ring, axis, spins."""
+    """The rotor at the seat, in the ring's axes: place and velocity relative to the ring, axis, spins.
+
+    The spins are components of its angular velocity: the rates of its tilts, and the spin about its axis.
+    """
 
     x: float  # m
     y: float
@@ -118,7 +114,7 @@ class OnShaft(NamedTuple):
     fz: float
     mx: float  # N m, about the seat
     my: float
-    mz: float
+    spin: float  # N m, about the rotor's own axis
     bore: float  # W, heat
     faces: float
     sliding: float  # W, normal force times sliding speed, in the bore
@@ -136,13 +132,21 @@ def axes_of(rx, ry):
 @inlined
 def into(a, x, y, z):
     """A vector in the `Axes` a."""
-    return a.e1x * x + a.e1y * y + a.e1z * z, a.e2x * x + a.e2y * y + a.e2z * z, a.e3x * x + a.e3y * y + a.e3z * z
+    return (
+        a.e1x * x + a.e1y * y + a.e1z * z,
+        a.e2x * x + a.e2y * y + a.e2z * z,
+        a.e3x * x + a.e3y * y + a.e3z * z,
+    )
 
 
 @inlined
 def out_of(a, x, y, z):
     """A vector in fixed axes that is (x, y, z) in the `Axes` a."""
-    return a.e1x * x + a.e2x * y + a.e3x * z, a.e1y * x + a.e2y * y + a.e3y * z, a.e1z * x + a.e2z * y + a.e3z * z
+    return (
+        a.e1x * x + a.e2x * y + a.e3x * z,
+        a.e1y * x + a.e2y * y + a.e3y * z,
+        a.e1z * x + a.e2z * y + a.e3z * z,
+    )
 
 
 @kernel
@@ -172,8 +176,9 @@ def shaft_of(q, axes):
     """The `Shaft` in the state q."""
     x, y, z = into(axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[seat.JZ] - q[RZ])
     vx, vy, vz = into(axes, q[seat.JVX] - q[ring.RVX], q[seat.JVY] - q[ring.RVY], q[seat.JVZ] - q[RVZ])
-    ax, ay, az = into(axes, 0.0, 0.0, 1.0)
-    w1, w2, w3 = into(axes, 0.0, 0.0, q[seat.JW])
+    rx, ry, spin = q[seat.JRX], q[seat.JRY], q[seat.JW]
+    ax, ay, az = into(axes, ry, -rx, math.sqrt(1.0 - rx * rx - ry * ry))
+    w1, w2, w3 = into(axes, q[seat.JWX] + spin * ry, q[seat.JWY] - spin * rx, spin)
     return Shaft(x, y, z, vx, vy, vz, ax / az, ay / az, w1, w2, w3, q[RWX], q[RWY], q[ring.RW])
 
 
@@ -182,7 +187,7 @@ def _find_edges(shaft, p, t):
     """Set where the journal touches the edges of the bore; t: a record of `Touches`. How many press."""
     pressing = 0
     for k in range(EDGES):
-        at = (k - 0.5) * p.contact.length
+        at = (k - 0.5) * p.land
         ex, ey = shaft.x + (at - shaft.z) * shaft.ax, shaft.y + (at - shaft.z) * shaft.ay
         distance = math.sqrt(ex * ex + ey * ey)
         inverse = 1.0 / distance if distance > 0.0 else 0.0
@@ -199,7 +204,7 @@ def _find_edges(shaft, p, t):
 def _find_places(shaft, p, t):
     """Set where the rotor touches a face of the ring, or comes nearest to; as `_find_edges`."""
     shoulder = p.shoulder
-    pressing, radius, half = 0, shoulder.radius, 0.5 * p.contact.length
+    pressing, radius, half = 0, shoulder.radius, 0.5 * p.land
     minus = -shaft.z - shoulder.gap_minus if shoulder.gap_minus > 0.0 else -math.inf
     plus = shaft.z - shoulder.gap_plus if shoulder.gap_plus > 0.0 else -math.inf
     side = 1.0 if plus > minus else -1.0
@@ -303,12 +308,34 @@ def _rub(k, shared, moved, law, beat, m):
     t.alone_t[k], t.alone_m[k] = line.alone_t, line.alone_m
     t.slope_tt[k], t.slope_tm[k], t.slope_mm[k] = line.slope_tt, line.slope_tm, line.slope_mm
     a, b, c = line.slope_tt, line.slope_tm, line.slope_mm
-    first = (a * tx + b * cx, a * ty + b * cy, a * tz + b * cz, a * t1 + b * c1, a * t2 + b * c2, a * t3 + b * c3)
-    other = (b * tx + c * cx, b * ty + c * cy, b * tz + c * cz, b * t1 + c * c1, b * t2 + c * c2, b * t3 + c * c3)
+    first = (
+        a * tx + b * cx,
+        a * ty + b * cy,
+        a * tz + b * cz,
+        a * t1 + b * c1,
+        a * t2 + b * c2,
+        a * t3 + b * c3,
+    )
+    other = (
+        b * tx + c * cx,
+        b * ty + c * cy,
+        b * tz + c * cz,
+        b * t1 + c * c1,
+        b * t2 + c * c2,
+        b * t3 + c * c3,
+    )
     _add(six, h, (tx, ty, tz, t1, t2, t3), first)
     _add(six, h, (cx, cy, cz, c1, c2, c3), other)
     f, g = -line.alone_t, -line.alone_m
-    _push(six, f * tx + g * cx, f * ty + g * cy, f * tz + g * cz, f * t1 + g * c1, f * t2 + g * c2, f * t3 + g * c3)
+    _push(
+        six,
+        f * tx + g * cx,
+        f * ty + g * cy,
+        f * tz + g * cz,
+        f * t1 + g * c1,
+        f * t2 + g * c2,
+        f * t3 + g * c3,
+    )
 
 
 @kernel
@@ -340,7 +367,7 @@ def begin_six(q, h, m):
     for i in range(SIX):
         for j in range(SIX):
             six.matrix[i, j] = 0.0
-    a, across, gyro = six.matrix, m.d.inertia_across, p.ring.inertia * q[ring.RW]
+    a, across, gyro = six.matrix, m.d.transverse_inertia, p.ring.inertia * q[ring.RW]
     a[0, 0] = a[1, 1] = a[2, 2] = p.ring.mass
     a[3, 3] = a[4, 4] = across
     a[5, 5] = p.ring.inertia
@@ -384,8 +411,11 @@ def accelerate(q, dq, axes, m):
 
 
 @kernel
-def leave_rotor(shaft, axes, moved, m):
-    """Friction, heat and rates where the rotor touches, and what it gets (`OnShaft`); moved: `Moved`."""
+def leave_rotor(shaft, axes, moved, q, m):
+    """Friction, heat and rates where the rotor touches, and what it gets (`OnShaft`) in the state q.
+
+    moved: what the kick does to the ring (`Moved`).
+    """
     t = m.s.touches
     fx, fy, fz, mx, my, mz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bx, by, bz, b1, b2, b3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -422,11 +452,13 @@ def leave_rotor(shaft, axes, moved, m):
             faces += loss
     b = m.s.brake
     b.jx, b.jy, b.jz = out_of(axes, bx, by, bz)
-    b.jmx, b.jmy, b.jm = out_of(axes, b1, b2, b3)
+    b.jmx, b.jmy, b3 = out_of(axes, b1, b2, b3)
     fx, fy, fz = out_of(axes, fx, fy, fz)
     mx, my, mz = out_of(axes, mx, my, mz)
+    rx, ry = q[seat.JRX], q[seat.JRY]
+    b.jm = b3 + ry * b.jmx - rx * b.jmy
     _note(m)
-    return OnShaft(fx, fy, fz, mx, my, mz, bore, faces, sliding)
+    return OnShaft(fx, fy, fz, mx, my, mz + ry * mx - rx * my, bore, faces, sliding)
 
 
 @kernel
@@ -434,7 +466,11 @@ def _note(m):
     """Keep what peaks and first contacts are found from: the bore as one, and the face."""
     t, bore, face = m.s.touches, m.s.ring, m.s.shoulder
     deeper = 0 if t.indentation[0] >= t.indentation[1] else 1
-    bore.normal, bore.indentation, bore.rate = t.normal[0] + t.normal[1], t.indentation[deeper], t.rate[deeper]
+    bore.normal, bore.indentation, bore.rate = (
+        t.normal[0] + t.normal[1],
+        t.indentation[deeper],
+        t.rate[deeper],
+    )
     if has_faces(m.p.shoulder):
         normal, depth, rate = 0.0, -math.inf, 0.0
         for k in range(EDGES, TOUCHES):
@@ -445,18 +481,24 @@ def _note(m):
 
 
 @kernel
-def settle_touches(kick, part, vx, vy, vz, axes, m):
+def settle_touches(q, kick, off, axes, m):
     """Settle the accounts of the rotor's contacts after a `kick` (s); returns what they withheld (J).
 
-    part: of the kick in which the forces were found; vx, vy, vz: by how much the rotor was faster in its
-    middle than it was taken to be (m/s).
+    off: by how much the rotor was faster in its middle than forces were found for (`Missed`).
     """
-    t, withheld = m.s.touches, 0.0
-    x, y, z = into(axes, vx, vy, vz)
+    t, withheld, part = m.s.touches, 0.0, off.part
+    seat_x, seat_y, seat_z = into(
+        axes, q[seat.JX] - q[ring.RX], q[seat.JY] - q[ring.RY], q[seat.JZ] - q[RZ]
+    )
+    vx, vy, vz = into(axes, off.jx, off.jy, off.jz)
+    rx, ry = q[seat.JRX], q[seat.JRY]
+    w1, w2, w3 = into(axes, off.jwx + ry * off.jw, off.jwy - rx * off.jw, off.jw)
     for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
         if t.indentation[k] <= 0.0 and t.stored[k] <= 0.0:
             continue
-        closing = middle_of(t.rate[k], t.middle[k], part) + x * t.nx[k] + y * t.ny[k] + z * t.nz[k]
+        x, y, z = t.rx[k] - seat_x, t.ry[k] - seat_y, t.rz[k] - seat_z
+        closing = middle_of(t.rate[k], t.middle[k], part) + (vx + w2 * z - w3 * y) * t.nx[k]
+        closing += (vy + w3 * x - w1 * z) * t.ny[k] + (vz + w1 * y - w2 * x) * t.nz[k]
         taken = kick * (t.normal[k] - t.damped[k]) * closing
         t.stored[k], lost = settled(t.stored[k], t.indentation[k], taken)
         withheld += lost
@@ -490,11 +532,16 @@ def stored_in_touches(m):
 
 @kernel
 def stiffness_below(m):
-    """Stiffness (N/m) of all contacts of the rotor with the ring, at the last evaluation."""
-    below = 0.0
+    """Stiffness (N/m, N m) of all contacts of the rotor with the ring against its motion and its tilt.
+
+    As they were at the last evaluation.
+    """
+    t, below, turning = m.s.touches, 0.0, 0.0
     for k in range(TOUCHES if has_faces(m.p.shoulder) else EDGES):
-        below += m.s.touches.stiffness[k]
-    return below
+        first, second, _ = _turning(t, k, t.nx[k], t.ny[k], t.nz[k])
+        below += t.stiffness[k]
+        turning += t.stiffness[k] * (first * first + second * second)
+    return below, turning
 
 
 @inlined
@@ -510,5 +557,5 @@ def drift(trial, q, mid, h):
 def set_weights(w):
     """Set the error weights of what the ring has beside that of a ring in the plane, in w (n,)."""
     w[RZ], w[RVZ] = 1.0 / seat.POSITION_SCALE, 1.0 / seat.VELOCITY_SCALE
-    w[RTX] = w[RTY] = 1e-2 / seat.POSITION_SCALE
-    w[RWX] = w[RWY] = 1e-2 / seat.VELOCITY_SCALE
+    w[RTX] = w[RTY] = 1.0 / seat.TILT_SCALE
+    w[RWX] = w[RWY] = 1.0 / seat.TILT_RATE_SCALE

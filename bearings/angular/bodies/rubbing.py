@@ -7,7 +7,7 @@ expected to end, here with one slope along s0 and another one across, where it o
     f = F(s0) + F'(s0) (s + theta ds - s0)        F' = -N (mu' e e' + mu/|s0| (1 - e e'))        e = s0/|s0|
 
 each with a theta of its own, by its z = w N mu' or w N mu/|s0|. Where all slide along one line that is
-friction in the plane. A ball's two contacts, with w_oi what sliding at the outer race answers to friction at
+friction in the plane. A ball's two contacts, with W what sliding at the outer race answers to friction at
 the inner one (s/kg), d = h J(other forces) and Delta what the kick does to the ring,
 
     ds_o = d_o + w f_o + W f_i        f_o = p_o - A_o (d_o + W f_i)
@@ -231,8 +231,22 @@ def _matrix_sums(i, f, h, n):
         # J_t = (n1, c, 0, -zeta c, zeta n1, rho); J_m = (-v c, v n1, u, lever n1, lever c, 0)
         t4, t5 = -zeta * c, zeta * n1
         m1, m2, m4, m5 = -v * c, v * n1, lever * n1, lever * c
-        p1, p2, p3, p4, p5, p6 = g * n1 + k * m1, g * c + k * m2, k * u, g * t4 + k * m4, g * t5 + k * m5, g * rho
-        r1, r2, r3, r4, r5, r6 = k * n1 + e * m1, k * c + e * m2, e * u, k * t4 + e * m4, k * t5 + e * m5, k * rho
+        p1, p2, p3, p4, p5, p6 = (
+            g * n1 + k * m1,
+            g * c + k * m2,
+            k * u,
+            g * t4 + k * m4,
+            g * t5 + k * m5,
+            g * rho,
+        )
+        r1, r2, r3, r4, r5, r6 = (
+            k * n1 + e * m1,
+            k * c + e * m2,
+            e * u,
+            k * t4 + e * m4,
+            k * t5 + e * m5,
+            k * rho,
+        )
         s[0, b], s[1, b], s[2, b] = n1 * p1 + m1 * r1, n1 * p2 + m1 * r2, n1 * p3 + m1 * r3
         s[3, b], s[4, b], s[5, b] = n1 * p4 + m1 * r4, n1 * p5 + m1 * r5, n1 * p6 + m1 * r6
         s[6, b], s[7, b], s[8, b] = c * p2 + m2 * r2, c * p3 + m2 * r3, c * p4 + m2 * r4
@@ -347,7 +361,12 @@ def total_on(c, count):
     """`RaceTotal` of `count` balls on the body of contacts c."""
     fx, fy, fz, hx, hy, hz, loss = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for b in range(count):
-        along, across, damped, elastic = c.friction_t[b], c.friction_m[b], c.damped[b], c.normal[b] - c.damped[b]
+        along, across, damped, elastic = (
+            c.friction_t[b],
+            c.friction_m[b],
+            c.damped[b],
+            c.normal[b] - c.damped[b],
+        )
         x = along * c.tx[b] + across * c.mx[b] + damped * c.ux[b]
         y = along * c.ty[b] + across * c.my[b] + damped * c.uy[b]
         z = along * c.tz[b] + across * c.mz[b] + damped * c.uz[b]
