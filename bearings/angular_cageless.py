@@ -100,8 +100,8 @@ def _rub(q, dq, axes, moved, m):
     by_spin = h * d.ball_radius * d.ball_radius / d.inertia
     answer = by_mass + by_spin
     at = q[seat.HX], q[seat.HY], q[seat.HVX], q[seat.HVY]
-    rubbing.drive(s.balls, s.outer, h, d.ball_radius, at[0], at[1], at[2], at[3], n)
-    rubbing.drive(s.balls, s.inner, h, d.ball_radius, at[0], at[1], at[2], at[3], n)
+    rubbing.drive(s.balls, s.outer, beat_of(m), d.ball_radius, at[0], at[1], at[2], at[3], n)
+    rubbing.drive(s.balls, s.inner, beat_of(m), d.ball_radius, at[0], at[1], at[2], at[3], n)
     rubbing.cross(s.outer, s.inner, f, by_mass, by_spin, n)
     rubbing.expect(s.outer, s.inner, f, n)
     rubbing.draw(s.outer, answer, law, n)

@@ -19,9 +19,10 @@ with w = h (1/m + r^2/I) the same along both directions and taken into A = F'/(1
 
 is put into the ring's six equations (`ring`), which give Delta.
 
-A ball goes round while it is kicked: its velocity at the end of a kick of h seconds at the angle rate O is
-turned by O h/2 against its place, and that at the beginning by as much backwards. Across the groove that is
-sliding only as seen from a fixed frame, so it is taken out of s there, and put into what else drives it.
+A ball goes round while it is kicked: its velocity after a kick is that in the middle of the drift that
+follows, turned by the orbit's angle over half of that drift against its place, and that before the kick by
+as much backwards as half of the drift before takes. Across the groove that is sliding only as seen from a
+fixed frame, so it is taken out of s there, and put into what else drives it.
 """
 
 from __future__ import annotations
@@ -122,11 +123,12 @@ def lone_friction(sliding, driven, answer, normal, law):
 
 
 @inlined
-def drive(balls, c, h, radius, hx, hy, hvx, hvy, n):
-    """How all but friction at races changes the sliding of `n` balls at contacts c over a kick of h (s).
+def drive(balls, c, beat, radius, hx, hy, hvx, hvy, n):
+    """How all but friction at races changes the sliding of `n` balls at contacts c over a kick (`Beat`).
 
     radius: of a ball (m); hx, hy, hvx, hvy: the housing (m, m/s).
     """
+    h, ahead = beat.kick, beat.drift
     for b in range(n):
         tx, ty, tz = c.tx[b], c.ty[b], c.tz[b]
         mx, my, mz = c.mx[b], c.my[b], c.mz[b]
@@ -134,12 +136,12 @@ def drive(balls, c, h, radius, hx, hy, hvx, hvy, n):
         px, py, pz = balls.px[b], balls.py[b], balls.pz[b]
         dx, dy = balls.x[b] - hx, balls.y[b] - hy
         vx, vy = balls.vx[b] - hvx, balls.vy[b] - hvy
-        turn = -0.5 * h * (dx * vy - dy * vx) / (dx * dx + dy * dy)
-        turned = turn * (vx * my - vy * mx + radius * (balls.wx[b] * ty - balls.wy[b] * tx))
+        rate = (dx * vy - dy * vx) / (dx * dx + dy * dy)
+        turned = rate * (vx * my - vy * mx + radius * (balls.wx[b] * ty - balls.wy[b] * tx))
         c.driven_t[b] = h * (ax * tx + ay * ty + az * tz - radius * (px * mx + py * my + pz * mz))
         driven = h * (ax * mx + ay * my + az * mz + radius * (px * tx + py * ty + pz * tz))
-        c.driven_m[b] = driven + 2.0 * turned
-        c.along_m[b] -= turned
+        c.driven_m[b] = driven - h * turned
+        c.along_m[b] += (h - ahead) * turned
 
 
 @inlined
