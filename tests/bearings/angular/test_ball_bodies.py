@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import root
 
 from tests.support.bearing_states import pressed
-from touchdown.bearings import angular_cageless
+from touchdown.bearings import angular_cageless, seat
 from touchdown.bearings.angular.bodies.layout import (
     FIRST_BALL,
     RTX,
@@ -30,6 +30,7 @@ from touchdown.bearings.angular.bodies.layout import (
     Z,
 )
 from touchdown.bearings.rolling import ball_bodies, ring
+from touchdown.bearings.rolling.micro_step import MICRO_STEP
 from touchdown.bearings.rolling.ring import BALLS
 from touchdown.modelkit.instance import Instance
 
@@ -46,16 +47,19 @@ LOADS = ("fx", "fy", "mz")
 def settled(model: object, **parameters: float) -> Instance:
     """A bearing at its start, without gravity, journal and housing held; `group__name` for parameters."""
     instance = Instance(model)  # type: ignore[arg-type]
-    p = instance.record["p"]
-    p["gravity"] = 0.0
+    put(instance, **{"gravity": 0.0, **parameters})
+    instance.start(0.0)
+    return instance
+
+
+def put(instance: Instance, **parameters: float) -> None:
+    """Set parameters; `group__name` for one in a group."""
     for key, value in parameters.items():
         *groups, name = key.split("__")
-        at = p
+        at = instance.record["p"]
         for group in groups:
             at = at[group]
         at[name] = value
-    instance.start(0.0)
-    return instance
 
 
 def instant(instance: Instance, q: np.ndarray) -> np.ndarray:
@@ -373,7 +377,6 @@ def test_contact_angles_at_speed_are_those_of_jones_with_the_gyroscopic_moment(n
     assert 0.4 < orbit / row.speed < 0.5  # they roll
     along = bearing.record["o"]["along"]
     inner, outer = (math.degrees(float(along[key])) for key in ("contact_angle", "outer_angle"))
-    print(name, inner, outer, math.degrees(jones.inner), math.degrees(jones.outer), along["force"])
     assert inner == pytest.approx(math.degrees(jones.inner), abs=0.05)
     assert outer == pytest.approx(math.degrees(jones.outer), abs=0.05)
     assert inner == pytest.approx(row.inner, abs=0.05)
@@ -387,3 +390,72 @@ def turning_of(bearing: Instance, row: Turning) -> tuple[float, float]:
     orbit = float(np.mean((places[0] * speeds[1] - places[1] * speeds[0]) / distance**2))
     outwards = float(np.mean((spins[0] * places[0] + spins[1] * places[1]) / distance))
     return orbit, float(bearing.record["d"]["inertia"]) * orbit * abs(outwards)
+
+
+@dataclass(frozen=True)
+class Fall:
+    """A rotor that lands on the pair: where it is held, how it is tilted, what pulls it (m, rad, m/s2)."""
+
+    off: float  # of the bearing from its centre of mass, along the shaft
+    tilt: float
+    down: float
+    along: float
+    begins: tuple[float, float]  # z and its rate
+    span: float  # s
+
+
+MASS, INERTIA, TRANSVERSE = 1.65, 0.5e-3, 0.4e-3  # of the disk (kg, kg m2)
+FALLS = {
+    "upright": Fall(0.0, 0.0, 0.0, -9.81, (-0.148e-3, -0.0535), 6e-3),
+    "upright, off centre": Fall(-0.04, 2e-4, 0.0, -9.81, (-0.148e-3, -0.0535), 6e-3),
+    "horizontal, under thrust": Fall(0.0, 0.0, 9.81, 200.0 / MASS, (0.0, 0.0), 12e-3),
+}
+
+
+def fallen(fall: Fall, micro_step: float) -> Instance:
+    """The pair after the fall, in which it carries rotor and housing itself, in one macro step."""
+    bearing = Instance(angular_cageless.MODEL)
+    put(bearing, **PAIR, gravity=fall.down, micro_step=micro_step)
+    j, h = bearing.record["u"]["journal"], bearing.record["u"]["housing"]
+    j["omega"], j["inv_I"], j["inv_m_z"] = 942.478, 1.0 / INERTIA, 1.0 / MASS
+    j["inv_m"], j["inv_I_t"] = 1.0 / MASS + fall.off**2 / TRANSVERSE, 1.0 / TRANSVERSE
+    j["inv_mI"], j["rx"] = fall.off / TRANSVERSE, fall.tilt
+    j["ay_free"], j["az_free"], (j["z"], j["vz"]) = -fall.down, fall.along, fall.begins
+    for end in ("", "_z"):
+        h[f"inv_m{end}"], h[f"k_over_m{end}"], h[f"c_over_m{end}"] = 1 / 5.02, 2.5e8 / 5.02, 2500 / 5.02
+    bearing.start(0.0)
+    bearing.step(0.0, fall.span)
+    return bearing
+
+
+def peaks(bearing: Instance) -> np.ndarray:
+    """Of face, bore, balls at the inner and at the outer race (N)."""
+    o = bearing.record["o"]
+    return np.array([float(o[part]["peak_force"]) for part in ("shoulder", "contact", "inner", "outer")])
+
+
+@pytest.mark.parametrize("name", list(FALLS))
+def test_peaks_of_a_fall_are_those_of_a_sixteenth_of_the_step(name: str) -> None:
+    fall = FALLS[name]
+    coarse, fine = (peaks(fallen(fall, MICRO_STEP / part)) for part in (1.0, 16.0))
+    assert fine[0] > 400.0
+    if fall.down > 0.0:
+        assert fine[1] > 300.0
+    assert coarse == pytest.approx(fine, rel=3e-3)
+
+
+@pytest.mark.parametrize("name", list(FALLS))
+def test_energy_of_a_fall_closes(name: str) -> None:
+    """What ring, balls and contacts have, their heat, and what went to rotor and housing."""
+    bearing = fallen(FALLS[name], MICRO_STEP)
+    o, q = bearing.record["o"], bearing.record["q"]
+    crossed = float(q[seat.JE] + q[seat.HE])
+    inside = sum(float(o["energy"][part]) for part in ("kinetic", "potential", "dissipated"))
+    began = Instance(angular_cageless.MODEL)
+    put(began, **PAIR, gravity=FALLS[name].down)
+    began.start(0.0)
+    before = float(began.record["o"]["energy"]["potential"])
+    heat = float(o["energy"]["dissipated"])
+    turnover = heat + abs(float(q[seat.JE])) + abs(float(q[seat.HE]))
+    assert heat > 0.1
+    assert inside - before + crossed == pytest.approx(0.0, abs=1e-5 * turnover)
