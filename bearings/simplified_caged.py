@@ -331,7 +331,8 @@ def _move_along(q, dq, journal, m):
     faces = land(slip, m.p.shoulder, m.d.friction)
     note_landing(m.s.shoulder, faces)
     held = m.s.thrust.force - m.p.damping * (q[RVZ] - q[seat.HVZ])
-    dq[RZ], dq[RVZ], dq[FACE_LOSS] = q[RVZ], (held - faces.fz) / m.p.ring.mass, faces.loss
+    dq[RZ], dq[FACE_LOSS] = q[RVZ], faces.loss
+    dq[RVZ] = (held - faces.fz) / m.p.ring.mass + m.d.gravity_z
     dq[CAGE_ANGLE], dq[CAGE_SPEED], dq[BALL_SPIN] = 0.0, 0.0, 0.0
     return faces
 
@@ -368,7 +369,7 @@ def _slipping(q, dq, gap, m):
     The cage keeps the balls on their places on the pitch circle; all share one spin. Sets their derivatives
     in dq.
     """
-    p, d, count = m.p, m.d, m.p.balls.count
+    d, count = m.d, m.p.balls.count
     orbit, spin = q[CAGE_SPEED], q[BALL_SPIN]
     ca, sa = math.cos(q[CAGE_ANGLE]), math.sin(q[CAGE_ANGLE])
     fx, fy, moment, along, turning, heat, outside = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -383,7 +384,7 @@ def _slipping(q, dq, gap, m):
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
-        along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
+        along += ball.inner + ball.outer - ball.held - d.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
         outside += ball.outside
@@ -473,6 +474,7 @@ def _report_along(q, m):
     o.z, o.vz, o.force = q[RZ], q[RVZ], s.force
     o.contact_angle = math.asin(s.sine) if m.s.balls.force > 0.0 else 0.0
     m.o.energy.kinetic += 0.5 * m.p.ring.mass * q[RVZ] ** 2
+    m.o.energy.potential -= m.p.ring.mass * m.d.gravity_z * q[RZ]
     m.o.energy.potential += report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
     m.o.energy.dissipated += q[FACE_LOSS]
 

@@ -438,7 +438,7 @@ def _one_race(q, balls, moving, race, profile, starts, contacts, m):
 @inlined
 def _accelerate(m):
     """Accelerations in m.s.faster of the balls that both races press, and under gravity."""
-    gravity, inner, outer, faster, by_mass = m.p.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
+    gravity, inner, outer, faster, by_mass = m.d.gravity, m.s.inner, m.s.outer, m.s.faster, 1.0 / m.d.mass
     for b in range(rounded(m.p.balls.count)):
         faster.x[b] = (inner.normal[b] * inner.nx[b] - outer.normal[b] * outer.nx[b]) * by_mass
         faster.y[b] = (inner.normal[b] * inner.ny[b] - outer.normal[b] * outer.ny[b]) * by_mass - gravity

@@ -193,7 +193,7 @@ def bore_line(at, kick, squeezed, m):
 def push_on(at, squeezed, balls, m):
     """`Push` on the ring: journal `squeezed` at its place, `balls` (Total: N, N m), weight."""
     p, n = m.p, squeezed.normal
-    fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * p.gravity
+    fx, fy = balls.fx + n * at.nx, balls.fy + n * at.ny - p.ring.mass * m.d.gravity
     return Push(fx, fy, balls.moment, p.ring.mass, p.ring.inertia)
 
 
@@ -292,7 +292,7 @@ def translate(q, dq, m, journal, fx, fy):
     dq[RX] = q[RVX]
     dq[RY] = q[RVY]
     dq[RVX] = (fx - journal.fx) / p.ring.mass
-    dq[RVY] = (fy - journal.fy) / p.ring.mass - p.gravity
+    dq[RVY] = (fy - journal.fy) / p.ring.mass - m.d.gravity
     dq[RANGLE] = q[RW]
 
 
@@ -328,7 +328,7 @@ def report_energy(q, m, kinetic, potential, inertia):
     speed2 = q[RVX] ** 2 + q[RVY] ** 2
     o.kinetic = kinetic + 0.5 * p.ring.mass * speed2 + 0.5 * inertia * q[RW] ** 2
     o.potential = potential + elastic_energy(m.s.ring.indentation, m.d.contact)
-    o.potential += p.ring.mass * p.gravity * q[RY]
+    o.potential += p.ring.mass * m.d.gravity * q[RY]
     o.dissipated = q[LOSS]
     parts.report(q, HEAT, m)
 

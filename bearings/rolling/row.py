@@ -208,7 +208,7 @@ def press_balls(q, m):
     course = Course(orbit, spin, at.cosine[:n], at.sine[:n])
     inner, outer = rubbed_of(s.inner, n), rubbed_of(s.outer, n)
     loads, shape = _loads_of(at, n), s.inner.shape
-    _press_all(ring.gap(q), raceway(m), before, m.p.gravity, course, loads, inner, outer, shape)
+    _press_all(ring.gap(q), raceway(m), before, m.d.gravity, course, loads, inner, outer, shape)
     for b in range(n):
         at.faster[b] = at.along[b] / at.radius[b]
         at.turning[b] = 0.0
