@@ -194,6 +194,7 @@ class Derived(RollingDerived):
     sine: tuple = array(MAX_BALLS)
     rows: int = integer(0, "rows in space; 0: all balls in the plane")
     row: tuple = groups(RowConstants, 2)
+    mass_along: float = real(0.0, "kg", "of the ring, and half of the balls', which roll along with it")
     row_damping: float = real(0.0, "N.s/m2", "of a ball of such a row")
     abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
 
@@ -332,7 +333,7 @@ def _move_along(q, dq, journal, m):
     note_landing(m.s.shoulder, faces)
     held = m.s.thrust.force - m.p.damping * (q[RVZ] - q[seat.HVZ])
     dq[RZ], dq[FACE_LOSS] = q[RVZ], faces.loss
-    dq[RVZ] = (held - faces.fz) / m.p.ring.mass + m.d.gravity_z
+    dq[RVZ] = (held - faces.fz) / m.d.mass_along + m.d.gravity_z
     dq[CAGE_ANGLE], dq[CAGE_SPEED], dq[BALL_SPIN] = 0.0, 0.0, 0.0
     return faces
 
@@ -473,8 +474,8 @@ def _report_along(q, m):
     o, s = m.o.along, m.s.thrust
     o.z, o.vz, o.force = q[RZ], q[RVZ], s.force
     o.contact_angle = math.asin(s.sine) if m.s.balls.force > 0.0 else 0.0
-    m.o.energy.kinetic += 0.5 * m.p.ring.mass * q[RVZ] ** 2
-    m.o.energy.potential -= m.p.ring.mass * m.d.gravity_z * q[RZ]
+    m.o.energy.kinetic += 0.5 * m.d.mass_along * q[RVZ] ** 2
+    m.o.energy.potential -= m.d.mass_along * m.d.gravity_z * q[RZ]
     m.o.energy.potential += report_faces(q[FACE_LOSS], m.p.shoulder, m.o.shoulder, m.s.shoulder)
     m.o.energy.dissipated += q[FACE_LOSS]
 
@@ -483,7 +484,7 @@ def _report_along(q, m):
 def _settle_rows(m):
     """Set in m.d the rows of balls in space, if they stand there."""
     p, d, b = m.p, m.d, m.p.balls
-    d.rows, d.abreast = 0, b.rows
+    d.rows, d.abreast, d.mass_along = 0, b.rows, p.ring.mass + 0.5 * b.count * d.mass
     if b.contact_angle == 0.0 and not has_faces(p.shoulder):
         return
     if b.contact_angle > 0.0:  # no play lets the ring sink, and a pair's preload holds it

@@ -196,7 +196,7 @@ def weight_warnings(components: Iterable[Heavy]) -> Iterator[str]:
         elif one.gravity != first.gravity:
             yield (
                 f"{one.name}.gravity = {one.gravity:.4g} m/s2 and {first.name}.gravity = "
-                f"{first.gravity:.4g} m/s2 differ; they are sizes, and the inclination of {angle} turns both"
+                f"{first.gravity:.4g} m/s2 differ; they are sizes, which the inclination of {angle} turns"
             )
 
 
