@@ -231,8 +231,8 @@ def _declare_new(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--balls",
         metavar="MATERIAL",
-        help="of their balls: steel or Si3N4, ceramic ones of hybrid bearings (default: by the designation, "
-        "of which HC is ceramic)",
+        help="of their balls: steel or Si3N4, ceramic ones of hybrid bearings (default: what the "
+        "designation says, where HC is ceramic)",
     )
     verb.add_argument(
         "--mount",
