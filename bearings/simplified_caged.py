@@ -278,7 +278,7 @@ def _slipping(q, dq, gap, m):
     The cage keeps the balls on their places on the pitch circle; all share one spin. Sets their derivatives
     in dq.
     """
-    p, d, count = m.p, m.d, m.p.balls.count
+    d, count = m.d, m.p.balls.count
     orbit, spin = q[CAGE_SPEED], q[BALL_SPIN]
     ca, sa = math.cos(q[CAGE_ANGLE]), math.sin(q[CAGE_ANGLE])
     fx, fy, moment, along, turning, heat, outside = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -293,7 +293,7 @@ def _slipping(q, dq, gap, m):
             fx -= ball.force * c - ball.inner * s
             fy -= ball.force * s + ball.inner * c
             moment -= ball.inner * ball.lever
-        along += ball.inner + ball.outer - ball.held - p.gravity * d.mass * c
+        along += ball.inner + ball.outer - ball.held - d.gravity * d.mass * c
         turning += ball.outer - ball.inner
         heat += ball.heat
         outside += ball.outside

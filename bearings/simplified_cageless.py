@@ -336,7 +336,7 @@ def report(q, m):
     o.balls.loaded = loaded
     o.speed.orbit = orbit / count * d.pitch_radius
     o.speed.ball = spin / count * d.ball_radius
-    potential = pressed + stored(m.s.side, d.ball_contact, count) + p.gravity * d.mass * height
+    potential = pressed + stored(m.s.side, d.ball_contact, count) + d.gravity * d.mass * height
     ring.report_energy(q, m, kinetic, potential, p.ring.inertia)
     if d.space.rows > 0:
         inner_ring.report(q, m)

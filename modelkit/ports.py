@@ -150,10 +150,16 @@ NO_LOAD = 1e-300  # N; states that nothing has to hold a body, where 0 states no
 
 @dataclass(frozen=True)
 class StaticLoad:
-    """What a body takes to be held at rest, stated beside its motion; both 0: it states nothing."""
+    """What a body takes to be held at rest, stated beside its motion.
+
+    Across the shaft both 0, and along it 0, mean that it states nothing there.
+    """
 
     static_fx: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
     static_fy: float = real(0.0, "N", "force that holds the rotor at rest here at the start", constant=True)
+    static_fz: float = real(
+        0.0, "N", "axial force that holds the rotor at rest at the start", constant=True
+    )
 
 
 @dataclass(frozen=True)

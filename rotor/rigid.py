@@ -7,7 +7,8 @@ loads about the centre of mass,
 
     I_t rx'' + I_p Omega ry' = M_x        I_t ry'' - I_p Omega rx' = M_y
 
-A moment about the shaft acts about the shaft as it is tilted, so that it brings no other. Unbalance enters
+A moment about the shaft acts about the shaft as it is tilted, so that it brings no other. Along the shaft
+act gravity, by the shaft's inclination, and the thrust of the process (`rotor.thrust`). Unbalance enters
 with spin acceleration as in (3.24): the centre of mass stands off by `eccentricity`, and the shaft centre
 feels
 
@@ -24,17 +25,19 @@ import math
 from dataclasses import dataclass
 
 from ..modelkit import body
+from ..modelkit.gravity import INCLINATION, gravity_across, gravity_along
 from ..modelkit.kernel import kernel
 from ..modelkit.model import Model, memory_layout
 from ..modelkit.ports import NO_LOAD, Energy, SeatLoad, SeatState, StaticLoad
-from ..modelkit.variables import SWITCH, choice, group, real
+from ..modelkit.variables import SWITCH, choice, group, groups, integer, real
 from .motion.equations import drag
+from .thrust import MAX_POINTS, NAMES, ORDER_PROBLEM, ThrustPoint, order_problem, thrust
 
 # the state q: m, m, m/s, m/s of the shaft centre, rad, rad/s, and J since the start
 X, Y, VX, VY, ANGLE, SPIN, WORK_A, WORK_AMB, LOSS = range(9)
-Z, VZ = range(9, 11)  # along the shaft
-RX, RY, WX, WY = range(11, 15)  # rad, rad/s: its tilt
-SIZE = 15
+Z, VZ, WORK_THRUST = range(9, 12)  # along the shaft
+RX, RY, WX, WY = range(12, 16)  # rad, rad/s: its tilt
+SIZE = 16
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,6 @@ class Parameters:
     vx: float = real(0.0, "m/s", "horizontal velocity at the start")
     vy: float = real(0.0, "m/s", "vertical velocity at the start")
     axial: int = choice(0, SWITCH, "whether it moves along its shaft")
-    axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z; acts where axial is on")
     axial_load: float = real(0.0, "N", "constant thrust towards +z; acts where axial is on", tunable=True)
     z: float = real(0.0, "m", "position along the shaft at the start")
     vz: float = real(0.0, "m/s", "velocity along the shaft at the start")
@@ -75,6 +77,11 @@ class Parameters:
     ry: float = real(0.0, "rad", "tilt about y at the start, where it tilts")
     wx: float = real(0.0, "rad/s", "rate of the tilt about x at the start")
     wy: float = real(0.0, "rad/s", "rate of the tilt about y at the start")
+    inclination: float = real(0.0, "rad", INCLINATION)
+    thrust_points: int = integer(
+        0, "points of the thrust over time in use; acts where axial is on", minimum=0, maximum=MAX_POINTS
+    )
+    thrust: tuple = groups(ThrustPoint, MAX_POINTS)
 
 
 @dataclass(frozen=True)
@@ -100,7 +107,7 @@ MEMORY = memory_layout(Parameters, Inputs, Outputs, SIZE)
 
 @kernel
 def rhs(t, q, dq, m):
-    """Newton and Euler: dq (15,) of the state q (15,) under the loads mean + slope (t - t_mid); t in s."""
+    """Newton and Euler: dq (16,) of the state q (16,) under the loads mean + slope (t - t_mid); t in s."""
     p, since_middle = m.p, t - m.half
     ax, ay, am = _load_at(m.u.A, since_middle)
     bx, by, bm = _load_at(m.u.amb, since_middle)
@@ -114,7 +121,9 @@ def rhs(t, q, dq, m):
     dq[SPIN] = alpha
     az, bz = _thrust_of(m.u.A, since_middle), _thrust_of(m.u.amb, since_middle)
     dq[Z] = q[VZ]
-    dq[VZ] = _axial_acceleration(az + bz, p)
+    push = thrust(p, m.time + t)
+    dq[VZ] = _axial_acceleration(az + bz + push, p)
+    dq[WORK_THRUST] = push * q[VZ]
     dq[WORK_A] = ax * q[VX] + ay * q[VY] + am * q[SPIN] + az * q[VZ]
     dq[WORK_AMB] = bx * q[VX] + by * q[VY] + bm * q[SPIN] + bz * q[VZ]
     dq[LOSS] = braking * q[SPIN]
@@ -170,32 +179,33 @@ def _tilt_accelerations(q, about_x, about_y, p):
 
 @kernel
 def _axial_acceleration(force, p):
-    """Along the shaft (m/s2), under gravity, thrust and the seats' `force` (N); 0 where it stays."""
-    return p.axial_gravity + (p.axial_load + force) / p.mass if p.axial == 1 else 0.0
+    """Along the shaft (m/s2), under gravity and the `force` (N) of thrust and seats; 0 where it stays."""
+    return gravity_along(p.gravity, p.inclination) + force / p.mass if p.axial == 1 else 0.0
 
 
 @kernel
 def _accelerations(q, fx, fy, moment, p):
-    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (15,), under gravity and loads.
+    """Of the shaft centre (m/s2, m/s2) and the spin (rad/s2), in state q (16,), under gravity and loads.
 
     The loads act at the shaft centre: fx, fy (N), moment (N m). The centre of mass stands off by e (c, s):
     I alpha = M + e (Fx s - Fy c), gravity drops out.
     """
+    down = gravity_across(p.gravity, p.inclination)
     if p.eccentricity == 0.0:
-        return fx / p.mass, fy / p.mass - p.gravity, moment / p.inertia
+        return fx / p.mass, fy / p.mass - down, moment / p.inertia
     angle = q[ANGLE] + p.unbalance_angle
     ex, ey = p.eccentricity * math.cos(angle), p.eccentricity * math.sin(angle)
     alpha = (moment + fx * ey - fy * ex) / p.inertia
     w2 = q[SPIN] * q[SPIN]
-    return fx / p.mass + w2 * ex + alpha * ey, fy / p.mass + w2 * ey - alpha * ex - p.gravity, alpha
+    return fx / p.mass + w2 * ex + alpha * ey, fy / p.mass + w2 * ey - alpha * ex - down, alpha
 
 
 @kernel
 def publish(q, m):
-    """Outputs m.o from the state q (15,) at the end of the step: what a seat does not cause is 'free'."""
-    p = m.p
-    _publish_seat(q, p, m.o.A, m.u.amb, m.half)
-    _publish_seat(q, p, m.o.amb, m.u.A, m.half)
+    """Outputs m.o from the state q (16,) at the end of the step: what a seat does not cause is 'free'."""
+    p, push = m.p, thrust(m.p, m.time + 2.0 * m.half)
+    _publish_seat(q, p, m.o.A, m.u.amb, m.half, push)
+    _publish_seat(q, p, m.o.amb, m.u.A, m.half, push)
     if p.transverse_inertia > 0.0:
         _publish_tilt(q, p, m.o.A, p.bearing_position, m.u.amb, p.amb_position, m.half)
         _publish_tilt(q, p, m.o.amb, p.amb_position, m.u.A, p.bearing_position, m.half)
@@ -206,18 +216,21 @@ def publish(q, m):
     vx, vy = q[VX] - q[SPIN] * ey, q[VY] + q[SPIN] * ex  # of the centre of mass
     e = m.o.energy
     e.kinetic = 0.5 * p.mass * (vx * vx + vy * vy) + 0.5 * p.inertia * q[SPIN] ** 2
-    e.potential = p.mass * p.gravity * (q[Y] + ey)
+    e.potential = p.mass * gravity_across(p.gravity, p.inclination) * (q[Y] + ey)
     if p.axial == 1:
         e.kinetic += 0.5 * p.mass * q[VZ] ** 2
-        e.potential -= (p.mass * p.axial_gravity + p.axial_load) * q[Z]
+        e.potential -= p.mass * gravity_along(p.gravity, p.inclination) * q[Z] + q[WORK_THRUST]
     if p.transverse_inertia > 0.0:
         e.kinetic += 0.5 * p.transverse_inertia * (q[WX] ** 2 + q[WY] ** 2)
     e.dissipated = q[LOSS]
 
 
 @kernel
-def _publish_seat(q, p, seat, other, half):
-    """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle."""
+def _publish_seat(q, p, seat, other, half, push):
+    """Motion of a seat under `other`, the other one's load, at its end: `half` (s) after the middle.
+
+    push: thrust then (N).
+    """
     seat.x, seat.y, seat.vx, seat.vy = q[X], q[Y], q[VX], q[VY]
     fx, fy, moment = _load_at(other, half)
     seat.ax_free, seat.ay_free, seat.alpha_free = _accelerations(q, fx, fy, moment - drag(q[SPIN], p), p)
@@ -226,7 +239,7 @@ def _publish_seat(q, p, seat, other, half):
     seat.inv_I = 1.0 / p.inertia
     if p.axial == 1:
         seat.z, seat.vz, seat.inv_m_z = q[Z], q[VZ], 1.0 / p.mass
-        seat.az_free = _axial_acceleration(_thrust_of(other, half), p)
+        seat.az_free = _axial_acceleration(_thrust_of(other, half) + push, p)
 
 
 @kernel
@@ -254,7 +267,7 @@ def _publish_tilt(q, p, seat, at, other, other_at, half):
 def settle(words):
     """Error weights: positions matter at 1 um, velocities at 1 cm/s, spin at 10 rad/s, tilts at 10 urad.
 
-    Returns 0: nothing can be wrong between the parameters.
+    Returns 1 where the points of the thrust are not in order, else 0.
     """
     m = words.view(MEMORY)[0]
     m.n = SIZE
@@ -262,7 +275,7 @@ def settle(words):
     m.weight[VX], m.weight[VY], m.weight[VZ] = 1e2, 1e2, 1e2
     m.weight[ANGLE], m.weight[SPIN] = 1e-1, 1e-1
     m.weight[RX], m.weight[RY], m.weight[WX], m.weight[WY] = 1e5, 1e5, 1e1, 1e1
-    return 0
+    return 1 if order_problem(m.p, m.told) != 0 else 0
 
 
 @kernel
@@ -278,8 +291,12 @@ def start(words):
         q[RX], q[RY], q[WX], q[WY] = p.rx, p.ry, p.wx, p.wy
     m.half = 0.0
     publish(q, m)
-    weight = p.gravity / (1.0 / p.mass)  # unbalance turns, and is no static load
+    # unbalance turns, and is no static load
+    weight = gravity_across(p.gravity, p.inclination) / (1.0 / p.mass)
     m.o.held.static_fy = weight if weight != 0.0 else NO_LOAD
+    if p.axial == 1:
+        weight = gravity_along(p.gravity, p.inclination) * p.mass + thrust(p, m.time)
+        m.o.held.static_fz = -weight if weight != 0.0 else NO_LOAD
 
 
 @kernel
@@ -301,6 +318,9 @@ def _exposed(name: str) -> str:
     return name.replace("held.", "amb.")
 
 
+_ALONG = ("gravity", "inclination", *NAMES)
+
+
 def _starts_from() -> dict[str, tuple[str, ...]]:
     """What the first outputs depend on: at a seat, also on the load at the other one."""
     causes: dict[str, tuple[str, ...]] = {
@@ -309,10 +329,11 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
             *("axial", "vz", "transverse_inertia", "wx", "wy"),
         ),
         "energy.potential": (
-            *("mass", "gravity", "y", "eccentricity", "unbalance_angle"),
-            *("axial", "axial_gravity", "axial_load", "z"),
+            *("mass", "gravity", "inclination", "y", "eccentricity", "unbalance_angle"),
+            *("axial", "z"),
         ),
-        "amb.static_fy": ("mass", "gravity"),
+        "amb.static_fy": ("mass", "gravity", "inclination"),
+        "amb.static_fz": ("axial", "mass", *_ALONG),
     }
     at = {"A": "bearing_position", "amb": "amb_position"}
     for seat, other in (("A", "amb"), ("amb", "A")):
@@ -331,13 +352,13 @@ def _starts_from() -> dict[str, tuple[str, ...]]:
         causes |= {f"{seat}.alpha_{axis}_free": named for axis, named in about.items()}
         causes |= {f"{seat}.{name}": ("axial", name) for name in ("z", "vz")}
         causes[f"{seat}.inv_m_z"] = ("axial", "mass")
-        thrust = ("axial_gravity", "axial_load", f"{other}.fz")
-        causes[f"{seat}.az_free"] = ("axial", "mass", *thrust)
+        causes[f"{seat}.az_free"] = ("axial", "mass", *_ALONG, f"{other}.fz")
         turning = ("inertia", "drag", "viscous_drag", "speed", f"{other}.mz")
         spinning = ("eccentricity", "unbalance_angle", *turning, f"{other}.fx", f"{other}.fy")
         causes[f"{seat}.alpha_free"] = spinning
         causes[f"{seat}.ax_free"] = _once("mass", *spinning, at[seat], *about["y"])
-        causes[f"{seat}.ay_free"] = _once("mass", "gravity", *spinning, at[seat], *about["x"])
+        weight = ("gravity", "inclination")
+        causes[f"{seat}.ay_free"] = _once("mass", *weight, *spinning, at[seat], *about["x"])
     return causes
 
 
@@ -358,6 +379,7 @@ MODEL = Model(
     settle=settle,
     start=start,
     advance=advance,
+    problems=(ORDER_PROBLEM,),
     rhs=rhs,
     publish=publish,
     rename=_exposed,

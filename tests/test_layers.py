@@ -56,12 +56,13 @@ STREETS = {  # folder: its rooms and single files, each importing only from thos
             "imports",
             "statics",
             "motion",
+            "thrust",
             "modal",
             "beams",
         ),
     ),
     "modelkit": (
-        *("instance", "body", "model", "ports", "integrators", "numerics", "kernel"),
+        *("instance", "body", "model", "ports", "integrators", "numerics", "gravity", "kernel"),
         *("variables", "units", "status", "messages"),
     ),
     "validation": (

@@ -56,7 +56,7 @@ def press(q, m):
         at.radius[b] = d.pitch_radius
         at.lever[b] = d.inner_radius - pose.x * c - pose.y * sine
         held = turning / d.pitch_radius + drag
-        at.faster[b] = (-held / d.mass - p.gravity * c) / d.pitch_radius
+        at.faster[b] = (-held / d.mass - d.gravity * c) / d.pitch_radius
         at.turning[b] = 0.0
 
 

@@ -17,8 +17,9 @@ middle, with half the contact's stiffness at each: without tilt that is the cont
 friction acts around the shaft, as there; along the shaft it slides freely. Its shoulders land on the ring's
 faces.
 
-A ball's centrifugal force is left out: it opens the contact angle at the inner race. The housing does not
-tilt, and takes no moments.
+Along the shaft half of the balls' mass moves with the ring: balls roll at half its rate. A ball's
+centrifugal force is left out: it opens the contact angle at the inner race. The housing does not tilt, and
+takes no moments.
 """
 
 from __future__ import annotations
@@ -123,6 +124,7 @@ class SpaceConstants:
     damping: float = real(0.0, "N.s/m2", "of a ball of such a row")
     abreast: float = real(1.0, "1", "balls side by side that are one, and share its force")
     transverse_inertia: float = real(0.0, "kg.m2", "of the ring about a diameter")
+    mass_along: float = real(0.0, "kg", "of the ring, and half of the balls', which roll along with it")
     edge: BoreContact = group(BoreContact)
 
 
@@ -192,6 +194,7 @@ def settle(m):
         return
     own = p.ring.transverse_inertia
     space.transverse_inertia = own if own > 0.0 else 0.5 * p.ring.inertia
+    space.mass_along = p.ring.mass + 0.5 * b.count * d.mass
     space.edge = d.contact
     edge = space.edge
     edge.stiffness, edge.damping, edge.viscous = (
@@ -396,7 +399,8 @@ def move(q, dq, held, m):
     )
     faces = land_tilted(slip, tilt, p.shoulder, m.d.friction)
     note_landing(s.shoulder, faces)
-    dq[at + Z], dq[at + VZ] = q[at + VZ], (held - faces.fz) / p.ring.mass
+    dq[at + Z] = q[at + VZ]
+    dq[at + VZ] = (held - faces.fz) / space.mass_along + m.d.gravity_z
     dq[at + RX], dq[at + RY] = q[at + WX], q[at + WY]
     spinning = p.ring.inertia * q[ring.RW]
     about_x, about_y = s.mx - s.edge_mx - faces.mx, s.my - s.edge_my - faces.my
@@ -430,7 +434,9 @@ def report(q, m):
     o.z, o.vz, o.rx, o.ry = q[at + Z], q[at + VZ], q[at + RX], q[at + RY]
     o.force, o.moment_x, o.moment_y = s.fz, s.mx, s.my
     o.contact_angle = math.asin(s.sine) if m.o.balls.force > 0.0 else 0.0
-    e.kinetic += 0.5 * m.p.ring.mass * q[at + VZ] ** 2
+    mass = m.d.space.mass_along
+    e.kinetic += 0.5 * mass * q[at + VZ] ** 2
+    e.potential -= mass * m.d.gravity_z * q[at + Z]
     e.kinetic += 0.5 * m.d.space.transverse_inertia * (q[at + WX] ** 2 + q[at + WY] ** 2)
     e.potential += report_faces(q[at + FACE_LOSS], m.p.shoulder, m.o.shoulder, s.shoulder)
     e.potential += s.edge_stored - elastic_energy(m.s.ring.indentation, m.d.contact)

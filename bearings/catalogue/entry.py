@@ -65,6 +65,7 @@ class Bearing:
             "arrangement": self.arrangement,
             "row_distance": self.row_distance,
             "preload": self.preload,
+            "land": self.width,
         }
         return {
             "balls.count": b.count,

@@ -18,9 +18,25 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...modelkit.gravity import gravity_along
 from ...modelkit.kernel import kernel
+from ...modelkit.ports import NO_LOAD
 from ...modelkit.variables import SWITCH, choice, integer, real
-from .equations import LOSS, SPIN, WORK, Planar, accelerate, energies, modal, rest
+from ..thrust import thrust
+from .equations import (
+    LOSS,
+    SPIN,
+    VZ,
+    WORK,
+    Planar,
+    Z,
+    accelerate,
+    energies,
+    modal,
+    rest,
+    shaft_force,
+    shaftwise,
+)
 
 
 @dataclass(frozen=True)
@@ -235,6 +251,10 @@ def _publish_station(q, m, j, acceleration, alpha):
     o.omega = tail[SPIN]
     o.alpha_free = alpha - (u.mz + u.dmz * m.half) / d.inertia
     o.work = tail[WORK + j]
+    if m.p.axial == 1:
+        along = shaftwise(q, m)
+        o.z, o.vz, o.inv_m_z = along[Z], along[VZ], 1.0 / d.mass
+        o.az_free = (shaft_force(m, m.half) - u.fz - u.dfz * m.half) / d.mass
     o.ax_free, o.ay_free = -d.inv_m[j] * fx, -d.inv_m[j] * fy
     for k in range(d.modes):
         o.ax_free += shape[k] * ax[k]
@@ -278,6 +298,9 @@ def _publish_station_constants(m, j):
     """What stays at station j; modes that share a slot there become one of the same static flexibility."""
     d, o = m.d, m.o.station[j]
     o.static_fy = d.static_fy[j]
+    if m.p.axial == 1 and d.held[j] != 0.0:
+        weight = gravity_along(m.p.gravity, m.p.inclination) * d.mass + thrust(m.p, m.time)
+        o.static_fz = -weight if weight != 0.0 else NO_LOAD
     o.inv_m = d.inv_m[j]
     o.inv_I = 1.0 / d.inertia
     o.inv_I_t, o.inv_mI = d.inv_tilt[j], d.crossed[j]

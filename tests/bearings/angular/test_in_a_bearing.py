@@ -48,9 +48,8 @@ SETTINGS: dict[str, object] = {  # a hybrid pair of the size 71904 on an upright
     "bearing.shoulder.stiffness": 5e8,
     "bearing.shoulder.dissipation": 5.0,
     "bearing.gravity": 0.0,
-    "rotor.gravity": 0.0,
+    "rotor.inclination": "90 deg",
     "rotor.axial": 1,
-    "rotor.axial_gravity": -9.81,
     "run.macro_step": "50 us",
 }
 
