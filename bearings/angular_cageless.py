@@ -86,7 +86,7 @@ def _press(q, axes, moved, m):
     races.slide(s.balls, body, d.ball_radius, n, s.inner)
     races.press(s.balls, d.outer, beat, answer, n, s.outer)
     races.press(s.balls, d.inner, beat, answer, n, s.inner)
-    races.accelerate(s.balls, s.outer, s.inner, 1.0 / d.mass, -m.p.gravity, m.p.axial_gravity, n)
+    races.accelerate(s.balls, s.outer, s.inner, 1.0 / d.mass, -d.gravity, d.gravity_z, n)
 
 
 @inlined
@@ -298,8 +298,8 @@ def _potential(q, m):
     y, z = 0.0, 0.0
     for b in range(d.balls):
         y, z = y + s.balls.y[b], z + s.balls.z[b]
-    weight = d.mass * (p.gravity * y - p.axial_gravity * z)
-    weight += p.ring.mass * (p.gravity * q[ring.RY] - p.axial_gravity * q[RZ])
+    weight = d.mass * (d.gravity * y - d.gravity_z * z)
+    weight += p.ring.mass * (d.gravity * q[ring.RY] - d.gravity_z * q[RZ])
     elastic = races.stored_in(s.inner, d.inner, d.balls) + races.stored_in(s.outer, d.outer, d.balls)
     for row in range(d.rows):
         elastic += stored(s.side[row], d.ball_contact, p.balls.count)

@@ -54,7 +54,6 @@ class SpaceParameters(inner_ring.SpaceParameters, RollingParameters):
     contact: BoreContact = group(BoreContact, damping=1e7)
     balls: FreeAngularBallSet = group(FreeAngularBallSet)
     ring: ring.Ring = group(ring.Ring, mass=0.0095, inertia=1.08e-6)
-    axial_gravity: float = real(0.0, "m/s2", "gravity along the shaft, towards +z")
     micro_step: float = real(
         MICRO_STEP,
         "s",

@@ -374,7 +374,7 @@ def begin_six(q, h, m):
     a[3, 4], a[4, 3] = 0.5 * h * gyro, -0.5 * h * gyro
     axes = axes_of(q[RTX], q[RTY])
     six.right[0], six.right[1], six.right[2] = into(
-        axes, 0.0, -p.ring.mass * p.gravity, p.ring.mass * p.axial_gravity
+        axes, 0.0, -p.ring.mass * m.d.gravity, p.ring.mass * m.d.gravity_z
     )
     six.right[3], six.right[4], six.right[5] = -gyro * q[RWY], gyro * q[RWX], 0.0
 
