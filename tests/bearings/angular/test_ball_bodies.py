@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import root
 
 from tests.support.bearing_states import pressed
-from touchdown.bearings import angular_cageless, seat
+from touchdown.bearings import angular_cageless, detailed_cageless, seat
 from touchdown.bearings.angular.bodies.layout import (
     FIRST_BALL,
     RTX,
@@ -98,6 +98,23 @@ def test_in_the_plane_forces_are_those_of_the_detailed_bearing(seed: int) -> Non
         assert mine == pytest.approx(theirs, abs=1e-9 * float(np.max(np.abs(theirs))))
     for k in (ring.RVX, ring.RVY, ring.RW):
         assert ds[k] == pytest.approx(dq[k], rel=1e-9, abs=1e-9 * abs(dq[ring.RVY]))
+
+
+def test_in_the_plane_peaks_of_a_fall_are_those_of_the_detailed_bearing() -> None:
+    """From first touch on; before it balls rattle, and rounding grows."""
+    found = []
+    for model in (detailed_cageless.MODEL, angular_cageless.MODEL):
+        bearing = Instance(model)
+        j, h = bearing.record["u"]["journal"], bearing.record["u"]["housing"]
+        j["y"], j["vy"], j["ay_free"], j["omega"] = -0.29999e-3, -0.0767, -9.81, 942.478
+        j["inv_m"], j["inv_I"] = 1.0 / MASS, 1.0 / INERTIA
+        h["inv_m"], h["k_over_m"], h["c_over_m"] = 1 / 5.02, 2.5e8 / 5.02, 2500 / 5.02
+        bearing.start(0.0)
+        bearing.step(0.0, 1.5e-3)
+        o = bearing.record["o"]
+        found.append([float(o[k]["peak_force"]) for k in ("contact", "balls", "inner", "outer")])
+    assert found[0][0] > 300.0
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
 
 
 def _planar_loads() -> list[tuple[str, str]]:
