@@ -217,7 +217,7 @@ def start(words):
     if m.p.shutdown_time > m.time:
         m.o.journal.fx, m.o.journal.fy = m.o.load_x, m.o.load_y
         m.o.housing.fx, m.o.housing.fy = -m.o.load_x, -m.o.load_y
-        m.o.journal.fz, m.o.housing.fz = m.o.load_z, -m.o.load_z
+        m.o.journal.fz, m.o.housing.fz = m.o.load_z, 0.0 - m.o.load_z
 
 
 @kernel
