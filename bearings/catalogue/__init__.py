@@ -14,7 +14,7 @@ from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
 from .file import OWN_FILE, CatalogueError, as_file, read
 from .mounting import mounted
-from .sizes import FROM_SOURCE, designations, size
+from .sizes import FROM_SOURCE, designations, size, usual
 
 __all__ = [
     "BALL_MATERIALS",
@@ -61,6 +61,8 @@ def reference(name: str, folder: Path) -> str:
         path, inside = (folder / OWN_FILE).absolute(), name
     elif _named(name) is not None:
         return name
+    elif (called := usual(name)) in built_in():
+        return called
     elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
     else:
