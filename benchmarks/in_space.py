@@ -18,7 +18,7 @@ from collections.abc import Callable
 
 import numpy as np
 from detailed_speed import kept, released, repeater
-from right_hand_side import STRETCH, evenly, loaded
+from right_hand_side import STRETCH, loaded
 
 from touchdown.bearings import angular_cageless, detailed_cageless
 from touchdown.bearings.rolling.micro_step import MICRO_STEP
@@ -56,7 +56,7 @@ def landed(module) -> list[np.ndarray]:
             seen.append(instance.words.copy())
     if not seen:
         raise SystemExit(f"no state of {module.MODEL.name} has {LOADED} loaded balls")
-    return evenly(seen, STATES)
+    return [seen[round(k)] for k in np.linspace(0, len(seen) - 1, STATES)]
 
 
 def clamped() -> list[np.ndarray]:
