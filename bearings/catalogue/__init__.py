@@ -14,7 +14,7 @@ from ..contact.materials import MATERIALS
 from .entry import NUMBERS, Bearing
 from .file import OWN_FILE, CatalogueError, as_file, read
 from .mounting import mounted
-from .sizes import FROM_SOURCE, designations, size
+from .sizes import FROM_SOURCE, designations, size, usual
 
 __all__ = [
     "BALL_MATERIALS",
@@ -59,8 +59,8 @@ def reference(name: str, folder: Path) -> str:
         path = (folder / Path(file).expanduser()).absolute()
     elif (mine := own(folder)) and name in mine:
         path, inside = (folder / OWN_FILE).absolute(), name
-    elif _named(name) is not None:
-        return name
+    elif (called := name if _named(name) is not None else _usual(name)) is not None:
+        return called
     elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
     else:
@@ -91,6 +91,13 @@ def bearing(found: str) -> Bearing:
 def _named(name: str) -> Bearing | None:
     """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
     return mounted(name, _plain)
+
+
+def _usual(name: str) -> str | None:
+    """A name that begins with a designation of JIS as ISO has it; None where there is no such bearing."""
+    begins, *suffixes = name.split(" ")
+    called = " ".join((usual(begins), *suffixes))
+    return None if _named(called) is None else called
 
 
 def _plain(name: str, contact_angle: float | None) -> Bearing | None:

@@ -153,12 +153,19 @@ SERIES = {  # what designations begin with: kind and dimension series
     "70": (ANGULAR, "10"),
     "72": (ANGULAR, "02"),
 }
+ALSO_CALLED = {"68": "618", "69": "619", "79": "719"}  # thin sections, by JIS B 1513: 6907 is the 61907
 ORIGINS: dict[str, str] = dict.fromkeys(("bore", "outside", "width"), "ISO 15")
 
 
 def designations() -> list[str]:
     """All sizes of `SERIES`."""
     return [f"{begins}{code:02d}" for begins in SERIES for code in range(len(BORES))]
+
+
+def usual(designation: str) -> str:
+    """A designation of JIS as ISO has it; others as they are."""
+    begins, code = designation[:-2], designation[-2:]
+    return f"{ALSO_CALLED[begins]}{code}" if begins in ALSO_CALLED else designation
 
 
 @cache

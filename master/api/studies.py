@@ -16,7 +16,7 @@ from ..scene.scene import Scene
 from ..scene.schemes import SCHEMES, scheme
 from ..scene.tables import above_zero
 from ..studies.comparison import schemes as schemes_study
-from ..studies.comparison.schemes import STEPS, Asked, Comparison, pieces
+from ..studies.comparison.schemes import STEPS, Comparison, Options, pieces
 from ..studies.dissertation.exhibits.exhibit import Exhibit
 from ..studies.dissertation.exhibits.registry import dropping, entry, make
 from ..studies.drop.first_impact import shortened
@@ -158,15 +158,15 @@ def compare(
     >>> 1e-6 < comparison.rows[0].errors["position"] < 1e-5  # m
     True
     """
-    asked = Asked(
+    options = Options(
         schemes=_distinct(SCHEMES if schemes is None else (scheme(name).name for name in several(schemes))),
         steps=_distinct(above_zero(step, "s", "macro_steps") for step in several(macro_steps)),
         duration=None if duration is None else above_zero(duration, "s", "duration"),
         in_process=in_process,
     )
     chosen = shortened(as_scene(scene))
-    with named_progress(pieces(chosen, asked), not progress) as begin:
-        return schemes_study.compare_schemes(chosen, asked, begin)
+    with named_progress(pieces(chosen, options), not progress) as begin:
+        return schemes_study.compare_schemes(chosen, options, begin)
 
 
 def _distinct(items: Iterable[Item]) -> tuple[Item, ...]:

@@ -14,7 +14,7 @@ from ..common.files import writing_to
 from ..common.interrupts import interrupts_noted
 from ..common.progress import bars
 from ..components.compile_ahead import compile_beside, new_models
-from ..components.loading import foreign
+from ..components.loading import foreign, native_at_hand
 from ..coupling.simulation import Outcome, open_system, refuse_endless, simulate
 from ..scene.run_spec import SETTLED
 from ..scene.scene import Scene
@@ -88,6 +88,18 @@ def natively(scene: Scene) -> Scene:
     """A copy of which all components of the project's own are FMUs that need no Python."""
     own = [name for name, spec in scene.components.items() if not foreign(spec.fmu)]
     return scene.set({f"{name}.native": True for name in own})
+
+
+def natively_where_built(scene: Scene) -> Scene:
+    """The same where all of its components have native FMUs at hand; else the scene as it is.
+
+    They leave the same recording, to the bit, and step faster: rotors with bending modes several times.
+    """
+    specs = scene.components.values()
+    if any(foreign(s.fmu) or s.isolate for s in specs):
+        return scene
+    at_hand = all(s.native or native_at_hand(s.fmu, scene.folder, s.set) for s in specs)
+    return natively(scene) if at_hand else scene
 
 
 def make_ready(scene: Scene, in_process: bool, say: Callable[[str], object] = lambda what: None) -> None:

@@ -237,6 +237,16 @@ def above_zero(text: str | None, unit: str, option: str) -> float | None:
     return value
 
 
+def names(text: str | None, option: str) -> list[str]:
+    """Names between commas; none where the option is not given. Raises TouchdownError."""
+    if text is None:
+        return []
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise TouchdownError(f"{option} {text}: a name is missing between the commas")
+    return list(dict.fromkeys(names))
+
+
 def several_above_zero(text: str | None, unit: str, option: str) -> tuple[float, ...]:
     """Numbers above 0 in the SI unit, ascending, with commas between them; none where not given.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..common.errors import STOPPED, TouchdownError
 from ..common.progress import bar_over, named_progress
@@ -19,12 +19,16 @@ from .arguments import (
     add_swaps,
     chosen_jobs,
     count,
+    names,
     results_folder,
     settings,
     several_above_zero,
     swapped,
 )
-from .verb import Verb, broken_off, complain, warn
+from .verb import Verb, broken_off, complain, show_findings, warn
+
+if TYPE_CHECKING:
+    from ..scene.scene import Scene
 
 ADVISE_EXAMPLES = (
     "touchdown advise rotor1-9000",
@@ -107,33 +111,31 @@ def _execute_compare(options: argparse.Namespace) -> int:
     given = settings(options)
     _refuse_varied(given, options)
     chosen = shortened(swapped(find_scene(options.scene), options)).set(given)
-    print("\n".join((_models if options.models else _schemes)(chosen, options)))
-    return 0
+    return (_models if options.models else _schemes)(chosen, options)
 
 
-def _schemes(scene: Any, options: argparse.Namespace) -> list[str]:
-    from ..studies.comparison.schemes import STEPS, TARGET_ERROR_M, Asked, compare_schemes, pieces
-    from ..studies.comparison.schemes_report import report_lines, write_report
+def _schemes(scene: Scene, options: argparse.Namespace) -> int:
+    from ..studies.comparison.schemes import STEPS, TARGET_ERROR_M, Options, compare_schemes, pieces
+    from ..studies.comparison.schemes_report import findings
 
-    asked = Asked(
-        schemes=tuple(SCHEMES) if options.schemes is None else _scheme_names(options.schemes),
+    compared = Options(
+        schemes=_scheme_names(options.schemes),
         steps=several_above_zero(options.macro_steps, "s", "--macro-steps") or STEPS,
         duration=above_zero(options.duration, "s", "--duration"),
-        wanted=above_zero(options.wanted, "m", "--wanted") or TARGET_ERROR_M,
+        target=above_zero(options.wanted, "m", "--wanted") or TARGET_ERROR_M,
         repeat=count(options.repeat, "--repeat"),
         timed=above_zero(options.timed, "s", "--timed"),
         in_process=options.in_process,
     )
     folder = results_folder(options, f"compare-{scene.name}")
-    with named_progress(pieces(scene, asked), options.quiet) as begin:
-        comparison = compare_schemes(scene, asked, begin)
-    write_report(comparison, folder)
-    return [*report_lines(comparison), f"results in {folder}"]
+    with named_progress(pieces(scene, compared), options.quiet) as begin:
+        comparison = compare_schemes(scene, compared, begin)
+    return show_findings(findings(comparison), folder)
 
 
-def _models(scene: Any, options: argparse.Namespace) -> list[str]:
+def _models(scene: Scene, options: argparse.Namespace) -> int:
     from ..studies.comparison.models import compare_models, variants
-    from ..studies.comparison.models_report import report_lines, write_report
+    from ..studies.comparison.models_report import findings
 
     duration = above_zero(options.duration, "s", "--duration")
     repeat = count(options.repeat, "--repeat")
@@ -141,14 +143,12 @@ def _models(scene: Any, options: argparse.Namespace) -> list[str]:
     chosen = variants(scene)
     with named_progress(1 + len(chosen), options.quiet) as begin:
         comparison = compare_models(scene, chosen, duration, repeat, options.in_process, begin)
-    write_report(comparison, folder)
-    return [*report_lines(comparison), f"results in {folder}"]
+    return show_findings(findings(comparison), folder)
 
 
-def _scheme_names(text: str) -> tuple[str, ...]:
-    from ..studies.sweep.definition import listed
-
-    return tuple(dict.fromkeys(scheme(name).name for name in listed(text, f"--schemes {text}")))
+def _scheme_names(text: str | None) -> tuple[str, ...]:
+    """Schemes by the names between commas; all where none are given. Raises TouchdownError."""
+    return tuple(dict.fromkeys(scheme(name).name for name in names(text, "--schemes"))) or tuple(SCHEMES)
 
 
 def _refuse_varied(settings: dict[str, str], options: argparse.Namespace) -> None:
@@ -201,7 +201,7 @@ def _execute_compare_modes(options: argparse.Namespace) -> int:
     from ..common.units import to_si
     from ..interop.scenes import find_scene
     from ..studies.comparison.modes import compare_modes, parse_modes, refuse_varied, runs
-    from ..studies.comparison.modes_report import report_lines, write_report
+    from ..studies.comparison.modes_report import findings
 
     chosen = find_scene(options.scene)
     given = settings(options)
@@ -216,11 +216,9 @@ def _execute_compare_modes(options: argparse.Namespace) -> int:
     folder = results_folder(options, f"modes-{chosen.name}")
     with bar_over(runs(modes), "drops", options.quiet) as bar:
         comparison = compare_modes(chosen, modes, step, duration, bar.update)
-    write_report(comparison, folder)
-    print("\n".join(report_lines(comparison)))
-    print(f"results in {folder}")
+    status = show_findings(findings(comparison), folder)
     warn(comparison.warnings)
-    return 0
+    return status
 
 
 COMPARE_MODES = Verb(
@@ -249,33 +247,23 @@ def _declare_stability(verb: argparse.ArgumentParser) -> None:
 
 def _execute_stability(options: argparse.Namespace) -> int:
     """Do it; returns the exit status."""
-    from ..studies.comparison.stability import chosen
-    from ..studies.comparison.stability_report import report_lines, size, study_stability
+    from ..studies.comparison.stability import size, study_stability
+    from ..studies.comparison.stability_cases import chosen
+    from ..studies.comparison.stability_report import findings
 
-    cases = chosen(_names(options.cases, "--cases"), options.long)
-    schemes = [scheme(name).name for name in _names(options.schemes, "--schemes")] or list(SCHEMES)
+    cases = chosen(names(options.cases, "--cases"), options.long)
+    schemes = _scheme_names(options.schemes)
     jobs = chosen_jobs(options)
     folder = results_folder(options)
     with bar_over(size(cases, schemes), "searches", options.quiet) as bar:
-        study = study_stability(cases, schemes, folder, jobs, bar.update)
-    print("\n".join(report_lines(study)))
-    print(f"results in {folder}")
+        study = study_stability(cases, schemes, jobs, bar.update)
+    show_findings(findings(study), folder)
     if study.interrupted:
         return broken_off()
     if study.failed:
         complain(f"{len(study.failed)} searches failed, see the end of the table")
         return STOPPED
     return 0
-
-
-def _names(text: str | None, option: str) -> list[str]:
-    """Names between commas; none where the option is not given. Raises TouchdownError."""
-    if text is None:
-        return []
-    names = [name.strip() for name in text.split(",")]
-    if not all(names):
-        raise TouchdownError(f"{option} {text}: a name is missing between the commas")
-    return list(dict.fromkeys(names))
 
 
 STABILITY = Verb(

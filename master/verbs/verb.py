@@ -9,7 +9,11 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..studies.findings import Findings
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,14 @@ def warn(warnings: Iterable[str]) -> None:
     """A line on stderr for each of them."""
     for warning in warnings:
         complain(f"warning: {warning}")
+
+
+def show_findings(findings: Findings, folder: Path) -> int:
+    """Write what a study reports into a folder and print its lines; returns the exit status."""
+    findings.write(folder)
+    print("\n".join(findings.lines))
+    print(f"results in {folder}")
+    return 0
 
 
 def say_whose_code_runs(fmus: Mapping[str, bool]) -> None:

@@ -1,4 +1,4 @@
-"""What a scene does not need: error and time of variants against the scene as it is.
+"""What a scene does not need: variants of it, their error and time against the scene as it is.
 
 Errors are found in process, wall time through FMUs unless asked otherwise, with recording as in a run.
 """
@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,9 +17,9 @@ from ...coupling.simulation import Outcome, opened, refuse_endless
 from ...coupling.system import System
 from ...results.summary import touchdown_seats
 from ...scene.scene import ComponentSpec, Scene
-from ..drop.first_impact import MIN_PEAK, Peaks, Stop, Trace, watched_drop
+from ..drop.first_impact import INNER_PEAKS, MIN_PEAK, Peaks, Stop, Trace, watched_drop
 from ..drop.measured import finest_inside
-from ..drop.running import wall_time, warm_up
+from .engine import Begin, Row, Stopwatch, Variant, begin_silently, measure_all
 from .modes import BASIS_PARAMETERS, RIGID_MODES
 
 MODES = (3, 10, 20)  # per plane, beside the scene's own number and the rigid rotor
@@ -34,15 +34,6 @@ COULOMB = 0  # of friction.kind
 STEPPING_PARAMETERS = ("interface.", "micro_step")
 TOLERANCE_FACTOR = 100.0  # times the tolerance inside a bearing
 OFFSETS = ("x0", "y0")  # of a housing out of line
-
-
-@dataclass(frozen=True)
-class Variant:
-    """A scene that differs in one thing."""
-
-    title: str
-    scene: Scene
-    recorded: bool = True
 
 
 def variants(scene: Scene) -> list[Variant]:
@@ -191,7 +182,7 @@ def tied(scene: Scene) -> set[str]:
 
 
 MAX_SPAN = 20e-3  # s after the first contact
-MAX_COST_PERCENT = 5.0  # %: what costs less may be left out
+MAX_CHANGE_PERCENT = 5.0  # %: what costs less may be left out
 MAX_TIME_RATIO = 0.95  # of the time: what is left out for less is no gain
 
 
@@ -213,39 +204,15 @@ class Drop:
 
 
 @dataclass(frozen=True)
-class Price:
-    """What a variant changes."""
-
-    first: float  # s, of the first contact
-    force: float  # relative, of the peak force on the journal, averaged; the worst seat, with its sign
-    contact: float  # relative, of the momentary contact force; the worst seat, with its sign
-    position: float  # m, distance of the worst journal at the end of the scene's first impact there
-    orbit: float  # relative, of the largest orbit
-    radius: float  # m, the scene's largest orbit
-    ball: float | None  # relative, of the peak force on the worst ball; None: no balls on one side
-    side: float | None  # relative, of the peak force between a ball and the cage or its neighbour
-
-    @property
-    def percent(self) -> float:
-        """The largest change of the journal's forces, position over orbit, and orbit."""
-        parts = (self.force, self.contact, self.position / self.radius, self.orbit)
-        return 100.0 * max(abs(part) for part in parts)
-
-
-@dataclass(frozen=True)
-class Row:
-    """A variant; without a price where it failed."""
-
-    title: str
-    price: Price | None = None
-    wall: float | None = None  # s per simulated s
-    ratio: float | None = None  # of wall time to the scene's, of runs one after the other
-    failed: str = ""
-
-
-@dataclass(frozen=True)
 class Comparison:
-    """All rows against the scene as it is."""
+    """All rows against the scene as it is.
+
+    Errors of a row: "first" (s, of the first contact), "force" (relative, of the peak force on the journal,
+    averaged), "contact" (of the momentary one), "position" (m, of the worst journal at the end of the
+    scene's first impact there), "orbit" (relative, of the largest), and where the bearings of both have
+    them "ball" and "side" (relative, of the peak forces on the worst ball, and between a ball and the cage
+    or its neighbour). Relative ones are those of the worst seat, with their sign.
+    """
 
     scene: Scene
     end: float  # s from zero
@@ -255,12 +222,17 @@ class Comparison:
     in_process: bool
     rows: Sequence[Row]
 
+    def change_percent(self, row: Row) -> float:
+        """The largest change of the journal's forces, position over orbit, and orbit (%)."""
+        parts = [row.errors[key] for key in ("force", "contact", "orbit")]
+        return 100.0 * max(map(abs, (*parts, row.errors["position"] / self.drop.orbit())))
+
     def dispensable(self) -> list[Row]:
-        """What makes the scene faster for a price below MAX_COST_PERCENT, the fastest first."""
+        """What makes the scene faster for a change below MAX_CHANGE_PERCENT, the fastest first."""
         good = [
             r
             for r in self.rows
-            if r.price and r.price.percent < MAX_COST_PERCENT and r.ratio and r.ratio < MAX_TIME_RATIO
+            if r.ratio and r.ratio < MAX_TIME_RATIO and self.change_percent(r) < MAX_CHANGE_PERCENT
         ]
         return sorted(good, key=lambda row: row.ratio or math.inf)
 
@@ -271,7 +243,7 @@ def compare_models(
     duration: float | None = None,
     repeat: int = 3,
     in_process: bool = False,
-    begin: Callable[[str], object] = lambda what: None,
+    begin: Begin = begin_silently,
 ) -> Comparison:
     """Run `scene` and its variants `duration` (s) from the first contact, MAX_SPAN without one.
 
@@ -283,14 +255,12 @@ def compare_models(
     begin("the scene as it is")
     exact, outcome = _dropped(scene, Stop(MAX_SPAN if duration is None else duration, early=False))
     as_long = {"run.duration": outcome.duration}
-    stopwatch = _Stopwatch(scene.set(as_long), repeat, in_process)
-    rows = []
-    for variant in chosen:
-        begin(variant.title)
-        run = _unjudged(variant.scene).set(as_long)
-        rows.append(_row(replace(variant, scene=run), exact, stopwatch))
+    own = Variant("as it is", scene.set(as_long))
+    judge = _Judge(exact, own, as_long, Stopwatch(repeat, in_process))
+    judge.stopwatch.warm_up(own)
+    rows = measure_all(chosen, judge.measure, begin)
     end = outcome.end - outcome.zero
-    return Comparison(scene, end, exact, stopwatch.own(), repeat, in_process, rows)
+    return Comparison(scene, end, exact, judge.own_wall(), repeat, in_process, rows)
 
 
 def _unjudged(scene: Scene) -> Scene:
@@ -298,12 +268,29 @@ def _unjudged(scene: Scene) -> Scene:
     return replace(scene, energy_scale=())
 
 
-def _row(variant: Variant, exact: Drop, stopwatch: _Stopwatch) -> Row:
-    try:
-        drop, _ = _dropped(variant.scene)
-        return Row(variant.title, _price(drop, exact), *stopwatch.time(variant))
-    except TouchdownError as error:
-        return Row(variant.title, failed=str(error))
+@dataclass(frozen=True)
+class _Judge:
+    """Measures variants against the scene as it is."""
+
+    exact: Drop
+    own: Variant
+    as_long: Mapping[str, object]  # settings with which a run is as long as that of the scene
+    stopwatch: Stopwatch
+    walls: list[float] = field(default_factory=list[float])  # s per simulated s, of the scene as it is
+
+    def measure(self, variant: Variant) -> Row:
+        """Errors, wall time and its ratio to the scene's."""
+        timed = replace(variant, scene=_unjudged(variant.scene).set(self.as_long))
+        drop, _ = _dropped(timed.scene)
+        errors = _errors(drop, self.exact)
+        walls, own = self.stopwatch.against(timed, self.own)
+        self.walls.extend(own)
+        ratio = statistics.median(wall / mine for wall, mine in zip(walls, own, strict=True))
+        return Row(variant.name, errors=errors, wall=statistics.median(walls), ratio=ratio)
+
+    def own_wall(self) -> float:
+        """Wall time per simulated second of the scene as it is: the median of all its runs."""
+        return statistics.median(self.walls or [self.stopwatch.once(self.own)])
 
 
 def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
@@ -317,7 +304,7 @@ def _dropped(scene: Scene, stop: Stop | None = None) -> tuple[Drop, Outcome]:
     return Drop(first, ends, peaks, drop.traces), drop.outcome
 
 
-def _price(drop: Drop, exact: Drop) -> Price:
+def _errors(drop: Drop, exact: Drop) -> dict[str, float]:
     """`drop` against `exact`; a seat that only one of them touches is not compared."""
     both = [seat for seat in exact.ends if seat in drop.ends]
     if not both:
@@ -330,17 +317,15 @@ def _price(drop: Drop, exact: Drop) -> Price:
         np.subtract(_place(drop.traces[s], exact.ends[s]), _place(exact.traces[s], exact.ends[s]))
         for s in both
     ]
-    radius = exact.orbit()
-    return Price(
-        first=drop.first - exact.first,
-        force=force,
-        contact=contact,
-        position=float(max(np.hypot(*place) for place in places)),
-        orbit=drop.orbit() / radius - 1.0,
-        radius=radius,
-        ball=_change_inside(drop, exact, both, "ball"),
-        side=_change_inside(drop, exact, both, "side"),
-    )
+    inside = {part: _change_inside(drop, exact, both, part) for part in INNER_PEAKS}
+    return {
+        "first": drop.first - exact.first,
+        "force": force,
+        "contact": contact,
+        "position": float(max(np.hypot(*place) for place in places)),
+        "orbit": drop.orbit() / exact.orbit() - 1.0,
+        **{part: change for part, change in inside.items() if change is not None},
+    }
 
 
 def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> float | None:
@@ -360,33 +345,3 @@ def _change_inside(drop: Drop, exact: Drop, seats: Sequence[str], part: str) -> 
 
 def _place(trace: Trace, time: float) -> tuple[float, float]:
     return float(np.interp(time, trace.time, trace.x)), float(np.interp(time, trace.time, trace.y))
-
-
-class _Stopwatch:
-    """Times variants against the scene as it is, one after the other: a busy machine slows both."""
-
-    def __init__(self, scene: Scene, repeat: int, in_process: bool) -> None:
-        self._scene, self._repeat, self._in_process = Variant("", scene), repeat, in_process
-        self._spent: list[float] = []
-        self._warm_up(self._scene)
-
-    def time(self, variant: Variant) -> tuple[float, float]:
-        """Wall time per simulated second, and its ratio to the scene's own; medians."""
-        self._warm_up(variant)
-        own, others = [], []
-        for _ in range(self._repeat):
-            own.append(self._once(self._scene))
-            others.append(self._once(variant))
-        self._spent += own
-        ratios = [other / mine for other, mine in zip(others, own, strict=True)]
-        return statistics.median(others), statistics.median(ratios)
-
-    def own(self) -> float:
-        """Wall time per simulated second of the scene as it is: the median of all its runs."""
-        return statistics.median(self._spent or [self._once(self._scene)])
-
-    def _warm_up(self, variant: Variant) -> None:
-        warm_up(variant.scene, self._in_process, variant.recorded)
-
-    def _once(self, variant: Variant) -> float:
-        return wall_time(variant.scene, self._in_process, variant.recorded)

@@ -1,21 +1,32 @@
-"""Numbers of modes beside each other, as lines, files and figure."""
+"""Numbers of modes beside each other, as lines, files and picture."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...common.files import write_records, writing_to
-from ...results.figures.style import BLUE, GREY, ORANGE, sheet
+from ...results.figures.style import BLUE, GREY, ORANGE
 from ..drop.first_impact import AVERAGING_TIME
+from ..findings import Column, Findings, Record, number, paragraphs, table
 from .modes import Comparison, Row, percent, stress_error
+from .panels import label_errors, panel_grid
 
 MIN_DRAWN_ERROR = 1e-4  # %, um; what an error of nothing is drawn as
 BASES = ((False, BLUE, "modes alone"), (True, ORANGE, "with residual flexibility"))
+STRESSES = ("bending", "shear")
+STRESS_METHODS = {"displacement": "--", "acceleration": "-"}  # how they are drawn
+
+
+def findings(comparison: Comparison) -> Findings:
+    """What the reference says, and a table of errors against it."""
+    return Findings(
+        paragraphs(_reference_lines(comparison), _table(comparison)),
+        tables={"modes.csv": _records(comparison)},
+        pictures={"modes.png": lambda: errors_over_modes(comparison)},
+    )
 
 
 @dataclass(frozen=True)
@@ -29,32 +40,25 @@ class Line:
 
 def errors_over_modes(comparison: Comparison) -> Figure:
     """Four panels: forces, orbit, bending and shear stress; grey: all modes, the coupling's error."""
-    figure = sheet(12, 9)
-    panels = figure.subplots(2, 2)
+    span, step = 1e3 * (comparison.end - comparison.first), 1e6 * comparison.coupling.macro_step
+    title = (
+        f"{comparison.scene.title}: errors against all modes of the finite elements\n"
+        f"from the first contact to {span:.3g} ms after it, macro step {step:g} µs"
+    )
+    figure, panels = panel_grid(4, 6.0, 4.5, title)
     forces = [
         Line("journal, averaged", "-", lambda row: _worst(comparison, row, "force")),
         Line("contact, momentary", "--", lambda row: _worst(comparison, row, "contact")),
     ]
-    _draw_errors(
-        panels[0, 0], comparison, forces, "peak force of the first impact, worst seat", "error [%]"
-    )
+    _panel(panels[0], comparison, forces, "peak force of the first impact, worst seat", "error [%]")
     orbit = [Line("", "-", lambda row: 1e6 * row.orbit)]
-    _draw_errors(
-        panels[0, 1], comparison, orbit, "journal from the reference's, worst seat", "distance [µm]"
-    )
-    for axes, kind in zip(panels[1], ("bending", "shear"), strict=True):
+    _panel(panels[1], comparison, orbit, "journal from the reference's, worst seat", "distance [µm]")
+    for axes, kind in zip(panels[2:], STRESSES, strict=True):
         stresses = [
-            Line(
-                "mode displacement", "--", lambda row, k=kind: _stress(comparison, row, k, "displacement")
-            ),
-            Line("mode acceleration", "-", lambda row, k=kind: _stress(comparison, row, k, "acceleration")),
+            Line(f"mode {way}", style, lambda row, k=kind, w=way: abs(stress_error(comparison, row, k, w)))
+            for way, style in STRESS_METHODS.items()
         ]
-        _draw_errors(axes, comparison, stresses, f"peak {kind} stress", "error [%]")
-    span, step = 1e3 * (comparison.end - comparison.first), 1e6 * comparison.coupling.macro_step
-    figure.suptitle(
-        f"{comparison.scene.title}: errors against all modes of the finite elements\n"
-        f"from the first contact to {span:.3g} ms after it, macro step {step:g} µs"
-    )
+        _panel(axes, comparison, stresses, f"peak {kind} stress", "error [%]")
     return figure
 
 
@@ -65,119 +69,91 @@ def _worst(comparison: Comparison, row: Row, name: str) -> float:
     )
 
 
-def _stress(comparison: Comparison, row: Row, kind: str, way: str) -> float:
-    return abs(stress_error(comparison, row, kind, way))
-
-
-def _draw_errors(axes: Axes, comparison: Comparison, drawn: list[Line], title: str, label: str) -> None:
+def _panel(axes: Axes, comparison: Comparison, lines: Sequence[Line], title: str, label: str) -> None:
     for residual, colour, basis in BASES:
         rows = [row for row in comparison.rows if row.residual == residual]
-        for one in drawn:
-            values = [max(one.error(row), MIN_DRAWN_ERROR) for row in rows]
-            name = f"{one.label}, {basis}" if one.label else basis
-            axes.plot([row.modes for row in rows], values, f"o{one.style}", color=colour, ms=4, label=name)
-    for one in drawn:
-        name = "all modes at this macro step" if one is drawn[0] else None
-        floor = max(one.error(comparison.coupling), MIN_DRAWN_ERROR)
-        axes.axhline(floor, color=GREY, ls=one.style, lw=0.8, label=name)
-    axes.set_yscale("log")
+        for line in lines:
+            values = [max(line.error(row), MIN_DRAWN_ERROR) for row in rows]
+            name = f"{line.label}, {basis}" if line.label else basis
+            axes.plot([row.modes for row in rows], values, f"o{line.style}", color=colour, ms=4, label=name)
+    for line in lines:
+        name = "all modes at this macro step" if line is lines[0] else None
+        floor = max(line.error(comparison.coupling), MIN_DRAWN_ERROR)
+        axes.axhline(floor, color=GREY, ls=line.style, lw=0.8, label=name)
+    label_errors(axes, "modes per plane, the two rigid ones included", label)
     axes.set_xticks(sorted({row.modes for row in comparison.rows}))
     axes.set_title(title)
-    axes.set_xlabel("modes per plane, the two rigid ones included")
-    axes.set_ylabel(label)
-    axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
 
 
-WIDTH = 10
-STRESSES = ("bending", "shear")
-STRESS_METHODS = ("displacement", "acceleration")  # by which stresses are found
-
-
-def report_lines(comparison: Comparison) -> list[str]:
-    """What the reference says, and a table of errors against it."""
-    return [*_reference_lines(comparison), "", *_table(comparison)]
-
-
-def _reference_lines(comparison: Comparison) -> list[str]:
+def _reference_lines(comparison: Comparison) -> Iterator[str]:
     exact = comparison.reference
-    about = [
-        f"{comparison.scene.title}",
+    yield comparison.scene.title
+    yield (
         f"reference: all modes of the finite elements, macro step {1e6 * exact.macro_step:g} us, "
-        f"energy residual {exact.energy:.2g} of the energy lost by falling",
-    ]
+        f"energy residual {exact.energy:.2g} of the energy lost by falling"
+    )
     for seat, (start, end) in comparison.impacts.items():
         peaks = exact.seats[seat]
-        about.append(
+        yield (
             f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, journal force "
             f"{peaks.force:.5g} N over {1e6 * AVERAGING_TIME:g} us, contact force {peaks.contact:.5g} N, "
             f"indentation {1e6 * peaks.indentation:.4g} um"
         )
     stresses = exact.displacement
-    about.append(
+    yield (
         f"  bending {1e-6 * stresses.bending:.5g} MPa, shear {1e-6 * stresses.shear:.5g} MPa, "
         f"up to {1e3 * (comparison.end - comparison.first):.3g} ms after the first contact"
     )
-    return about
 
 
 def _table(comparison: Comparison) -> list[str]:
-    seats = list(comparison.impacts)
-    heads = [
-        *((f"journal {seat}", "force %") for seat in seats),
-        *((f"contact {seat}", "force %") for seat in seats),
-        ("orbit", "um"),
-        *((kind, f"{way[:7]} %") for kind in STRESSES for way in ("displ.", "accel.")),
-        ("highest", "Hz"),
-        ("wall/", "simulated"),
+    exact, coupling = comparison.reference, comparison.coupling
+    columns = [
+        Column[Row](
+            (f"{title} {seat}", "force %"),
+            lambda row, s=seat, f=figure: format(
+                percent(getattr(row.seats[s], f), getattr(exact.seats[s], f)), "+.2f"
+            ),
+        )
+        for title, figure in (("journal", "force"), ("contact", "contact"))
+        for seat in comparison.impacts
     ]
-    top, below = (f"{'':16}" + "".join(f"{head[i]:>{WIDTH}}" for head in heads) for i in (0, 1))
-    body = [
-        f"{row.modes:>5}{'  residual' if row.residual else '':<11}{_cells(comparison, row)}"
-        for row in comparison.rows
+    columns.append(Column(("orbit", "um"), lambda row: f"{1e6 * row.orbit:.3g}"))
+    columns += [
+        Column[Row](
+            (kind, f"{short} %"),
+            lambda row, k=kind, w=way: format(stress_error(comparison, row, k, w), "+.2f"),
+        )
+        for kind in STRESSES
+        for way, short in zip(STRESS_METHODS, ("displ.", "accel."), strict=True)
     ]
-    step = 1e6 * comparison.coupling.macro_step
+    columns.append(Column(("highest", "Hz"), lambda row: number(row.frequency, ".0f")))
+    columns.append(Column(("wall/", "simulated"), lambda row: f"{row.wall:.3g}"))
+    label = Column[Row](
+        ("", "modes"),
+        lambda row: f"{row.modes or 'all':>5}{_basis(row, row is coupling):<11}",
+    )
+    step = 1e6 * coupling.macro_step
     return [
         f"errors against it, macro step {step:g} us; stresses by mode displacement and acceleration",
-        top,
-        f"modes{'':11}{below[16:]}",
-        *body,
-        f"{'all':>5}{'  coupling':<11}{_cells(comparison, comparison.coupling)}",
+        *table(label, columns, [*comparison.rows, coupling]),
     ]
 
 
-def _cells(comparison: Comparison, row: Row) -> str:
-    seats, exact = list(comparison.impacts), comparison.reference
-    errors = [percent(row.seats[s].force, exact.seats[s].force) for s in seats]
-    errors += [percent(row.seats[s].contact, exact.seats[s].contact) for s in seats]
-    shown = [f"{error:+.2f}" for error in errors]
-    shown.append(f"{1e6 * row.orbit:.3g}")
-    shown += [
-        f"{stress_error(comparison, row, kind, way):+.2f}" for kind in STRESSES for way in STRESS_METHODS
-    ]
-    shown.append("-" if row.frequency is None else f"{row.frequency:.0f}")
-    shown.append(f"{row.wall:.3g}")
-    return "".join(f"{cell:>{WIDTH}}" for cell in shown)
+def _basis(row: Row, coupling: bool) -> str:
+    return "  coupling" if coupling else "  residual" if row.residual else ""
 
 
-def write_report(comparison: Comparison, folder: Path) -> None:
-    """modes.csv and modes.png into `folder`."""
-    with writing_to(folder):
-        write_table(comparison, folder / "modes.csv")
-        errors_over_modes(comparison).savefig(folder / "modes.png", dpi=150)
-
-
-def write_table(comparison: Comparison, path: Path) -> None:
+def _records(comparison: Comparison) -> Iterator[Record]:
     """All figures and errors of all rows, in full precision."""
-    rows = [
-        _record(comparison, "reference", comparison.reference),
-        _record(comparison, "coupling", comparison.coupling),
-    ]
-    rows += [_record(comparison, "modes", row) for row in comparison.rows]
-    write_records(rows, path)
+    yield _record(comparison, "reference", comparison.reference)
+    yield _record(comparison, "coupling", comparison.coupling)
+    for row in comparison.rows:
+        yield _record(comparison, "modes", row)
 
 
-def _record(comparison: Comparison, role: str, row: Row) -> Mapping[str, object]:
+def _record(comparison: Comparison, role: str, row: Row) -> Record:
     cells: dict[str, object] = {
         "run": role,
         "modes": row.modes or "all",

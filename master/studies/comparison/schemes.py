@@ -1,29 +1,27 @@
 """Speed against error of coupling schemes on one drop.
 
-Errors are found in process, which is the same to the bit as through FMUs; wall time is through FMUs
-unless asked otherwise. Motion is measured against the monolithic reference. The peak forces of the first
-impact (contact, worst ball, side of a ball), which bearings report from inside their steps, are measured
-against fine steps of the co-simulation, adaptive inside bearings, whose motion stands beside it.
+Variants are schemes at macro steps. Errors are found in process, which is the same to the bit as through
+FMUs; wall time is through FMUs unless asked otherwise. Motion is measured against the monolithic reference.
+The peak forces of the first impact (contact, worst ball, side of a ball), which bearings report from inside
+their steps, are measured against fine steps of the co-simulation, adaptive inside bearings, whose motion
+stands beside it.
 
-Which macro step suits a scheme, told before a run.
-
-A touchdown bearing says at which rate the journal swings on its contact: from the contact's stiffness, and
-from the masses and elastic modes that the journal moves with (`contact.rate`, rad/s). A scheme takes so
-many radians of that swing in a macro step (`Scheme.angle_limit`, measured: docs/coupling.md).
+Which macro step suits a scheme, before a run: a touchdown bearing states at which rate the journal swings
+on its contact, from the contact's stiffness and from the masses and elastic modes that the journal moves
+with (`contact.rate`, rad/s). A scheme takes so many radians of that swing in a macro step
+(`Scheme.angle_limit`, measured: docs/coupling.md).
 """
 
 from __future__ import annotations
 
 import math
-import statistics
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from enum import StrEnum
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...common.errors import TouchdownError
-from ...coupling.simulation import opened, refuse_endless, simulate
+from ...coupling.simulation import Outcome, opened, refuse_endless, simulate
 from ...coupling.system import fastest_contact
 from ...scene.run_spec import tidy
 from ...scene.scene import Scene
@@ -46,7 +44,8 @@ from ..drop.reference import (
     refine,
     solve,
 )
-from ..drop.running import undivided, wall_time, warm_up
+from ..drop.running import undivided
+from .engine import Alarm, Begin, Row, Stopwatch, Variant, begin_silently, cheapest, measure_all
 
 ABOVE_FLOOR = 10.0  # an error counts from this many times the floor of what it is measured against
 MIN_SLOPE = 0.5  # least slope between neighbours: below it something else than the macro step errs
@@ -90,7 +89,7 @@ STEPS = (5e-6, 1e-5, 2e-5, 5e-5, 1e-4)  # s
 TARGET_ERROR_M = 1e-7  # m
 LOOSE_SOLVERS = (Solver("DOP853", 1e-3), Solver("DOP853", 1e-6), Solver("Radau", 1e-3))
 LOOSE_SOLVERS_OF_MANY = LOOSE_SOLVERS[:1]  # each takes about as long as the reference
-REFERENCE_AGREEMENT = 0.1  # of the wanted error: what the reference's solvers may differ by
+REFERENCE_AGREEMENT = 0.1  # of the target error: what the reference's solvers may differ by
 SATURATION = 0.2  # of the motion's extent, of the force, of the energy: such an error is no trend
 SAME_TIME_FACTOR = 1.2  # times the least wall time: as good as the same
 
@@ -116,40 +115,16 @@ ERROR_COLUMNS = {
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is to be compared."""
+class Options:
+    """What is compared, and how."""
 
     schemes: Sequence[str] = tuple(SCHEMES)
     steps: Sequence[float] = STEPS  # s
     duration: float | None = None  # s from the first contact; None: until the first impact is over
-    wanted: float = TARGET_ERROR_M  # m
+    target: float = TARGET_ERROR_M  # m, error of the journal that is good enough
     repeat: int = 3  # runs that are timed
     timed: float | None = None  # s, their duration from the scene's zero; None: as what is compared
     in_process: bool = False
-
-
-class Alarm(StrEnum):
-    """What the ledger would do by the scene's thresholds."""
-
-    NONE = ""
-    WARNS = "warns"
-    STOPS = "stops"
-
-
-@dataclass(frozen=True)
-class Row:
-    """One scheme at one macro step, or one monolithic solver; errors by quantity, where known.
-
-    position: m, velocity: m/s, both the largest of any seat and instant; force, ball, side: of the first
-    impact, relative, of the worst seat; energy: residual of the ledger over the energy scale.
-    """
-
-    name: str
-    step: float | None  # s; None: monolithic
-    errors: Mapping[str, float] = field(default_factory=dict)
-    wall: float | None = None  # s per simulated s
-    ledger: Alarm = Alarm.NONE
-    failed: str = ""  # why there are no errors
 
 
 @dataclass(frozen=True)
@@ -157,7 +132,7 @@ class Comparison:
     """All rows, and what they are measured against."""
 
     scene: Scene
-    asked: Asked
+    options: Options
     landing: Landing
     exact: Reference
     fine: Mapping[str, float]  # errors of the fine co-simulation: its motion, its forces at twice the step
@@ -182,9 +157,9 @@ class Comparison:
         return {"position": position, "velocity": velocity, **forces, "energy": 0.0}
 
     @property
-    def wanted(self) -> Mapping[str, float]:
+    def targets(self) -> Mapping[str, float]:
         """By quantity: errors that are good enough, of those that the advice goes by."""
-        return {"position": self.asked.wanted}
+        return {"position": self.options.target}
 
     def orders(self, scheme: str) -> Mapping[str, Order | None]:
         """By quantity; None where too few macro steps tell."""
@@ -197,28 +172,24 @@ class Comparison:
         return orders
 
     def recommended(self) -> Row | None:
-        """The cheapest row of a scheme whose journals err by no more than wanted, ledgers that hold first.
+        """The cheapest row of a scheme whose journals err by no more than the target.
 
-        Of rows that take about the same time the most accurate one.
+        Ledgers that do not warn go first; of rows that take about the same time the most accurate one.
         """
         quiet = self._cheapest([row for row in self.rows if row.ledger is Alarm.NONE])
         return quiet or self._cheapest([row for row in self.rows if row.ledger is not Alarm.STOPS])
 
     def recommended_solver(self) -> Row | None:
-        """The cheapest monolithic solver that errs by no more than wanted."""
+        """The cheapest monolithic solver that errs by no more than the target."""
         return self._cheapest(self.monolithic)
 
     def _cheapest(self, rows: Iterable[Row]) -> Row | None:
-        good = [r for r in rows if r.wall and r.errors.get("position", math.inf) <= self.asked.wanted]
-        least = min((row.wall for row in good if row.wall), default=0.0)
-        near = [row for row in good if row.wall and row.wall <= SAME_TIME_FACTOR * least]
-        return min(near, key=lambda row: row.errors["position"], default=None)
+        good = [row for row in rows if row.errors.get("position", math.inf) <= self.options.target]
+        return cheapest(good, SAME_TIME_FACTOR)
 
 
-def compare_schemes(
-    scene: Scene, asked: Asked, begin: Callable[[str], object] = lambda what: None
-) -> Comparison:
-    """Run everything; begin(what) before each of `pieces(scene, asked)` pieces of work.
+def compare_schemes(scene: Scene, options: Options, begin: Begin = begin_silently) -> Comparison:
+    """Run everything; begin(what) before each of `pieces(scene, options)` pieces of work.
 
     Raises TouchdownError where nothing touches, or where there is no reference. A scheme that stops or
     fails says so in its row.
@@ -226,34 +197,34 @@ def compare_schemes(
     limits = scene.run.warn_residual, scene.run.stop_residual
     scene = undivided(scene)
     begin("fine steps")
-    refuse_endless(max(asked.duration or MAX_SPAN, asked.timed or 0.0), min(asked.steps))
-    landing = land(scene, asked.duration)
-    looks = plan(landing, (*asked.steps, 2.0 * FINE_STEP))
+    refuse_endless(max(options.duration or MAX_SPAN, options.timed or 0.0), min(options.steps))
+    landing = land(scene, options.duration)
+    looks = plan(landing, (*options.steps, 2.0 * FINE_STEP))
     scene = scene.set({"run.duration": landing.duration})
     solves = _solves(scene, looks, begin)
-    exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * asked.wanted)
-    judge = _Judge(looks, exact, *limits)
+    exact = reference(looks.times, solves[0], solves[1], REFERENCE_AGREEMENT * options.target)
+    judge = _Judge(looks, exact, Stopwatch(options.repeat, options.in_process), options.timed, *limits)
     begin("fine steps")
-    finely = judge.row(fine(scene, 2.0 * FINE_STEP), "fine steps", 2.0 * FINE_STEP)
-    if finely.failed:
-        raise TouchdownError(f"with macro steps of {2e6 * FINE_STEP:g} us: {finely.failed}")
-    warm_up(scene, asked.in_process)
-    rows = []
-    for name in asked.schemes:
-        for step in asked.steps:
-            begin(f"{name} at {1e6 * step:g} us")
-            run = scene.set({"run.scheme": name, "run.macro_step": step})
-            rows.append(_timed(judge.row(run, name, step), run, asked))
+    finely = judge.errors(fine(scene, 2.0 * FINE_STEP), 2.0 * FINE_STEP)
+    judge.stopwatch.warm_up(Variant("", scene))
+    rows = measure_all(_variants(scene, options), judge.measure, begin)
     monolithic = [_monolithic(s, exact) for s in solves if isinstance(s.solver, Solver)]
-    return Comparison(scene, asked, landing, exact, finely.errors, rows, monolithic)
+    return Comparison(scene, options, landing, exact, finely, rows, monolithic)
 
 
-def pieces(scene: Scene, asked: Asked) -> int:
+def _variants(scene: Scene, options: Options) -> Iterator[Variant]:
+    """Every scheme at every macro step."""
+    for name in options.schemes:
+        for step in options.steps:
+            yield Variant(name, scene.set({"run.scheme": name, "run.macro_step": step}), step)
+
+
+def pieces(scene: Scene, options: Options) -> int:
     """How many pieces of work a comparison is."""
-    return 2 + len(_solvers(scene)) + len(asked.schemes) * len(asked.steps)
+    return 2 + len(_solvers(scene)) + len(options.schemes) * len(options.steps)
 
 
-def _solves(scene: Scene, looks: Plan, begin: Callable[[str], object]) -> list[Solve]:
+def _solves(scene: Scene, looks: Plan, begin: Begin) -> list[Solve]:
     """Both solutions of the reference, then looser ones."""
     seats, solvers = looks.landing.seats, _solvers(scene)
     if has_equations(scene):
@@ -297,20 +268,34 @@ class _Judge:
 
     looks: Plan
     exact: Reference
+    stopwatch: Stopwatch
+    timed: float | None  # s, duration of the runs that are timed; None: as what is compared
     warn: float
     stop: float
 
-    def row(self, scene: Scene, name: str, step: float) -> Row:
-        """Run `scene` in process and measure it."""
-        try:
-            with opened(scene, True) as system:
-                sampler = Sampler(system, self.looks.landing, self.looks.every[step])
-                outcome = simulate(scene, system, observers=[sampler])
-                outcome.raise_if_stopped()
-        except TouchdownError as error:
-            return Row(name, step, failed=str(error))
+    def measure(self, variant: Variant) -> Row:
+        """Errors and wall time of a variant."""
+        sampler, outcome = self._sampled(variant.scene, variant.step or FINE_STEP)
         errors = self._errors(sampler, outcome.residual)
-        return Row(name, step, errors, ledger=self._alarm(outcome.share))
+        row = Row(variant.name, variant.step, errors, ledger=self._alarm(outcome.share))
+        if self.timed is not None:
+            variant = replace(variant, scene=variant.scene.set({"run.duration": self.timed}))
+        return self.stopwatch.timed(row, variant)
+
+    def errors(self, scene: Scene, step: float) -> Mapping[str, float]:
+        """Those of a run with macro steps of `step` (s). Raises TouchdownError where it stops."""
+        try:
+            sampler, outcome = self._sampled(scene, step)
+        except TouchdownError as error:
+            raise TouchdownError(f"with macro steps of {1e6 * step:g} us: {error}") from None
+        return self._errors(sampler, outcome.residual)
+
+    def _sampled(self, scene: Scene, step: float) -> tuple[Sampler, Outcome]:
+        with opened(scene, True) as system:
+            sampler = Sampler(system, self.looks.landing, self.looks.every[step])
+            outcome = simulate(scene, system, observers=[sampler])
+        outcome.raise_if_stopped()
+        return sampler, outcome
 
     def _alarm(self, share: float) -> Alarm:
         if share > self.stop:
@@ -329,19 +314,6 @@ class _Judge:
             **self.looks.landing.force_errors(sampler.peaks),
             "energy": residual,
         }
-
-
-def _timed(row: Row, scene: Scene, asked: Asked) -> Row:
-    """The row with its wall time: the median of some runs."""
-    if row.failed:
-        return row
-    if asked.timed is not None:
-        scene = scene.set({"run.duration": asked.timed})
-    try:
-        spent = [wall_time(scene, asked.in_process) for _ in range(asked.repeat)]
-    except TouchdownError as error:
-        return replace(row, failed=f"while it was timed: {error}")
-    return replace(row, wall=statistics.median(spent))
 
 
 LONGEST_MACRO_STEP = 1e-4  # s; what happens within a longer macro step is lost to recording and ledger

@@ -1,64 +1,73 @@
-"""Coupling schemes beside each other, as lines, files and figure."""
+"""Coupling schemes beside each other, as lines, files and picture."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ...common.files import write_records, writing_to
-from ...results.figures.style import BLACK, COLOURS, GREY, sheet
+from ...results.figures.style import BLACK, COLOURS, GREY
 from ..drop.first_impact import forces_text
 from ..drop.reference import POSITION, Refined
-from .schemes import ERROR_COLUMNS, Comparison, Row
+from ..findings import Column, Findings, Record, number, paragraphs, table
+from .engine import Row
+from .panels import label_errors, panel_grid
+from .schemes import ERROR_COLUMNS, Comparison
 
 MARKERS = "osD^v<>ph*"
+MONOLITHIC = "monolithic"
+WIDTH = 12  # of the table's columns
+
+
+def findings(comparison: Comparison) -> Findings:
+    """What it is measured against, a table of errors, fitted orders, and what to take."""
+    parts = (_about(comparison), _table(comparison), _orders(comparison), advice(comparison))
+    return Findings(
+        paragraphs(*parts),
+        tables={
+            "work_precision.csv": map(_record, (*comparison.rows, *comparison.monolithic)),
+            "orders.csv": _order_records(comparison),
+        },
+        pictures={"work_precision.png": lambda: work_precision(comparison)},
+        dots_per_inch=110,
+    )
 
 
 def work_precision(comparison: Comparison) -> Figure:
     """Panels: journal position and velocity, peak forces, ledger; labels are macro steps."""
-    quantities = comparison.quantities
-    lines = math.ceil(len(quantities) / 2)
-    figure = sheet(13, 5 * lines)
-    panels = list(figure.subplots(lines, 2).flat)
-    for axes in panels[len(quantities) :]:
-        axes.set_axis_off()
-    for axes, name in zip(panels, quantities, strict=False):
-        _panel(axes, comparison, name)
-    figure.axes[0].legend(fontsize=8)
-    asked, landing = comparison.asked, comparison.landing
-    figure.suptitle(
+    options, landing = comparison.options, comparison.landing
+    title = (
         f"{comparison.scene.title}: wall time against error\n"
         f"up to {1e3 * (landing.end - landing.first):.3g} ms after the first contact, "
-        f"{'in process' if asked.in_process else 'through FMUs'}"
+        f"{'in process' if options.in_process else 'through FMUs'}"
     )
+    quantities = comparison.quantities
+    figure, panels = panel_grid(len(quantities), 6.5, 5.0, title)
+    for axes, name in zip(panels, quantities, strict=True):
+        _panel(axes, comparison, name)
+    panels[0].legend(fontsize=8)
     return figure
 
 
 def _panel(axes: Axes, comparison: Comparison, name: str) -> None:
     shown = ERROR_COLUMNS[name]
-    for i, scheme in enumerate(comparison.asked.schemes):
+    for i, scheme in enumerate(comparison.options.schemes):
         rows = [row for row in comparison.rows if row.name == scheme]
         style = {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]}
         _curve(axes, rows, name, scheme, **style, ls="-" if i < len(COLOURS) else "--")
-    _curve(axes, comparison.monolithic, name, "monolithic", color=BLACK, marker="x", ls="")
+    _curve(axes, comparison.monolithic, name, MONOLITHIC, color=BLACK, marker="x", ls="")
     floor = shown.factor * comparison.floors[name]
     if floor > 0.0:
         axes.axvline(floor, color=GREY, lw=0.8, ls=":")
-    if name in comparison.wanted:
-        axes.axvline(shown.factor * comparison.wanted[name], color=GREY, lw=0.8, ls="--", label="wanted")
+    if name in comparison.targets:
+        axes.axvline(shown.factor * comparison.targets[name], color=GREY, lw=0.8, ls="--", label="wanted")
     axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlabel(shown.axis)
-    axes.set_ylabel("wall time per simulated s [s]")
-    axes.grid(alpha=0.3)
+    label_errors(axes, shown.axis, "wall time per simulated s [s]")
 
 
 def _curve(axes: Axes, rows: Sequence[Row], name: str, label: str, **style: object) -> None:
-    """What has an error above zero, and a time."""
+    """The rows that have an error above zero, and a time."""
     points = [
         (ERROR_COLUMNS[name].factor * row.errors[name], row.wall, row)
         for row in rows
@@ -73,76 +82,74 @@ def _curve(axes: Axes, rows: Sequence[Row], name: str, label: str, **style: obje
         axes.annotate(text, (error, wall), xytext=(4, 3), textcoords="offset points", fontsize=7)
 
 
-MONOLITHIC = "monolithic"
-
-
-def report_lines(comparison: Comparison) -> list[str]:
-    """What it is measured against, a table of errors, fitted orders, and what to take."""
-    return [*_about(comparison), "", *_table(comparison), "", *_orders(comparison), "", *advice(comparison)]
-
-
-def _about(comparison: Comparison) -> list[str]:
-    landing, exact, asked = comparison.landing, comparison.exact, comparison.asked
-    about = [comparison.scene.title]
+def _about(comparison: Comparison) -> Iterator[str]:
+    landing, exact, options = comparison.landing, comparison.exact, comparison.options
+    yield comparison.scene.title
     for seat, (start, end) in landing.impacts.items():
-        about.append(
-            f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, "
-            f"{forces_text(landing.peaks(seat))}"
-        )
+        forces = forces_text(landing.peaks(seat))
+        yield f"  {seat}: first impact {1e3 * start:.4g} to {1e3 * end:.4g} ms, {forces}"
     first, second = exact.first, exact.second
     counted = "macro steps" if isinstance(first.solver, Refined) else "evaluations"
     known = ", ".join(
         f"{ERROR_COLUMNS[q].title} {100.0 * comparison.fine[q]:.1g} %" for q in comparison.forces
     )
     until = "the end" if exact.whole else f"{1e3 * exact.horizon:.4g} ms, where they part"
-    about += [
+    yield (
         f"compared up to {1e3 * landing.end:.4g} ms, {1e3 * (landing.end - landing.first):.3g} ms after "
-        "the first contact",
+        "the first contact"
+    )
+    yield (
         f"reference: {first.solver.title} ({first.evaluations} {counted}) and {second.solver.title} "
-        f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}",
+        f"({second.evaluations}) agree to {1e6 * exact.floor(POSITION):.1g} um up to {until}"
+    )
+    yield (
         f"co-simulation in fine steps is off by {1e6 * comparison.fine['position']:.1g} um; "
-        f"peak forces are measured against it, known to: {known}",
-        f"wall time {'in process' if asked.in_process else 'through FMUs'}, median of {asked.repeat}; "
-        "of monolithic solvers, one run in process",
-    ]
-    return about
+        f"peak forces are measured against it, known to: {known}"
+    )
+    yield (
+        f"wall time {'in process' if options.in_process else 'through FMUs'}, median of {options.repeat}; "
+        "of monolithic solvers, one run in process"
+    )
 
 
 def _table(comparison: Comparison) -> list[str]:
     rows = [*comparison.rows, *comparison.monolithic]
-    width = max(len(row.name) for row in rows) + 2
-    quantities = comparison.quantities
-    heads = [ERROR_COLUMNS[q].title for q in quantities]
-    units = [f"[{ERROR_COLUMNS[q].unit}]" for q in quantities]
-    top = f"{'scheme':<{width}}{'macro step':>12}" + "".join(f"{h:>12}" for h in (*heads, "wall/"))
-    below = f"{'':<{width}}{'':>12}" + "".join(f"{u:>12}" for u in (*units, "simulated"))
-    return [top, below, *(f"{row.name:<{width}}{_cells(row, quantities)}".rstrip() for row in rows)]
+    left = max(len(row.name) for row in rows) + 2
+    label = Column[Row](
+        (f"{'scheme':<{left}}{'macro step':>{WIDTH}}", ""),
+        lambda row: f"{row.name:<{left}}{_step(row):>{WIDTH}}",
+    )
+    columns = [
+        Column[Row]((ERROR_COLUMNS[q].title, f"[{ERROR_COLUMNS[q].unit}]"), lambda row, q=q: _error(row, q))
+        for q in comparison.quantities
+    ]
+    columns.append(Column(("wall/", "simulated"), lambda row: number(row.wall, ".3g")))
+    return table(
+        label,
+        columns,
+        rows,
+        instead=lambda row: row.failed,
+        behind=lambda row: f"ledger {row.ledger}" if row.ledger else "",
+        width=WIDTH,
+    )
 
 
-def _cells(row: Row, quantities: Sequence[str]) -> str:
-    step = MONOLITHIC if row.step is None else f"{1e6 * row.step:g} us"
-    if row.failed:
-        return f"{step:>12}  {row.failed}"
-    errors = "".join(f"{_shown(row, name):>12}" for name in quantities)
-    wall = "-" if row.wall is None else f"{row.wall:.3g}"
-    return f"{step:>12}{errors}{wall:>12}" + (f"  ledger {row.ledger}" if row.ledger else "")
+def _step(row: Row) -> str:
+    return MONOLITHIC if row.step is None else f"{1e6 * row.step:g} us"
 
 
-def _shown(row: Row, name: str) -> str:
+def _error(row: Row, name: str) -> str:
     error = row.errors.get(name)
     return "-" if error is None else f"{ERROR_COLUMNS[name].factor * error:.2g}"
 
 
 def _orders(comparison: Comparison) -> list[str]:
     """By scheme; the steps used stand beside the order."""
-    width = max(len(name) for name in comparison.asked.schemes) + 2
-    quantities = comparison.quantities
-    head = f"{'order':<{width}}" + "".join(f"{ERROR_COLUMNS[q].title:>22}" for q in quantities)
-    body = [
-        f"{name:<{width}}" + "".join(f"{_order(comparison, name, q):>22}" for q in quantities)
-        for name in comparison.asked.schemes
+    columns = [
+        Column[str]((ERROR_COLUMNS[q].title,), lambda scheme, q=q: _order(comparison, scheme, q))
+        for q in comparison.quantities
     ]
-    return [head, *body]
+    return table(Column[str](("order",), str), columns, comparison.options.schemes, width=22)
 
 
 def _order(comparison: Comparison, scheme: str, quantity: str) -> str:
@@ -153,18 +160,18 @@ def _order(comparison: Comparison, scheme: str, quantity: str) -> str:
 
 
 def advice(comparison: Comparison) -> list[str]:
-    """Scheme and macro step for the wanted error."""
-    wanted = f"for {1e6 * comparison.asked.wanted:g} um: "
+    """Scheme and macro step for the error that is wanted."""
+    target = f"for {1e6 * comparison.options.target:g} um: "
     best = comparison.recommended()
     if best is None or best.step is None or best.wall is None:
         errors = [row for row in comparison.rows if row.errors]
         if not errors:
-            return [f"{wanted}no scheme got there; try smaller --macro-steps"]
+            return [f"{target}no scheme got there; try smaller --macro-steps"]
         least = min(errors, key=lambda row: row.errors["position"])
         near = f"{least.name} at {1e6 * (least.step or 0.0):g} us comes nearest"
-        return [f"{wanted}none of these, {near}; try smaller --macro-steps or a larger --wanted"]
+        return [f"{target}none of these, {near}; try smaller --macro-steps or a larger --wanted"]
     text = (
-        f'{wanted}--scheme {best.name} --macro-step "{1e6 * best.step:g} us" is '
+        f'{target}--scheme {best.name} --macro-step "{1e6 * best.step:g} us" is '
         f"{1e6 * best.errors['position']:.2g} um off and takes {best.wall:.3g} s per simulated s"
     )
     solver = comparison.recommended_solver()
@@ -173,43 +180,27 @@ def advice(comparison: Comparison) -> list[str]:
     return [text, f"  the fastest monolithic solver there, {solver.name}, takes {solver.wall:.3g} s"]
 
 
-def write_report(comparison: Comparison, folder: Path) -> None:
-    """work_precision.csv, orders.csv and work_precision.png into `folder`."""
-    with writing_to(folder):
-        write_table(comparison, folder / "work_precision.csv")
-        write_orders(comparison, folder / "orders.csv")
-        work_precision(comparison).savefig(folder / "work_precision.png", dpi=110)
-
-
-def write_table(comparison: Comparison, path: Path) -> None:
-    """All rows, errors in SI and in full precision."""
+def _record(row: Row) -> Record:
+    """Errors in SI and in full precision."""
     units = dict.fromkeys(ERROR_COLUMNS, "relative") | {"position": "m", "velocity": "m_s"}
-    records: list[Mapping[str, object]] = [
-        {
-            "scheme": row.name,
-            "macro_step_s": row.step,
-            **{f"{name}_error_{unit}": row.errors.get(name) for name, unit in units.items()},
-            "wall_time_per_simulated_s": row.wall,
-            "ledger": row.ledger,
-            "failed": row.failed,
-        }
-        for row in (*comparison.rows, *comparison.monolithic)
-    ]
-    write_records(records, path)
+    return {
+        "scheme": row.name,
+        "macro_step_s": row.step,
+        **{f"{name}_error_{unit}": row.errors.get(name) for name, unit in units.items()},
+        "wall_time_per_simulated_s": row.wall,
+        "ledger": row.ledger,
+        "failed": row.failed,
+    }
 
 
-def write_orders(comparison: Comparison, path: Path) -> None:
+def _order_records(comparison: Comparison) -> Iterator[Record]:
     """Fitted orders, and the steps they were fitted to."""
-    records: list[Mapping[str, object]] = []
-    for scheme in comparison.asked.schemes:
+    for scheme in comparison.options.schemes:
         for quantity in comparison.quantities:
             order = comparison.orders(scheme)[quantity]
-            records.append(
-                {
-                    "scheme": scheme,
-                    "quantity": quantity,
-                    "order": None if order is None else order.value,
-                    "macro_steps_s": "" if order is None else " ".join(f"{s:g}" for s in order.steps),
-                }
-            )
-    write_records(records, path)
+            yield {
+                "scheme": scheme,
+                "quantity": quantity,
+                "order": None if order is None else order.value,
+                "macro_steps_s": "" if order is None else " ".join(f"{s:g}" for s in order.steps),
+            }

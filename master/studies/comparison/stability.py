@@ -4,38 +4,36 @@ A case is a scene, figures read at the end of its run, and what is right: from t
 REFERENCE_STEP with the default scheme. A run is
 
 - stable, if it reaches its end and no journal gets faster, or farther from the origin, than GROWTH_LIMIT
-times
-  what it does in the right run;
+  times what it does in the run that is right;
 - right, if it is stable and no figure is off by more than VISIBLE_ERROR, which the eye sees in a plot.
 
 The macro steps tried are STEPS. From the case's first one the search goes down until a run is right, and
 up until one is not stable, so that every step between is tried. The ledger never stops a run here; what
 counts is whether it has passed the scene's threshold of warning in the first run that is not right.
-
-The cases of `touchdown stability`: what is hard on a coupling scheme, most of it short.
-
-Drops start just above the bearing, at the speed of the fall, so that little time goes by in flight. All
-runs end at a whole number of milliseconds, which every macro step divides.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
-from ...common.errors import Ended, TouchdownError, one_of
+from ...common.errors import Ended, TouchdownError
+from ...common.pool import TaskOutcome, run_all
 from ...components.component import POSITION
 from ...coupling.observer import Moment, Observer
 from ...coupling.simulation import Outcome, opened, simulate
+from ...coupling.steppers.carried import carrying
 from ...coupling.system import fastest_contact
 from ...scene import schemes
-from ...scene.file import load_scene
-from ...scene.run_spec import RunSpec
-from ...scene.scene import ComponentSpec, Scene
+from ...scene.scene import Scene
 from ..drop.running import undivided
+
+Key = TypeVar("Key")
+Value = TypeVar("Value")
 
 STEPS = (*(float(f"{digit}e{power}") for power in (-6, -5, -4) for digit in (1, 2, 5)), 1e-3)  # s
 FIRST_STEP = 2e-5  # s, where the search begins
@@ -54,7 +52,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Right:
+class Expected:
     """What a run should give."""
 
     values: tuple[float, ...]  # of the case's figures
@@ -72,7 +70,7 @@ class Case:
     scene: Scene  # to an end that all of `steps` divide
     figures: tuple[Figure, ...]
     journals: tuple[str, ...] = ("rotor.A",)  # ports of bodies
-    theory: Right | None = None  # None: a run at REFERENCE_STEP says what is right
+    theory: Expected | None = None  # None: a run at REFERENCE_STEP says what is right
     steps: tuple[float, ...] = STEPS
     first: float = FIRST_STEP  # one of them
     long: bool = False  # takes minutes
@@ -124,7 +122,7 @@ class Finding:
         return next((attempt for attempt in self.attempts if not attempt.right), None)
 
     @property
-    def called(self) -> bool | None:
+    def ledger_warned(self) -> bool | None:
         """Whether the ledger had warned in the first run that is not right; None: all are."""
         return None if self.wrong is None else self.wrong.warned
 
@@ -159,35 +157,37 @@ def search(
     return tuple(attempts)
 
 
-def examine(case: Case, scheme: str, right: Right) -> Finding:
+def examine(case: Case, scheme: str, expected: Expected) -> Finding:
     """Search the macro steps of a scheme in a case."""
     return Finding(
-        case.name, scheme, search(lambda step: attempted(case, scheme, step, right), case.steps, case.first)
+        case.name,
+        scheme,
+        search(lambda step: attempted(case, scheme, step, expected), case.steps, case.first),
     )
 
 
-def attempted(case: Case, scheme: str, step: float, right: Right) -> Attempt:
+def attempted(case: Case, scheme: str, step: float, expected: Expected) -> Attempt:
     """Run a case and judge it."""
-    bounds = Bounds(case.journals, GROWTH_LIMIT * right.speed, GROWTH_LIMIT * right.distance)
+    bounds = Bounds(case.journals, GROWTH_LIMIT * expected.speed, GROWTH_LIMIT * expected.distance)
     outcome, values = _run(case, scheme, step, bounds)
     errors = [
         abs(value - exact) / abs(exact if figure.scale is None else figure.scale)
-        for figure, value, exact in zip(case.figures, values, right.values, strict=False)
+        for figure, value, exact in zip(case.figures, values, expected.values, strict=False)
     ]
     error = float(np.max(errors)) if values else math.inf  # not a number stays it
     return Attempt(step, values, error, outcome.residual, outcome.warned_at is not None, outcome.reason)
 
 
-def reference(case: Case) -> Right:
+def reference(case: Case) -> Expected:
     """What is right in a case: by theory, or by the default scheme at REFERENCE_STEP."""
-    right = case.theory
-    if right is None:
+    expected = case.theory
+    if expected is None:
         bounds = Bounds(case.journals)
         outcome, values = _run(case, schemes.DEFAULT, REFERENCE_STEP, bounds)
         if outcome.ended is not Ended.COMPLETED:
             raise TouchdownError(f"the reference of case {case.name} stopped: {outcome.reason}")
-        right = Right(values, bounds.fastest, bounds.farthest)
-    return replace(right, rate=_contact_rate(case))
+        expected = Expected(values, bounds.fastest, bounds.farthest)
+    return replace(expected, rate=_contact_rate(case))
 
 
 def _contact_rate(case: Case) -> float:
@@ -231,218 +231,78 @@ def _run(case: Case, scheme: str, step: float, bounds: Bounds) -> tuple[Outcome,
         return outcome, tuple(sum(map(system.value, figure.variables)) for figure in case.figures)
 
 
-GRAVITY = 9.81  # m/s2
-CLEARANCE = 0.3e-3  # m, of the disk
-DISK = {"mass": 1.65, "inertia": 0.5e-3}  # kg, kg.m2
-RING_MASS = 0.015  # kg, inner ring of its bearing
-START_HEIGHT = -0.29e-3  # m, height at which the disk's drops start
-START_SPEED = -math.sqrt(-2.0 * GRAVITY * START_HEIGHT)  # m/s, when it passes there
-FINE_MICRO_STEP = 5e-7  # s, micro step of bearings that have one
+@dataclass(frozen=True)
+class Study:
+    """All that was found."""
 
-FRICTIONLESS = {"friction.static": 0.0, "friction.dynamic": 0.0, "friction.g6": 0.0}
+    cases: Sequence[Case]
+    schemes: Sequence[str]
+    expected: Mapping[str, Expected]  # by case
+    findings: Mapping[tuple[str, str], Finding]  # by case and scheme; those that ended
+    failed: Mapping[str, str]  # why, by what was to be done
+    interrupted: bool = False  # whether Ctrl-C ended it
 
-REBOUND = Figure("rebound speed", ("rotor.A.vy",))
-PEAK = Figure("peak force", ("bearing.contact.peak_force",))
-
-
-def _disk(bearing: str, rotor: Mapping[str, object], settings: Mapping[str, object], ms: int) -> Scene:
-    """A rigid rotor in a bearing that stands in the ground."""
-    return Scene(
-        "disk",
-        "disk",
-        {
-            "rotor": ComponentSpec("rigid_rotor", {**DISK, **rotor}),
-            "bearing": ComponentSpec(bearing, dict(settings)),
-        },
-        attach=(("bearing.journal", "rotor.A"),),
-        energy_scale=("rotor.mass", "rotor.gravity", "bearing.clearance"),
-        run=RunSpec(duration=1e-3 * ms),
-    )
+    def finding(self, case: Case, scheme: str) -> Finding | None:
+        """What was found of a case and a scheme, if it was."""
+        return self.findings.get((case.name, scheme))
 
 
-def _let_go(name: str) -> Scene:
-    """A scene of the project's without its magnetic bearings."""
-    scene = load_scene(name)
-    gone = {key for key, spec in scene.components.items() if spec.fmu == "amb"}
-    left = {key: spec for key, spec in scene.components.items() if key not in gone}
-    attach = tuple(pair for pair in scene.attach if pair[0].partition(".")[0] not in gone)
-    return replace(scene, components=left, attach=attach, sense=(), zero=None)
+@dataclass(frozen=True)
+class Task:
+    """A case and a scheme, as they are handed to a process."""
+
+    case: Case
+    scheme: str
+    expected: Expected
 
 
-def _dropped(settings: Mapping[str, object], ms: int) -> Scene:
-    """The disk from just above its caged bearing."""
-    start = {"rotor.y": START_HEIGHT, "rotor.vy": START_SPEED, "run.duration": 1e-3 * ms}
-    return _let_go("disk-caged-simplified").set({**start, **settings})
+def study_stability(
+    cases: Sequence[Case],
+    schemes: Sequence[str],
+    jobs: int = 2,
+    done: Callable[[], object] = lambda: None,
+) -> Study:
+    """Examine every case with every scheme.
 
-
-def bounce() -> Case:
-    """Neither spring nor scheme may make or lose energy: half a period of mass and spring, then off."""
-    speed, mass, stiffness = 0.1, 10.0, 1e8
-    rotor = {"mass": mass, "gravity": 0.0, "y": -CLEARANCE + 7e-7, "vy": -speed, "speed": 0.0}
-    spring = {
-        "contact.stiffness": stiffness,
-        "contact.exponent": 1.0,
-        "contact.damping": 0.0,
-        **FRICTIONLESS,
-    }
-    scene = replace(_disk("bushing", rotor, spring, 2), energy_scale=("rotor.mass", "rotor.vy", "rotor.vy"))
-    indentation = speed * math.sqrt(mass / stiffness)
-    return Case(
-        "bounce",
-        "undamped elastic bounce",
-        scene,
-        (REBOUND, PEAK),
-        theory=Right((speed, stiffness * indentation), speed, CLEARANCE + indentation),
-    )
-
-
-def stiffness(times: int) -> Case:
-    """The disk on its caged bearing, the contact of journal and ring stiffer."""
-    scene = _dropped({"bearing.contact.stiffness": times * 2.4e9}, 3)
-    much = "" if times == 1 else f"{times} times "
-    return Case(f"stiffness-{times}", f"disk, its contact {much}as stiff as it is", scene, (REBOUND, PEAK))
-
-
-def mass(times: int) -> Case:
-    """A journal as light as the ring it lands on, or some times heavier."""
-    given = {f"rotor.{name}": times * RING_MASS / DISK["mass"] * value for name, value in DISK.items()}
-    scene = _dropped(given, 2)
-    speed = Figure("speed", ("rotor.A.vy",), -START_SPEED)
-    much = "" if times == 1 else f"{times} times "
-    return Case(f"mass-{times}", f"journal {much}as heavy as the ring", scene, (speed, PEAK))
-
-
-def _rotor(name: str, settings: Mapping[str, object]) -> Scene:
-    """A scene of rotor I, let go; micro steps are fine, so that errors are the coupling's alone."""
-    fine = {f"bearing_{end}.micro_step": FINE_MICRO_STEP for end in "AB"}
-    return _let_go(name).set({**fine, **settings})
-
-
-def _on_two(name: str, title: str, scene: Scene, scale: float) -> Case:
-    """Peaks and final speeds at both seats; scale (m/s): what errors of speeds are related to."""
-    peaks = [Figure(f"peak force {end}", (f"bearing_{end}.contact.peak_force",)) for end in "AB"]
-    speeds = [
-        Figure(f"speed {end} {axis}", (f"rotor.{end}.v{axis}",), scale) for end in "AB" for axis in "xy"
-    ]
-    return Case(name, title, scene, (*peaks, *speeds), ("rotor.A", "rotor.B"))
-
-
-def whirl() -> Case:
-    """Rotor I thrown along the wall into backward whirl: a turn at 5 kN, the rings dragged up."""
-    start = {"rotor.y": -0.19e-3, "rotor.vx": -0.6, "run.duration": 3e-3}
-    scene = _rotor("rotor1-18000-225um", start)
-    return _on_two("whirl", "rotor I at 18000 rpm, 225 um out of line, backward whirl", scene, 0.6)
-
-
-def modes(count: int) -> Case:
-    """Rotor I to 9 ms after its shutdown: first impact at both ends with elastic modes."""
-    scene = _rotor("rotor1-9000", {"rotor.modes": count, "run.duration": 9e-3})
-    return _on_two(f"modes-{count}", f"rotor I dropped, {count} modes", scene, -START_SPEED)
-
-
-def together() -> Case:
-    """Rotor I neither turning nor out of balance: both bearings are hit in the same instant."""
-    still = {"rotor.speed": 0.0, "rotor.unbalance_scale": 0.0, "run.duration": 9e-3}
-    return _on_two("together", "two bearings hit at once", _rotor("rotor1-9000", still), -START_SPEED)
-
-
-def grazing() -> Case:
-    """The disk falls past the side of a bushing and only just touches it, at about 1 mm/s."""
-    side = 0.29e-3
-    y = -math.sqrt(CLEARANCE**2 - side**2)
-    rotor = {"x": side, "y": y + 1e-6, "vy": -math.sqrt(2.0 * GRAVITY * 1e-6)}
-    scene = _disk("bushing", rotor, {}, 2)
-    speeds = tuple(Figure(f"speed {axis}", (f"rotor.A.v{axis}",), 0.02) for axis in "xy")
-    return Case("grazing", "grazing contact", scene, (*speeds, PEAK))
-
-
-def hold() -> Case:
-    """Rotor I with 20 modes on its magnetic bearings, which bring it back from 20 um beside."""
-    kept = {f"amb_{end}.shutdown_time": 1.0 for end in "AB"}
-    scene = load_scene("rotor1-9000").set(
-        {**kept, "rotor.modes": 20, "rotor.x": 20e-6, "run.duration": 10e-3}
-    )
-    places = tuple(
-        Figure(f"{axis} at {end}", (f"rotor.{end}.{axis}",), 20e-6) for end in "AB" for axis in "xy"
-    )
-    return Case("hold", "held with 20 modes", replace(scene, zero=None), places, ("rotor.A", "rotor.B"))
-
-
-def stick() -> Case:
-    """A slow disk drags the ring up to its speed within the impact, friction ten times steeper."""
-    steep = {"friction.slope": 1000.0, "friction.g2": 1000.0, "friction.g3": 100.0}
-    given = {f"bearing.{name}": value for name, value in steep.items()} | {"rotor.speed": 100.0}
-    ring = Figure("ring's speed", ("bearing.ring.omega",), 100.0)
-    scene = _dropped(given, 3)
-    return Case("stick", "stick-slip, friction ten times steeper", scene, (ring, REBOUND, PEAK))
-
-
-def swapped() -> Case:
-    """Every ball a body, in the scene of the simplified bearing."""
-    scene = _dropped({}, 3).swap(bearing="detailed_caged")
-    return Case("swapped", "detailed bearing put into the scene", scene, (REBOUND, PEAK))
-
-
-def drift() -> Case:
-    """16 s of pendulum motion in a bushing without friction, from 30 degrees: all energies' sum stays."""
-    angle = math.radians(30.0)
-    rotor = {"speed": 0.0, "x": CLEARANCE * math.sin(angle), "y": -CLEARANCE * math.cos(angle)}
-    energies = (
-        "rotor.energy.kinetic",
-        "rotor.energy.potential",
-        "bearing.energy.potential",
-        "bearing.energy.dissipated",
-    )
-    energy = DISK["mass"] * GRAVITY * CLEARANCE
-    swing = energy * (1.0 - math.cos(angle))
-    fastest = math.sqrt(2.0 * swing / DISK["mass"])
-    scene = _disk("bushing", rotor, FRICTIONLESS, 16000)
-    return Case(
-        "drift",
-        "16 s of pendulum motion",
-        scene,
-        (Figure("energy", energies, swing),),
-        theory=Right((-energy * math.cos(angle),), fastest, CLEARANCE),
-        steps=tuple(step for step in STEPS if step >= 2e-5),
-        first=1e-4,
-        long=True,
-    )
-
-
-_ALL: tuple[Callable[[], Case], ...] = (
-    bounce,
-    lambda: stiffness(1),
-    lambda: stiffness(10),
-    lambda: stiffness(100),
-    lambda: mass(10),
-    lambda: mass(1),
-    whirl,
-    lambda: modes(5),
-    lambda: modes(10),
-    lambda: modes(20),
-    grazing,
-    hold,
-    stick,
-    together,
-    swapped,
-    drift,
-)
-
-
-def cases() -> dict[str, Case]:
-    """All cases by name."""
-    return {case.name: case for case in (make() for make in _ALL)}
-
-
-def chosen(names: list[str], long: bool) -> list[Case]:
-    """The cases called `names`, or all; those that take minutes only where named or with `long`.
-
-    Raises TouchdownError for an unknown name.
+    done() after each reference and each finding. After Ctrl-C the study has what is there, and the rest is
+    INTERRUPTED. Starts processes: see `touchdown.master.common.pool`.
     """
-    known = cases()
-    for name in names:
-        if name not in known:
-            raise TouchdownError(f"there is no case {name}; {one_of(name, known)}")
-    return [
-        case for case in known.values() if case.name in names or (not names and (long or not case.long))
-    ]
+    expected, failed = _parted(
+        [case.name for case in cases], run_all(carrying(reference), cases, jobs, done)
+    )
+    tasks: list[Task] = []
+    if not _interrupted(failed):
+        begun = [case for case in cases if case.name in expected]
+        tasks = [Task(case, scheme, expected[case.name]) for case in begun for scheme in schemes]
+    pairs = [(task.case.name, task.scheme) for task in tasks]
+    findings, lost = _parted(pairs, run_all(carrying(_examine), tasks, jobs, done))
+    failed |= {f"{case} with {scheme}": outcome for (case, scheme), outcome in lost.items()}
+    why = {what: outcome.reason for what, outcome in failed.items()}
+    return Study(cases, schemes, expected, findings, why, _interrupted(failed))
+
+
+def _parted(
+    keys: Iterable[Key], outcomes: Iterable[TaskOutcome[Value]]
+) -> tuple[dict[Key, Value], dict[Key, TaskOutcome[Value]]]:
+    """What the tasks gave, and how those ended that gave nothing."""
+    given: dict[Key, Value] = {}
+    failed: dict[Key, TaskOutcome[Value]] = {}
+    for key, outcome in zip(keys, outcomes, strict=True):
+        if outcome.value is None:
+            failed[key] = outcome
+        else:
+            given[key] = outcome.value
+    return given, failed
+
+
+def _interrupted(failed: Mapping[str, TaskOutcome[Any]]) -> bool:
+    return any(outcome.ended is Ended.INTERRUPTED for outcome in failed.values())
+
+
+def size(cases: Sequence[Case], schemes: Sequence[str]) -> int:
+    """How often a study calls `done`."""
+    return len(cases) * (1 + len(schemes))
+
+
+def _examine(task: Task) -> Finding:
+    return examine(task.case, task.scheme, task.expected)

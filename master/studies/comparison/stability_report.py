@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,12 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 
-from ...common.errors import Ended, TouchdownError
-from ...common.files import write_records, writing_to
-from ...common.pool import TaskOutcome, run_all
-from ...coupling.steppers.carried import carrying
 from ...results.figures.style import sheet
 from ...scene.schemes import SCHEMES
+from ..findings import Column, Findings, Record, table
 from .stability import (
     FIRST_STEP,
     GROWTH_LIMIT,
@@ -28,24 +23,13 @@ from .stability import (
     VISIBLE_ERROR,
     Attempt,
     Case,
+    Expected,
     Finding,
-    Right,
-    examine,
-    reference,
+    Study,
 )
 
 COLOUR_MARGIN = 1.4  # cells' margin of the colour scale, as a factor
 DARK_BELOW = 3e-5  # s; below it a cell is dark and its number white
-
-
-def draw_chart(study: Study, path: Path) -> None:
-    """Save the chart. Raises TouchdownError where it cannot be written."""
-    try:
-        chart(study).savefig(path, dpi=150)
-    except OSError as error:
-        raise TouchdownError(
-            f"cannot write {path}: {error.strerror}; choose another folder with -o"
-        ) from None
 
 
 def chart(study: Study) -> Figure:
@@ -81,7 +65,7 @@ def _panel(axes: Axes, study: Study, pick: Callable[[Finding], Attempt | None]) 
                 j, i, microseconds(attempt), ha="center", va="center", fontsize=8,
                 color="black" if pale or attempt is None else "white",
             )  # fmt: skip
-            if finding.called is False:
+            if finding.ledger_warned is False:
                 axes.add_patch(_frame(i, j))
     norm = LogNorm(STEPS[0] / COLOUR_MARGIN, STEPS[-1] * COLOUR_MARGIN)
     image = axes.imshow(steps, cmap="viridis", norm=norm, aspect="auto")
@@ -95,31 +79,29 @@ def _frame(row: int, column: int) -> Rectangle:
 
 SILENT_MARK = "!"  # beside a macro step that is right where the ledger was silent on the next
 NOT_RUN = "?"
-WIDTH = 15  # of names before titles
+Row = TypeVar("Row", bound=Case | str)
 
 
-@dataclass(frozen=True)
-class Study:
-    """All that was found."""
+def findings(study: Study) -> Findings:
+    """Tables of macro steps, of errors and of what the ledger says, cases by schemes.
 
-    cases: Sequence[Case]
-    schemes: Sequence[str]
-    rights: Mapping[str, Right]  # by case
-    findings: Mapping[tuple[str, str], Finding]  # by case and scheme; those that ended
-    failed: Mapping[str, str]  # why, by what was to be done
-    interrupted: bool = False  # whether Ctrl-C ended it
-
-    def finding(self, case: Case, scheme: str) -> Finding | None:
-        """What was found of a case and a scheme, if it was."""
-        return self.findings.get((case.name, scheme))
+    stability.csv has a row per case and scheme, runs.csv one per run.
+    """
+    return Findings(
+        report_lines(study),
+        tables={
+            "stability.csv": map(_summary, study.findings.values()),
+            "runs.csv": _runs(study),
+        },
+        pictures={"stability.png": lambda: chart(study)} if study.findings else {},
+    )
 
 
 def report_lines(study: Study) -> list[str]:
-    """Tables of macro steps, of errors and of what the ledger says, cases by schemes."""
+    """What was found, and what failed."""
     return [
-        f"longest macro step [us] that is right (figures within {VISIBLE_ERROR:.0%}) / stable (to the "
-        "end, no "
-        f"journal beyond {GROWTH_LIMIT:g} times its speed or distance)",
+        f"longest macro step [us] that is right (figures within {VISIBLE_ERROR:.0%}) / stable (to the end, "
+        f"no journal beyond {GROWTH_LIMIT:g} times its speed or distance)",
         f"{SILENT_MARK}: the energy ledger had not warned where the next one is not right",
         *_table(study, _steps),
         "",
@@ -139,6 +121,9 @@ def report_lines(study: Study) -> list[str]:
     ]
 
 
+WIDTH = 15  # of names before titles
+
+
 def microseconds(attempt: Attempt | None) -> str:
     """A macro step; - where there is none."""
     return "-" if attempt is None else f"{1e6 * attempt.step:g}"
@@ -150,7 +135,7 @@ def percent(error: float) -> str:
 
 
 def _steps(finding: Finding) -> str:
-    silent = SILENT_MARK if finding.called is False else ""
+    silent = SILENT_MARK if finding.ledger_warned is False else ""
     return f"{microseconds(finding.right)}/{microseconds(finding.stable)}{silent}"
 
 
@@ -159,9 +144,17 @@ def _at_stable(finding: Finding, shown: Callable[[Attempt], str]) -> str:
 
 
 def _swings(study: Study) -> list[str]:
-    least = ["least", *(_least(study, scheme) for scheme in study.schemes)]
-    advised = ["advised", *(f"{SCHEMES[scheme].angle_limit:g}" for scheme in study.schemes)]
-    return _table(study, lambda finding: _swing(finding, study.rights[finding.case]), [least, advised])
+    """The swing by case, the least of all, and what is advised."""
+    by_row = {
+        "least": lambda scheme: _least(study, scheme),
+        "advised": lambda scheme: f"{SCHEMES[scheme].angle_limit:g}",
+    }
+    cell = _cell(study, lambda finding: _swing(finding, study.expected[finding.case]))
+
+    def shown(row: Case | str, scheme: str) -> str:
+        return by_row[row](scheme) if isinstance(row, str) else cell(row, scheme)
+
+    return _by_scheme(study, [*study.cases, *by_row], shown)
 
 
 def _least(study: Study, scheme: str) -> str:
@@ -171,52 +164,56 @@ def _least(study: Study, scheme: str) -> str:
         if finding is not None:
             good = finding.right
             step = finding.attempts[0].step if good is None else good.step
-            swings.append((study.rights[finding.case].rate * step, "<" if good is None else ""))
+            swings.append((study.expected[finding.case].rate * step, "<" if good is None else ""))
     if not swings:
         return NOT_RUN
     swing, below = min(swings)
     return f"{below}{swing:.2g}"
 
 
-def _swing(finding: Finding, right: Right) -> str:
-    return "-" if finding.right is None else f"{right.rate * finding.right.step:.2g}"
+def _swing(finding: Finding, expected: Expected) -> str:
+    return "-" if finding.right is None else f"{expected.rate * finding.right.step:.2g}"
 
 
-def _table(study: Study, cell: Callable[[Finding], str], last: Sequence[Sequence[str]] = ()) -> list[str]:
-    """Cases by schemes; `last`: rows below them."""
-    rows: list[Sequence[str]] = [["", *study.schemes]]
-    for case in study.cases:
-        findings = [study.finding(case, scheme) for scheme in study.schemes]
-        rows.append([case.name, *(NOT_RUN if one is None else cell(one) for one in findings)])
-    return _aligned([*rows, *last])
+def _table(study: Study, text: Callable[[Finding], str]) -> list[str]:
+    """Cases by schemes."""
+    return _by_scheme(study, study.cases, _cell(study, text))
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        "  ".join(
-            [f"{row[0]:<{widths[0]}}"]
-            + [f"{text:>{width}}" for text, width in zip(row[1:], widths[1:], strict=True)]
-        )
-        for row in rows
-    ]
+def _cell(study: Study, text: Callable[[Finding], str]) -> Callable[[Case, str], str]:
+    """The text of a case and a scheme, where they were run."""
+
+    def cell(case: Case, scheme: str) -> str:
+        finding = study.finding(case, scheme)
+        return NOT_RUN if finding is None else text(finding)
+
+    return cell
+
+
+def _by_scheme(study: Study, rows: Sequence[Row], text: Callable[[Row, str], str]) -> list[str]:
+    """A table with a column for each scheme; rows are cases, or names."""
+    columns = [Column[Row]((scheme,), lambda row, s=scheme: text(row, s)) for scheme in study.schemes]
+    return table(Column(("",), lambda row: row.name if isinstance(row, Case) else str(row)), columns, rows)
 
 
 def _theory(study: Study) -> list[str]:
     """Figures over what theory says, at the macro step that is common."""
-    rows = [["", *study.schemes]]
-    for case in study.cases:
-        if case.theory is None or case.first != FIRST_STEP:
-            continue
-        findings = [study.finding(case, scheme) for scheme in study.schemes]
-        for i, (figure, exact) in enumerate(zip(case.figures, case.theory.values, strict=True)):
-            shown = [
-                "-" if (value := _value(one, i)) is None else f"{value / exact:.5f}" for one in findings
-            ]
-            rows.append([f"{case.name}, {figure.title}", *shown])
-    if len(rows) == 1:
+    rows = {
+        f"{case.name}, {figure.title}": (case, i)
+        for case in study.cases
+        if case.theory is not None and case.first == FIRST_STEP
+        for i, figure in enumerate(case.figures)
+    }
+    if not rows:
         return []
-    return ["", f"over what theory says, macro step {1e6 * FIRST_STEP:g} us", *_aligned(rows)]
+
+    def shown(row: str, scheme: str) -> str:
+        case, i = rows[row]
+        value = _value(study.finding(case, scheme), i)
+        return "-" if value is None or case.theory is None else f"{value / case.theory.values[i]:.5f}"
+
+    heading = f"over what theory says, macro step {1e6 * FIRST_STEP:g} us"
+    return ["", heading, *_by_scheme(study, list(rows), shown)]
 
 
 def _value(finding: Finding | None, place: int) -> float | None:
@@ -225,19 +222,13 @@ def _value(finding: Finding | None, place: int) -> float | None:
     return attempt.values[place] if attempt is not None and attempt.values else None
 
 
-def write_tables(study: Study, folder: Path) -> None:
-    """stability.csv: a row per case and scheme; runs.csv: one per run. Full precision."""
-    with writing_to(folder):
-        write_records((_summary(finding) for finding in study.findings.values()), folder / "stability.csv")
-        runs = (
-            _run(study, finding, attempt)
-            for finding in study.findings.values()
-            for attempt in finding.attempts
-        )
-        write_records(runs, folder / "runs.csv")
+def _runs(study: Study) -> Iterator[Record]:
+    for finding in study.findings.values():
+        for attempt in finding.attempts:
+            yield _run(study, finding, attempt)
 
 
-def _summary(finding: Finding) -> Mapping[str, object]:
+def _summary(finding: Finding) -> Record:
     stable, right, wrong = finding.stable, finding.right, finding.wrong
     return {
         "case": finding.case,
@@ -247,13 +238,15 @@ def _summary(finding: Finding) -> Mapping[str, object]:
         "error_there_relative": stable and stable.error,
         "energy_residual_there_relative": stable and stable.residual,
         "first_wrong_macro_step_s": wrong and wrong.step,
-        "ledger_warned_at_first_wrong": None if finding.called is None else int(finding.called),
+        "ledger_warned_at_first_wrong": None
+        if finding.ledger_warned is None
+        else int(finding.ledger_warned),
     }
 
 
-def _run(study: Study, finding: Finding, attempt: Attempt) -> Mapping[str, object]:
+def _run(study: Study, finding: Finding, attempt: Attempt) -> Record:
     figures = next(case.figures for case in study.cases if case.name == finding.case)
-    right = study.rights[finding.case].values
+    expected = study.expected[finding.case].values
     values = attempt.values or (math.nan,) * len(figures)
     return {
         "case": finding.case,
@@ -267,74 +260,6 @@ def _run(study: Study, finding: Finding, attempt: Attempt) -> Mapping[str, objec
         "broke_off": attempt.broke,
         "figures": "; ".join(
             f"{figure.title} {value!r} (right: {exact!r})"
-            for figure, value, exact in zip(figures, values, right, strict=True)
+            for figure, value, exact in zip(figures, values, expected, strict=True)
         ),
     }
-
-
-Key = TypeVar("Key")
-Value = TypeVar("Value")
-
-
-@dataclass(frozen=True)
-class Task:
-    """A case and a scheme, as they are handed to a process."""
-
-    case: Case
-    scheme: str
-    right: Right
-
-
-def study_stability(
-    cases: Sequence[Case],
-    schemes: Sequence[str],
-    folder: Path,
-    jobs: int = 2,
-    done: Callable[[], object] = lambda: None,
-) -> Study:
-    """Examine every case with every scheme, and write tables and picture into `folder`.
-
-    done() after each reference and each finding. After Ctrl-C what is there is written, and the rest is
-    INTERRUPTED. Starts processes: see `touchdown.master.common.pool`.
-    """
-    rights, failed = _parted([case.name for case in cases], run_all(carrying(reference), cases, jobs, done))
-    tasks: list[Task] = []
-    if not _interrupted(failed):
-        begun = [case for case in cases if case.name in rights]
-        tasks = [Task(case, scheme, rights[case.name]) for case in begun for scheme in schemes]
-    pairs = [(task.case.name, task.scheme) for task in tasks]
-    findings, lost = _parted(pairs, run_all(carrying(_examine), tasks, jobs, done))
-    failed |= {f"{case} with {scheme}": outcome for (case, scheme), outcome in lost.items()}
-    why = {what: outcome.reason for what, outcome in failed.items()}
-    study = Study(cases, schemes, rights, findings, why, _interrupted(failed))
-    write_tables(study, folder)
-    if findings:
-        draw_chart(study, folder / "stability.png")
-    return study
-
-
-def _parted(
-    keys: Iterable[Key], outcomes: Iterable[TaskOutcome[Value]]
-) -> tuple[dict[Key, Value], dict[Key, TaskOutcome[Value]]]:
-    """What the tasks gave, and how those ended that gave nothing."""
-    given: dict[Key, Value] = {}
-    failed: dict[Key, TaskOutcome[Value]] = {}
-    for key, outcome in zip(keys, outcomes, strict=True):
-        if outcome.value is None:
-            failed[key] = outcome
-        else:
-            given[key] = outcome.value
-    return given, failed
-
-
-def _interrupted(failed: Mapping[str, TaskOutcome[Any]]) -> bool:
-    return any(outcome.ended is Ended.INTERRUPTED for outcome in failed.values())
-
-
-def size(cases: Sequence[Case], schemes: Sequence[str]) -> int:
-    """How often a study calls `done`."""
-    return len(cases) * (1 + len(schemes))
-
-
-def _examine(task: Task) -> Finding:
-    return examine(task.case, task.scheme, task.right)

@@ -203,7 +203,7 @@ class _Bearings:
 def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design, dict[str, str]]:
     """A machine with a rotor's file, which goes along with the places of its bearings in it."""
     source = os.fspath(wanted.rotor or "")
-    seats = wanted.at if wanted.at is not None else _seats(shaft)
+    seats = wanted.at if wanted.at is not None else [s.name for s in shaft.seats]
     magnets = wanted.amb if wanted.amb is not None else shaft.levitated_at
     touchdown = supports(shaft, "bearing", seats, "--at")
     supports(shaft, "amb", magnets, "--amb")
@@ -227,11 +227,6 @@ def _flexible(wanted: Wanted, shaft: Shaft, bearings: _Bearings) -> tuple[Design
         mount=chosen_mount(wanted.mount),
     )
     return design, bearings.files | {ROTOR_FILE: rewritten(text_of(path), shaft, placed)}
-
-
-def _seats(shaft: Shaft) -> list[str]:
-    """Stations that do not hold the rotor at the start: those where it touches down."""
-    return [station.name for station in shaft.stations if station.name not in shaft.levitated_at]
 
 
 def _rigid(wanted: Wanted, mass: float, title: str, bearings: _Bearings) -> Design:

@@ -20,7 +20,7 @@ from touchdown.master.coupling import steppers
 from touchdown.master.coupling.steppers.gauss_seidel import GaussSeidel
 from touchdown.master.scene import schemes
 from touchdown.master.studies.comparison import schemes as compare
-from touchdown.master.studies.comparison.schemes import Asked
+from touchdown.master.studies.comparison.schemes import Options
 
 SCENE = touchdown.load("disk-caged-simplified").set({"run.duration": "1 ms"})
 
@@ -266,14 +266,14 @@ def test_numbers_of_numpy_are_numbers() -> None:
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[Asked]:
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[Options]:
     """What comparisons are asked for, instead of being made."""
-    found: list[Asked] = []
+    found: list[Options] = []
     monkeypatch.setattr(compare, "compare_schemes", lambda scene, asked, begin: found.append(asked))
     return found
 
 
-def test_a_single_one_is_one(asked: list[Asked], tmp_path: Path) -> None:
+def test_a_single_one_is_one(asked: list[Options], tmp_path: Path) -> None:
     touchdown.compare(SCENE, "hold", 2e-5)
     touchdown.compare(SCENE, ["hold", "hold"], np.array([2e-5, 1e-5]))
     assert [one.schemes for one in asked] == [("hold",), ("hold",)]

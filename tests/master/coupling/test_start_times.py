@@ -26,7 +26,7 @@ from touchdown.master.results.spectra import WINDOW_S, WINDOW_START_S, windows
 from touchdown.master.scene.file import load_scene, parse, read_resolved
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.comparison.models import compare_models
-from touchdown.master.studies.comparison.schemes import Asked, compare_schemes
+from touchdown.master.studies.comparison.schemes import Options, compare_schemes
 from touchdown.master.studies.drop.first_impact import MIN_SPAN, shortened
 from touchdown.master.studies.drop.measured import land, plan
 from touchdown.master.studies.drop.monolithic import Monolith
@@ -248,7 +248,7 @@ def test_what_is_timed_is_warmed_up_from_the_start_on() -> None:
         assert simulate(brief(scene, system, 2), system).steps == 2
     found = compare_models(scene, [], 1e-3, 1, True)
     assert found.drop.first == pytest.approx(8.4e-3, abs=0.1e-3)  # it is held until the start
-    asked = Asked(("interface",), (1e-4,), duration=1e-3, repeat=1, in_process=True)
+    asked = Options(("interface",), (1e-4,), duration=1e-3, repeat=1, in_process=True)
     assert compare_schemes(scene, asked).rows[0].wall is not None
 
 

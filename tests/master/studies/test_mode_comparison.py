@@ -12,7 +12,7 @@ from touchdown.master.cli import main
 from touchdown.master.common.errors import FAILED, TouchdownError
 from touchdown.master.scene.file import load_scene
 from touchdown.master.studies.comparison.modes import Comparison, compare_modes, parse_modes, runs
-from touchdown.master.studies.comparison.modes_report import report_lines, write_report
+from touchdown.master.studies.comparison.modes_report import findings
 from touchdown.master.studies.drop.first_impact import AVERAGING_TIME, Trace
 
 ROTOR_I = "rotor1-9000"
@@ -110,7 +110,7 @@ def test_the_highest_frequency_is_known_where_the_seats_are_told_of_it(rotor_i: 
 
 
 def test_the_table_says_what_the_reference_is(rotor_i: Comparison) -> None:
-    text = report_lines(rotor_i)
+    text = findings(rotor_i).lines
     assert "macro step 1 us, energy residual" in text[1]
     assert text[2].startswith("  A: first impact 7.")
     assert [line.split()[0] for line in text[-3:]] == ["3", "3", "all"]
@@ -118,7 +118,7 @@ def test_the_table_says_what_the_reference_is(rotor_i: Comparison) -> None:
 
 
 def test_what_is_written(rotor_i: Comparison, tmp_path: Path) -> None:
-    write_report(rotor_i, tmp_path)
+    findings(rotor_i).write(tmp_path)
     rows = table(tmp_path)
     assert [row["run"] for row in rows] == ["reference", "coupling", "modes", "modes"]
     assert [row["modes"] for row in rows] == ["all", "all", "3", "3"]
@@ -130,7 +130,7 @@ def test_what_is_written(rotor_i: Comparison, tmp_path: Path) -> None:
     assert rows[0]["highest_frequency_Hz"] == ""
     assert (tmp_path / "modes.png").stat().st_size > 10_000
     with pytest.raises(TouchdownError, match="choose another folder with -o"):
-        write_report(rotor_i, tmp_path / "missing")
+        findings(rotor_i).write(tmp_path / "missing")
 
 
 def table(folder: Path) -> list[dict[str, str]]:

@@ -19,7 +19,7 @@ from touchdown.master.common.pool import INTERRUPTED, TaskOutcome
 from touchdown.master.coupling.observer import Moment
 from touchdown.master.coupling.simulation import open_system
 from touchdown.master.coupling.system import System
-from touchdown.master.studies.comparison import stability_report as stability_study
+from touchdown.master.studies.comparison import stability as stability_study
 from touchdown.master.studies.comparison.stability import (
     FIRST_STEP,
     GROWTH_LIMIT,
@@ -27,16 +27,15 @@ from touchdown.master.studies.comparison.stability import (
     VISIBLE_ERROR,
     Attempt,
     Bounds,
+    Expected,
     Finding,
-    Right,
+    Study,
     attempted,
-    bounce,
-    cases,
-    chosen,
     reference,
     search,
 )
-from touchdown.master.studies.comparison.stability_report import Study, report_lines
+from touchdown.master.studies.comparison.stability_cases import bounce, cases, chosen
+from touchdown.master.studies.comparison.stability_report import report_lines
 
 
 def judged(right_up_to: float, stable_up_to: float, warned: bool = True) -> Callable[[float], Attempt]:
@@ -88,7 +87,9 @@ def test_a_limit_is_what_all_smaller_steps_bear() -> None:
 
 def test_the_ledger_is_asked_at_the_first_step_that_is_wrong() -> None:
     def called(warned: bool, limit: float) -> bool | None:
-        return Finding("case", "scheme", search(judged(limit, 1.0, warned), STEPS, FIRST_STEP)).called
+        return Finding(
+            "case", "scheme", search(judged(limit, 1.0, warned), STEPS, FIRST_STEP)
+        ).ledger_warned
 
     assert called(True, 1e-5) is True
     assert called(False, 1e-5) is False
@@ -198,7 +199,7 @@ def test_tables_show_limits_and_where_the_ledger_was_silent() -> None:
             case.name, "interface", search(judged(1.0, 1.0), STEPS, FIRST_STEP)
         ),
     }
-    right = Right((1.0,), 1.0, 1.0, rate=1e4)
+    right = Expected((1.0,), 1.0, 1.0, rate=1e4)
     schemes = ("hold", "interface", "velocity")
     text = report_lines(
         Study([replace(case, theory=None)], schemes, {case.name: right}, found, {"it": "why"})

@@ -15,16 +15,15 @@ from touchdown.master.coupling.system import System
 from touchdown.master.scene.file import load_scene
 from touchdown.master.scene.scene import Scene
 from touchdown.master.studies.comparison import schemes as work_precision
+from touchdown.master.studies.comparison.engine import Alarm, Row
 from touchdown.master.studies.comparison.schemes import (
-    Alarm,
-    Asked,
     Comparison,
+    Options,
     Order,
-    Row,
     compare_schemes,
     pieces,
 )
-from touchdown.master.studies.comparison.schemes_report import advice, report_lines
+from touchdown.master.studies.comparison.schemes_report import advice, findings
 from touchdown.master.studies.drop.first_impact import shortened
 from touchdown.master.studies.drop.reference import POSITION
 
@@ -34,7 +33,7 @@ STEPS = (1e-5, 2e-5, 4e-5, 8e-5)
 
 @pytest.fixture(scope="module")
 def disk() -> Comparison:
-    asked = Asked(("hold", "acceleration", "interface"), STEPS, repeat=1, in_process=True)
+    asked = Options(("hold", "acceleration", "interface"), STEPS, repeat=1, in_process=True)
     # holding the motion makes 1.4 % of the turnover at 10 us, 17 % at 80 us
     limits = {"run.warn_residual": 0.005, "run.stop_residual": 0.06}
     scene = shortened(load_scene(SCENE)).set(limits)
@@ -78,14 +77,14 @@ def test_the_worst_ball_is_measured_where_there_is_one(disk: Comparison) -> None
     held = [row(disk, "hold", step).errors["ball"] for step in STEPS]
     assert held[0] < held[1] < held[2]
     assert row(disk, "interface", 2e-5).errors["ball"] < 1e-3
-    about = report_lines(disk)[1]
+    about = findings(disk).lines[1]
     assert f"worst ball {disk.landing.peaks('A')['ball']:.5g} N" in about
     assert "cage" not in about
 
 
 def test_an_impact_cut_short_is_compared_up_to_there() -> None:
     """While the force still rises, each run is held against the reference at its own last instant."""
-    asked = Asked(("interface",), (1e-5, 8e-5), duration=2e-4, repeat=1, in_process=True)
+    asked = Options(("interface",), (1e-5, 8e-5), duration=2e-4, repeat=1, in_process=True)
     found = compare_schemes(shortened(load_scene(SCENE)), asked)
     _, end = found.landing.impacts["A"]
     assert end == pytest.approx(found.landing.end)
@@ -132,13 +131,13 @@ def test_a_ledger_that_holds_goes_first(disk: Comparison) -> None:
 
 
 def test_nothing_good_enough_is_said(disk: Comparison) -> None:
-    strict = Comparison(**{**vars(disk), "asked": Asked(wanted=1e-20)})
+    strict = Comparison(**{**vars(disk), "options": Options(target=1e-20)})
     assert strict.recommended() is None
     assert "none of these" in advice(strict)[0]
 
 
 def test_the_table_has_a_line_for_each_row(disk: Comparison) -> None:
-    text = report_lines(disk)
+    text = findings(disk).lines
     assert sum(line.startswith("interface ") for line in text) == len(STEPS) + 1  # and its orders
     assert any("Radau 1e-06" in line and "monolithic" in line for line in text)
     assert any(line.startswith("hold") and line.endswith("ledger stops") for line in text)
@@ -154,20 +153,20 @@ def test_a_scheme_that_fails_says_so_in_its_row(monkeypatch: pytest.MonkeyPatch)
         return simulate(run, system, **options)
 
     monkeypatch.setattr(work_precision, "simulate", simulated)
-    asked = Asked(("interface", "hold"), (2e-5, 1e-4), repeat=1, in_process=True)
+    asked = Options(("interface", "hold"), (2e-5, 1e-4), repeat=1, in_process=True)
     found = compare_schemes(scene, asked)
     good, broken = row(found, "interface", 1e-4), row(found, "hold", 1e-4)
     assert not good.failed
     assert good.errors
     assert (broken.failed, broken.errors, broken.wall) == ("it broke", {}, None)
     assert found.orders("hold") == dict.fromkeys(("position", "velocity", "force", "ball", "energy"))
-    assert any(line.endswith("100 us  it broke") for line in report_lines(found))
+    assert any(line.endswith("100 us  it broke") for line in findings(found).lines)
 
 
 def test_a_drop_that_never_lands() -> None:
     scene = load_scene(SCENE).set({"run.duration": 1e-3})
     with pytest.raises(TouchdownError, match=r"nothing touches down within run\.duration = 0\.001 s"):
-        compare_schemes(scene, Asked())
+        compare_schemes(scene, Options())
 
 
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -194,7 +193,7 @@ def table(path: Path) -> list[dict[str, str]]:
     [
         (("disk",), "unknown scene disk"),
         ((SCENE, "--schemes", "hold,interfaces"), "unknown scheme interfaces; did you mean"),
-        ((SCENE, "--schemes", "hold,,interface"), "a value is missing between the commas"),
+        ((SCENE, "--schemes", "hold,,interface"), "a name is missing between the commas"),
         ((SCENE, "--macro-steps", "5,20 m"), "--macro-steps"),
         ((SCENE, "--macro-steps", "-5 us"), "--macro-steps -5 us must be above 0"),
         ((SCENE, "--macro-steps", "20 ms"), "20000 us is longer than what is compared"),
