@@ -59,9 +59,7 @@ def reference(name: str, folder: Path) -> str:
         path = (folder / Path(file).expanduser()).absolute()
     elif (mine := own(folder)) and name in mine:
         path, inside = (folder / OWN_FILE).absolute(), name
-    elif _named(name) is not None:
-        return name
-    elif (called := usual(name)) in built_in():
+    elif (called := name if _named(name) is not None else _usual(name)) is not None:
         return called
     elif mine and mounted(name, lambda begins, angle: mine.get(begins) if angle is None else None):
         path, inside = (folder / OWN_FILE).absolute(), name
@@ -93,6 +91,13 @@ def bearing(found: str) -> Bearing:
 def _named(name: str) -> Bearing | None:
     """The bearing with a designation, with what stands behind it (`mounting`); None where there is none."""
     return mounted(name, _plain)
+
+
+def _usual(name: str) -> str | None:
+    """A name that begins with a designation of JIS as ISO has it; None where there is no such bearing."""
+    begins, *suffixes = name.split(" ")
+    called = " ".join((usual(begins), *suffixes))
+    return None if _named(called) is None else called
 
 
 def _plain(name: str, contact_angle: float | None) -> Bearing | None:
