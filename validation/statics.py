@@ -145,8 +145,12 @@ PUBLISHED_218 = (
 
 
 def b218(load: float, stiffness: float | None = None) -> Balance:
-    """The 218 under a thrust (N); stiffness: of a ball on both races (N/m^1.5), or its own."""
+    """The 218 under a thrust (N); stiffness: of a ball on both races (N/m^1.5), or its own.
+
+    Tilts are about the centre of the circle of the inner groove's centres.
+    """
     (row,) = B218.rows()
+    row = row._replace(inner_at=0.0, outer_at=row.outer_at - row.inner_at)
     row = row if stiffness is None else row._replace(stiffness=stiffness)
     return balance([row], B218.angles(), (0.0, 0.0, load, 0.0, 0.0))
 
@@ -206,19 +210,14 @@ def thrust_218() -> list[Row]:
     why="with the published stiffness of a contact nothing else is left to differ",
 )
 def stiffness_218() -> list[Row]:
-    """Slope of the load at 17.8 kN, with the published 1.473318e10 N/m^1.5 for a ball on both races."""
+    """Slope of the load at 17.8 kN, with the published 1.473318e10 N/m^1.5 for a ball on both races. A tilt
+    is one about the centre of the circle of the inner groove's centres; which point theirs is about is not
+    told, and about the middle of the balls, 0.33 mm away, it would be 1.15 % less."""
     found = b218(17.8e3, 1.473318e10).stiffness
     return [
         Row("radial stiffness", "N/m", 4.86428e8, found[0, 0]),
         Row("axial stiffness", "N/m", 7.66931e8, found[2, 2]),
-        Row(
-            "tilt stiffness",
-            "N m/rad",
-            1.52319e6,
-            found[4, 4],
-            known="the reason is not known: the radius of the groove's centres is the lever here; "
-            "both other stiffnesses agree to 1e-5, and ours is the derivative of its own load",
-        ),
+        Row("tilt stiffness", "N m/rad", 1.52319e6, found[4, 4]),
     ]
 
 
