@@ -128,19 +128,20 @@ def check(
     role: str | None = None,
     names: Mapping[str, str] | None = None,
     call_timeout: float = CALL_TIMEOUT,
+    sample_time: float = 0.0,
 ) -> Report:
     """Check the FMU at a path, or one of the project's by name: valid, what it has ports for, a dry run,
     and the experiments that it brings along, held to their results.
 
-    role: "bearing", "rotor", "amb" or "housing", whether it can stand in for one; names: what it calls the
-    variables of the contract. An FMU at a path runs in a process of its own, where each call may take
-    call_timeout (s). The report's `problems` are empty where all is well. Raises TouchdownError
-    where there is nothing to check.
+    role: "bearing", "rotor", "amb", "housing" or "controller", whether it can stand in for one; names: what
+    it calls the variables of the contract. An FMU at a path runs in a process of its own, where each call
+    may take call_timeout (s). sample_time (s) is a controller's; 0: what its FMU states, or 100 us. The
+    report's `problems` are empty where all is well. Raises TouchdownError where there is nothing to check.
 
     >>> touchdown.check("bushing", role="bearing").problems
     []
     """
-    return check_fmu(os.fspath(fmu), role, names, call_timeout)
+    return check_fmu(os.fspath(fmu), role, names, call_timeout, sample_time)
 
 
 def _recipe(name: str, native: bool) -> Recipe:

@@ -18,10 +18,12 @@ from .bonds.bond import found
 from .connections import (
     Attachment,
     Connection,
+    Controlled,
     attachment,
     check_connections,
     connection,
     control_connections,
+    controlled,
     port_connections,
     recognised,
     require_real,
@@ -34,6 +36,8 @@ UNSCALED_UNITS = (None, "", "1", "m", "rad", "rad/s", "m/s2", "N/m")
 FAR_LONGER = 10.0  # than the step that an FMU proposes, which is no bound; above, it is said
 STEP_MATCH = 1e-6  # of a declared step; what differs by less is the same
 GRAVITY = "gravity"
+JACOBI = "jacobi"  # sequence in which all step at once, and give at the end of their own steps
+SAMPLE_TIME = "sample_time"  # s, of an actuator; 0: it does not sample
 ORDER, LEAD = "interface.order", "interface.lead"  # parameters that follow from the scheme
 
 
@@ -78,14 +82,67 @@ def _wired(scene: Scene, components: dict[str, Component], hear: Hearing) -> Sys
     if scheme.lead:
         _require_lead(attachments, components)
     step = scene.run.macro_step
-    every = {name: spec.steps_in_one(step, name) for name, spec in scene.components.items()}
+    every = {name: spec.every for name, spec in scene.components.items()}
+    periods = {name: spec.sampled for name, spec in scene.components.items() if spec.sampled}
+    for name, period in periods.items():
+        _check_sampled(name, period, step, controlled(connections), components, settings)
     seats = [_seat(a, scene, components, settings) for a in attachments if a.on_journal]
     heavy = [_heavy(name, component, settings) for name, component in components.items()]
-    told = [*left_out, *declared_steps(scene, components), *plausibility_warnings(seats)]
+    told = [*left_out, *declared_steps(scene, components), *_early(scene, attachments, connections)]
+    told += plausibility_warnings(seats)
     told += weight_warnings(one for one in heavy if one is not None)
     components = hear(components, attachments)
     start = scene.run.start_time
-    return System(components, attachments, connections, settings, every, told, bonds, start)
+    return System(components, attachments, connections, settings, every, told, bonds, start, periods)
+
+
+def _check_sampled(
+    name: str,
+    period: float,
+    step: float,
+    loops: Sequence[Controlled],
+    components: Mapping[str, Component],
+    settings: Mapping[tuple[str, str], float],
+) -> None:
+    """Raise TouchdownError where a component's `sampled` (s) does not go with what it controls.
+
+    What it makes of a sample acts at the next tick only because its actuator samples, and waits, itself.
+    """
+    actuators = [loop.actuator for loop in loops if loop.controller == name]
+    if period < step * (1.0 - STEP_MATCH):
+        raise TouchdownError(
+            f"{name}.sampled = {period:g} s is shorter than the macro step {step:g} s; take a smaller one"
+        )
+    if not actuators:
+        raise TouchdownError(
+            f"{name}.sampled: {name} controls nothing (`control` of the scene); give it every = "
+            f"{max(1, round(period / step))}, macro steps that it takes in one"
+        )
+    for actuator in actuators:
+        variable = components[actuator].variables.get(SAMPLE_TIME)
+        own = settings.get((actuator, SAMPLE_TIME), variable.start if variable else None) or 0.0
+        if abs(own - period) > STEP_MATCH * period:
+            what = f"{actuator}.{SAMPLE_TIME} is {own:g} s" if variable else f"{actuator} does not sample"
+            raise TouchdownError(
+                f"{name}.sampled = {period:g} s, and {what}: the actuator takes the samples, so it must "
+                "have the same time"
+            )
+
+
+def _early(
+    scene: Scene, attachments: Sequence[Attachment], connections: Iterable[Connection]
+) -> Iterator[str]:
+    """Components whose outputs act before their own, longer step ends, a line each."""
+    attached = {name for a in attachments for name in (a.bearing, a.body)}
+    gives = {c.source for c in connections}
+    for name, spec in scene.components.items():
+        if spec.every > 1 and name in gives - attached and scene.run.scheme.sequence != JACOBI:
+            early = (spec.every - 1) * scene.run.macro_step
+            yield (
+                f"{name} takes {spec.every} macro steps in one; what it gives acts from the end of the "
+                f"first on, {early:g} s before the end of its own, unless it holds it back itself. A "
+                "controller has `sampled` instead"
+            )
 
 
 def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
@@ -107,8 +164,7 @@ def _check_gaps(scene: Scene, components: Mapping[str, Component]) -> None:
 def declared_steps(scene: Scene, components: Mapping[str, Component]) -> Iterator[str]:
     """What FMUs declare of their steps that does not go with the macro step, a line each."""
     for name, component in components.items():
-        step = scene.run.macro_step
-        step *= scene.components[name].steps_in_one(step, name)
+        step = scene.components[name].step(scene.run.macro_step)
         inner, proposed = component.inner_step, component.made_for_step
         if inner and (
             step < inner * (1.0 - STEP_MATCH) or abs(step / inner - round(step / inner)) > STEP_MATCH

@@ -6,6 +6,7 @@ have. A rotor's elastic modes cross with them where the scheme asks for it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import count
@@ -241,6 +242,7 @@ def sensor_connections(pair: tuple[str, str], components: Mapping[str, Component
         yield way.needed(variable, f"sense {a.title}")
 
 
+SENSED_AXIS = r"axis\[(\d+)\]\.sensed"
 AXIS = "axis[{}].{}"  # a variable of an axis, counted from 1
 TOLD = ("sensed", "hold")  # of an axis, to the controller
 TOLD_OF_ALL = ("tick", "period")  # to the controller: samples, and the time between them
@@ -264,6 +266,26 @@ def control_connections(
         loop = _Loop(components[controller], components[actuator], used.get(controller, 0))
         yield from loop.connections()
         used[controller] = loop.first + loop.axes
+
+
+@dataclass(frozen=True)
+class Controlled:
+    """An actuator, and where its axes stand among those of its controller."""
+
+    controller: str
+    actuator: str
+    first: int  # axis of the controller that is the actuator's first, from 0
+
+
+def controlled(connections: Iterable[Connection]) -> list[Controlled]:
+    """Which actuator tells which controller where the rotor is, in the connections' order."""
+    first: dict[tuple[str, str], int] = {}
+    for c in connections:
+        axes = [re.fullmatch(SENSED_AXIS, name) for name in (c.output, c.input)]
+        if axes[0] and axes[1]:
+            here, there = (int(axis[1]) for axis in axes if axis)
+            first.setdefault((c.target, c.source), there - here)
+    return [Controlled(*pair, place) for pair, place in first.items()]
 
 
 @dataclass(frozen=True)

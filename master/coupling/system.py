@@ -29,6 +29,7 @@ class System:
     remarks: Sequence[str] = ()  # what is to be said of it before it runs, a line each
     bonds: Sequence[Bond] = ()
     start: float = 0.0  # s, where its components begin
+    periods: Mapping[str, float] = field(default_factory=dict[str, float])  # s, of components that sample
     order: list[str] = field(init=False)  # bearings, and what gives a bond's force, before what takes it
     signals: np.ndarray = field(init=False)
     position: Mapping[str, int] = field(init=False)  # of COMPONENT.VARIABLE in the signals
@@ -56,8 +57,11 @@ class System:
 
     @property
     def divisible(self) -> bool:
-        """Whether all components take the same macro steps, of any length."""
-        return all(self.every[name] == 1 and c.any_step for name, c in self.components.items())
+        """Whether all components take the same macro steps, of any length, but for those that sample."""
+        return all(
+            self.every[name] == 1 and (c.any_step or name in self.periods)
+            for name, c in self.components.items()
+        )
 
     def __contains__(self, name: str) -> bool:
         """Whether there is COMPONENT.VARIABLE."""

@@ -14,7 +14,8 @@ from ..components.component import NUMBERS, Component
 from ..components.fmu import ArchivedFmu
 from ..components.loading import Stepping, foreign, load_component
 from ..scene.run_spec import CALL_TIMEOUT
-from .contract import BEARING, ROLES, Report, check_ports, check_role, ports
+from . import press_controller
+from .contract import BEARING, CONTROLLER, ROLES, Report, check_ports, check_role, ports
 from .experiments import Experiment, experiments, largest_deviation
 from .press import press
 
@@ -29,13 +30,15 @@ def check_fmu(
     role: str | None = None,
     names: Mapping[str, str] | None = None,
     call_timeout: float = CALL_TIMEOUT,
+    sample_time: float = 0.0,
 ) -> Report:
     """Check the FMU at a path, or one of the project's own by name.
 
-    With a role ("bearing", "rotor", "amb", "housing"), whether it can stand in for one; `names` gives what
-    it calls the variables of the contract. One at a path is stepped in a process of its own, and each call
-    may take `call_timeout` (s). Raises TouchdownError where there is nothing to check (missing, damaged, no
-    co-simulation here).
+    With a role ("bearing", "rotor", "amb", "housing", "controller"), whether it can stand in for one;
+    `names` gives what it calls the variables of the contract. One at a path is stepped in a process of its
+    own, and each call may take `call_timeout` (s). A controller is told a position every `sample_time` (s;
+    0: by the step that it states, or `press_controller.PERIOD`). Raises TouchdownError where there is
+    nothing to check (missing, damaged, no co-simulation here).
     """
     stepping = Stepping(isolate=foreign(name), call_timeout=call_timeout)
     component = load_component("checked", name, stepping=stepping)
@@ -49,11 +52,14 @@ def check_fmu(
             check_role(component, role, report)
         _dry_run(component, report)
     finally:
+        period = sample_time or component.inner_step or press_controller.PERIOD
         problem = component.close()
     if problem:
         report.problems.append(f"at its end: {problem}")
     if role == BEARING and not report.problems:
         _press(name, names or {}, stepping, report)
+    if role == CONTROLLER and not report.problems:
+        press_controller.press(lambda: _renamed(name, names or {}, stepping), period, report)
     try:
         for experiment in experiments(component.folder):
             _try_experiment(experiment, name, stepping, report)
@@ -65,11 +71,21 @@ def check_fmu(
     return report
 
 
-def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: Report) -> None:
-    """Press the journal of a bearing, in an instance of its own."""
+def _renamed(name: str, names: Mapping[str, str], stepping: Stepping) -> Component:
+    """An instance that calls its variables as the contract does."""
     component = load_component("checked", name, stepping=stepping)
     try:
         component.rename(names)
+    except BaseException:
+        component.close()
+        raise
+    return component
+
+
+def _press(name: str, names: Mapping[str, str], stepping: Stepping, report: Report) -> None:
+    """Press the journal of a bearing, in an instance of its own."""
+    component = _renamed(name, names, stepping)
+    try:
         press(component, report)
     finally:
         component.close()

@@ -170,6 +170,8 @@ def _refuse_what_it_cannot(system: System) -> None:
     for name, every in system.every.items():
         if every != 1:
             raise TouchdownError(f"a container has one macro step; remove `every` of component {name}")
+        if name in system.periods:
+            raise TouchdownError(f"a container has one macro step; remove `sampled` of component {name}")
     for c in system.connections:
         if c.scale:
             raise TouchdownError(

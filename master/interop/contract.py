@@ -11,6 +11,7 @@ from enum import StrEnum
 
 from ...modelkit.ports import MODES
 from ...modelkit.variables import Causality
+from ..common.errors import TouchdownError
 from ..components.component import (
     FORCE,
     JUMP,
@@ -31,6 +32,8 @@ from ..components.component import (
     Kind,
     Variable,
 )
+from ..coupling.connections import AXIS, SET_POINTS, TOLD
+from ..coupling.controller_alone import axes_of, set_point
 from ..coupling.ledger.auditor import CLEARANCE, REPORT
 
 TAKING = (Causality.INPUT,)
@@ -94,12 +97,13 @@ class Role:
     parameters: Mapping[str, str] = field(default_factory=dict)  # names and units
 
 
-BEARING = "bearing"
+BEARING, AMB, CONTROLLER = "bearing", "amb", "controller"
 ROLES = {
     BEARING: Role("a bearing", Side.BEARING, ("journal",), ("housing",)),
-    "amb": Role("a magnetic bearing", Side.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
+    AMB: Role("a magnetic bearing", Side.BEARING, ("journal",), ("housing",), {"shutdown_time": "s"}),
     "rotor": Role("a rotor", Side.BODY),  # whatever its seats are called
     "housing": Role("a housing", Side.BODY, ("seat",)),
+    CONTROLLER: Role("a controller", Side.SENSOR),  # it takes signals alone
 }
 
 
@@ -117,6 +121,9 @@ def check_ports(component: Component, report: Report) -> None:
 
 def check_role(component: Component, role: str, report: Report) -> None:
     """Check what a component needs beyond the ports it has to be that (a key of ROLES)."""
+    if role == CONTROLLER:
+        _check_controller(component, report)
+        return
     wanted = ROLES[role]
     sides = ports(component)
     for port in (*wanted.ports, *(p for p in wanted.optional if p in sides)):
@@ -132,12 +139,33 @@ def check_role(component: Component, role: str, report: Report) -> None:
         )
     if role == BEARING:
         report.lines += _would_bring_more(component)
-    for name, unit in wanted.parameters.items():
+    asked = {} if role == AMB and axes_of(component) else wanted.parameters  # actuators are switched off
+    for name, unit in asked.items():
         variable = component.variables.get(name)
         if variable is None or variable.causality is not Causality.PARAMETER:
-            report.problems.append(f"{name} is missing (parameter in {unit}); scenes count from it")
+            report.lines.append(
+                f"it has no {name} (parameter in {unit}), from which most scenes count; give them a time "
+                'instead, such as zero = "20 ms"'
+            )
         else:
             _check_variable(variable, (Causality.PARAMETER,), unit, report)
+
+
+def _check_controller(component: Component, report: Report) -> None:
+    """Check the variables by which an actuator is controlled, axis by axis."""
+    axes = axes_of(component)
+    if not axes:
+        name = AXIS.format(1, TOLD[0])
+        report.problems.append(f"{name} is missing (input in m); no controller works without it")
+    for axis in axes:
+        _check_variable(component.variables[AXIS.format(axis, TOLD[0])], TAKING, "m", report)
+        try:
+            name = set_point(component, axis)
+        except TouchdownError as error:
+            report.problems.append(str(error))
+            continue
+        unit = "A" if name.endswith(SET_POINTS[0]) else "N"
+        _check_variable(component.variables[name], GIVING, unit, report)
 
 
 def _would_bring_more(component: Component) -> list[str]:

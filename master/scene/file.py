@@ -31,7 +31,8 @@ fmu = "rigid_rotor"   # a name of the project's own, or the path of an .fmu
 preset = "6004"       # a bearing of the catalogue: its values, as far as the FMU has them; your own by its
                       # name in bearings.toml beside the scene, or by FILE.toml:NAME
 every = 2             # macro steps of the run that it takes in one (default: 1)
-sampled = "100 us"    # or how long its steps are, a multiple of macro_step: those of a controller
+sampled = "100 us"    # a controller's: it takes one step for each sample of its actuator, at the end of
+                      # the macro step in which that lies; macro steps need not divide it
 isolate = true        # step its FMU in a process of its own (default: false)
 native = true         # one of the project's own: take its FMU that needs no Python (default: false)
 settings = "FILE.toml" # what that file's [set] has for a component of this name, as `import-mount` and

@@ -105,7 +105,6 @@ def _listed(listed: Sequence[object], where: str) -> BondSpec:
 
 INCLINATION = "inclination"  # of the machine, and of each component that has weight
 UPRIGHT = 0.5 * math.pi + 1e-9  # rad, the most that a shaft is inclined, with rounding
-STEP_MATCH = 1e-6  # of a number of steps; what differs by less is the same
 MAX_TITLE_CHANGES = 3  # changes that a title names
 _DIGEST = re.compile(r"_[0-9a-f]{16}$")  # of a rotor made in Python
 
@@ -167,25 +166,16 @@ class ComponentSpec:
     native: bool = False  # the project's own: its FMU is the native one
     instead_of: str = ""  # what it was swapped for
     own: tuple[str, ...] = ()  # of `set` and `preset`: set by the user beside the scene, to stay in a swap
-    sampled: float = 0.0  # s, the length of its steps; 0: `every` counts
+    sampled: float = 0.0  # s, from one of its steps to the next; 0: `every` counts
 
     @property
     def set_beside(self) -> dict[str, object]:
         """What the user set in it beside the scene, by name."""
         return {name: self.preset if name == "preset" else self.set[name] for name in self.own}
 
-    def steps_in_one(self, macro_step: float, where: str) -> int:
-        """How many of the run's macro steps (s) it takes in one. Raises TouchdownError where none fit."""
-        if not self.sampled:
-            return self.every
-        ratio = self.sampled / macro_step
-        number = round(ratio)
-        if number < 1 or abs(ratio - number) > STEP_MATCH * number:
-            raise TouchdownError(
-                f"{where}.sampled = {self.sampled:g} s is no multiple of the macro step {macro_step:g} s; "
-                f"take one of {self.sampled / max(math.ceil(ratio), 1):g} s"
-            )
-        return number
+    def step(self, macro_step: float) -> float:
+        """How long its own steps are (s), where the run's are `macro_step` (s)."""
+        return self.sampled or self.every * macro_step
 
     def swapped(self, fmu: str) -> ComponentSpec:
         """What another FMU in its place starts from."""

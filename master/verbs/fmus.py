@@ -106,6 +106,7 @@ BUILD = Verb("build", "build the FMUs", BUILD_EXAMPLES, _declare_build, _execute
 CHECK_EXAMPLES = (
     "touchdown check simplified_caged",
     "touchdown check my-bearing.fmu --as bearing --names my-names.toml",
+    "touchdown check amb_controller --as controller",
 )
 
 
@@ -113,7 +114,7 @@ def _declare_check(verb: argparse.ArgumentParser) -> None:
     """Its options."""
     fmus = verb.add_argument("fmus", nargs="+", help="paths of .fmu files, or names of the project's own")
     complete(fmus, completion.fmus)
-    roles = ("bearing", "rotor", "amb", "housing")
+    roles = ("bearing", "rotor", "amb", "housing", "controller")
     verb.add_argument("--as", dest="role", choices=roles, help="what it is to stand in for")
     verb.add_argument(
         "--names", type=Path, metavar="FILE", help="TOML: what it calls the variables of the contract"
@@ -123,6 +124,9 @@ def _declare_check(verb: argparse.ArgumentParser) -> None:
         default=f"{CALL_TIMEOUT:g} s",
         metavar="TIME",
         help=f"what a call of an .fmu may take (default: {CALL_TIMEOUT:g} s)",
+    )
+    verb.add_argument(
+        "--sample-time", metavar="TIME", help="of a controller (default: its FMU's fixed step, or 100 us)"
     )
 
 
@@ -135,10 +139,13 @@ def _execute_check(options: argparse.Namespace) -> int:
     names = read_names(options.names) if options.names else {}
     call_timeout = above_zero(options.call_timeout, "s", "--call-timeout")
     assert call_timeout is not None
+    given = options.sample_time
+    sample_time = above_zero(given, "s", "--sample-time") if given is not None else 0.0
+    assert sample_time is not None
     say_whose_code_runs({name: True for name in options.fmus if foreign(name)})
     failed = 0
     for name in options.fmus:
-        report = check_fmu(name, options.role, names, call_timeout)
+        report = check_fmu(name, options.role, names, call_timeout, sample_time)
         print(report.text, flush=True)
         failed += bool(report.problems)
     return FAILED if failed else 0

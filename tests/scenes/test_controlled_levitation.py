@@ -20,6 +20,7 @@ from touchdown.master.coupling.simulation import open_system, simulate
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene, read_names
+from touchdown.master.scene.scene import Scene
 
 LEVITATED = Loop(eccentricity=10e-6)
 RELEVITATED = Loop(eccentricity=2e-6, off=2e-3, on=22e-3)
@@ -146,28 +147,77 @@ def test_a_controller_that_is_not_there_is_said():
             open_system(replace(scene, control=pairs), in_process=True)
 
 
-def test_a_controller_of_others_with_the_same_law_gives_the_same_trajectory(tmp_path: Path):
-    """The example, built by pythonfmu without this project, stepped once per sample."""
-    FmuBuilder.build_FMU(ROOT / "examples" / "pid_controller.py", dest=tmp_path)
-    own = LEVITATED.scene(30e-3, 20e-6)
-    swapped = own.swap(controller=str(tmp_path / "PidController.fmu"))
-    swapped = swapped.with_names("controller", read_names(ROOT / "examples" / "pid_controller.toml"))
+@pytest.fixture(scope="module")
+def foreign(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example, built by pythonfmu without this project."""
+    folder = tmp_path_factory.mktemp("foreign")
+    FmuBuilder.build_FMU(ROOT / "examples" / "pid_controller.py", dest=folder)
+    return folder / "PidController.fmu"
+
+
+def swapped(scene: Scene, fmu: Path, names: str = "pid_controller.toml") -> Scene:
+    """With a controller of others, stepped once per sample."""
+    scene = scene.swap(controller=str(fmu))
+    scene = scene.with_names("controller", read_names(ROOT / "examples" / names))
+    return scene.set({"controller.sampled": "100 us"})
+
+
+@pytest.mark.parametrize(
+    ("macro_step", "scheme"),
+    [(20e-6, "interface"), (30e-6, "interface"), (70e-6, "interface"), (30e-6, "jacobi-lead")],
+)
+def test_a_controller_of_others_with_the_same_law_gives_the_same_trajectory(
+    foreign: Path, macro_step: float, scheme: str
+):
+    """Whether macro steps fill the sample time or not; all at once, too, where two fit into a sample."""
+    own = LEVITATED.scene(20e-3, macro_step).set({"run.scheme": scheme})
     _, expected, _ = history(own, CENTRE)
-    _, found, _ = history(swapped.set({"controller.sampled": "100 us"}), CENTRE)
+    _, found, _ = history(swapped(own, foreign), CENTRE)
     for name in CENTRE:
         assert np.abs(expected[name]).max() > 10e-6
         assert np.abs(found[name] - expected[name]).max() < 1e-12  # sums in another order
 
 
-def test_a_sample_time_that_no_macro_steps_fill_is_refused():
-    scene = LEVITATED.scene(1e-3, 30e-6).set({"controller.sampled": "100 us"})
-    with pytest.raises(TouchdownError, match="is no multiple of the macro step 3e-05 s"):
-        open_system(scene, in_process=True)
+def test_a_sample_time_that_does_not_go_with_the_actuator_is_refused(foreign: Path):
+    scene = swapped(LEVITATED.scene(1e-3, 30e-6), foreign)
+    for settings, said in (
+        ({"controller.sampled": "50 us"}, "amb.sample_time is 0.0001 s: the actuator takes the samples"),
+        ({"amb.sample_time": 0.0}, "amb.sample_time is 0 s"),
+        (
+            {"controller.sampled": "20 us", "amb.sample_time": "20 us"},
+            "shorter than the macro step 3e-05 s",
+        ),
+    ):
+        with pytest.raises(TouchdownError, match=said):
+            open_system(scene.set(settings), in_process=True)
+    with pytest.raises(TouchdownError, match=r"remove controller\.sampled|cannot save its state"):
+        history(scene.set({"run.scheme": "iterated"}), CENTRE)
+
+
+def test_one_that_samples_by_the_number_of_macro_steps_is_said_to_act_early(foreign: Path):
+    scene = swapped(LEVITATED.scene(1e-3, 20e-6), foreign).set({"controller.every": 5})
+    system = open_system(scene, in_process=True)
+    system.close()
+    assert any(
+        "acts from the end of the first on, 8e-05 s before the end of its own" in r for r in system.remarks
+    )
+
+
+def test_a_package_carries_samples_of_others(tmp_path: Path, foreign: Path):
+    """Also where macro steps do not fill the sample time."""
+    scene = swapped(LEVITATED.scene(5e-3, 30e-6), foreign)
+    write_package(scene, tmp_path / "loop.ssp")
+    again = find_scene(str(tmp_path / "loop.ssp"))
+    assert again.components["controller"].sampled == pytest.approx(1e-4, rel=1e-12)
+    _, expected, _ = history(scene, CENTRE)
+    _, found, _ = history(again, CENTRE)
+    for name in CENTRE:
+        assert np.array_equal(expected[name], found[name])
 
 
 def test_a_package_carries_the_loop(tmp_path: Path):
     """Control, events and a zero that is a time: the same motion from an SSP package, to the last bit."""
-    scene = load_scene("disk-caged-relevitated").set({"run.duration": "30 ms"})
+    scene = load_scene("disk-caged-relevitated").set({"run.duration": "25 ms"})
     scene = scene.set({"controller.event[2].time": "20 ms"})
     package = tmp_path / "loop.ssp"
     write_package(scene, package)

@@ -150,11 +150,12 @@ def _any_thread(entry: Entry) -> bool:
     return isinstance(entry, InMemory) or entry.any_thread
 
 
-def _exchanged(turn: Turn, entry: Entry) -> dict[str, int]:
+def _exchanged(turn: Turn, entry: Entry) -> dict[str, float]:
     """Fields of what a component takes and gives."""
     component = turn.component
-    fields = {
+    fields: dict[str, float] = {
         "every": turn.every,
+        "period": turn.period,
         "inputs": _address(component.inputs),
         "takes": len(component.inputs),
         "places": _address(turn.places),

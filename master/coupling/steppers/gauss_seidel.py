@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ...components.component import Component
 from ...scene.run_spec import RunSpec
 from ..layout import Scaling
+from ..loop.kernels.exchange import tick_within
 from ..system import System
 from .rates import Part, Rates
 from .stepper import Stepper
@@ -21,15 +23,35 @@ class Turn(NamedTuple):
     places: np.ndarray  # of its inputs in the signals
     every: int  # macro steps of the run that it takes in one
     cuts: tuple[Scaling | Part, ...]  # what is done to its inputs
+    period: float = 0.0  # s, of one that samples: it takes one step from each of its ticks
 
-    def take(self, signals: np.ndarray, number: int, time: float, step: float) -> None:
-        """Macro step `number` of the run, from `time` by `step` (s)."""
+    def begins(self, number: int, time: float, step: float, seen: float) -> float:
+        """When (s) its step begins that it takes in macro step `number`, from `time` by `step` (s).
+
+        Infinite: it takes none. seen: when (s) the macro step began whose samples it is given.
+        """
+        if self.period > 0.0:
+            return tick_within(seen, step, self.period)
+        return time if number % self.every == 0 else math.inf
+
+    def feed(self, signals: np.ndarray, number: int) -> None:
+        """Hand it its inputs for macro step `number` of the run."""
         self.component.inputs[:] = signals[self.places]
         for part in self.cuts:
             part.cut(self.component.inputs, number)
         self.component.push()
-        self.component.step(time, self.every * step)
-        self.component.pull()
+
+    def step(self, begin: float, step: float) -> None:
+        """Its step from `begin` (s), with macro steps of `step` (s)."""
+        self.component.step(begin, self.period or self.every * step)
+
+    def take(self, signals: np.ndarray, number: int, time: float, step: float) -> None:
+        """Macro step `number` of the run, from `time` by `step` (s), as far as it takes one."""
+        begin = self.begins(number, time, step, time)
+        if begin < math.inf:
+            self.feed(signals, number)
+            self.step(begin, step)
+            self.component.pull()
 
 
 class GaussSeidel(Stepper):
@@ -48,10 +70,10 @@ class GaussSeidel(Stepper):
     def _turn(self, name: str, rates: Rates) -> Turn:
         system, intake = self.system, self.system.intakes[name]
         cuts = (*intake.scalings, *rates.parts(name))
-        return Turn(system.components[name], intake.places, system.every[name], cuts)
+        period = system.periods.get(name, 0.0)
+        return Turn(system.components[name], intake.places, system.every[name], cuts, period)
 
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
         for turn in self.turns:
-            if number % turn.every == 0:
-                turn.take(signals, number, time, step)
+            turn.take(signals, number, time, step)

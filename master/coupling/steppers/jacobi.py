@@ -6,6 +6,8 @@ energy, unless the bearings lead: then they hand over the load of the step to co
 
 from __future__ import annotations
 
+import math
+
 from ...scene.run_spec import RunSpec
 from ..system import System
 from .gauss_seidel import GaussSeidel
@@ -29,16 +31,14 @@ class Jacobi(GaussSeidel):
     def step(self, number: int, time: float, step: float) -> None:
         signals = self.system.signals
         self.expect(step)
-        due = [turn for turn in self.turns if number % turn.every == 0]
-        for component, places, _, cuts in due:
-            component.inputs[:] = signals[places]
-            for part in cuts:
-                part.cut(component.inputs, number)
-            component.push()
-        for turn in due:
-            turn.component.step(time, turn.every * step)
-        for turn in self.turns:
-            if (number + 1) % turn.every == 0:  # until its own step ends, what it gave before holds
+        begins = [(turn, turn.begins(number, time, step, time - step)) for turn in self.turns]
+        due = [(turn, begin) for turn, begin in begins if begin < math.inf]
+        for turn, _ in due:
+            turn.feed(signals, number)
+        for turn, begin in due:
+            turn.step(begin, step)
+        for turn, begin in begins:  # until its own step ends, what it gave before holds
+            if begin < math.inf if turn.period else (number + 1) % turn.every == 0:
                 turn.component.pull()
 
     def _shift_loads(self, later: float) -> None:

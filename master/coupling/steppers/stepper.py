@@ -72,6 +72,8 @@ def require_states(system: System, scheme: str) -> None:
             raise TouchdownError(
                 f"scheme {scheme} steps all components alike; remove {name}.every = {system.every[name]}"
             )
+        if name in system.periods:
+            raise TouchdownError(f"scheme {scheme} steps all components alike; remove {name}.sampled")
 
 
 def require_any_step(system: System, scheme: str) -> None:

@@ -269,7 +269,8 @@ def _component(package: Package, name: str, settings: Mapping[str, object]) -> C
     return ComponentSpec(
         str(package.flat.parts[name].path.absolute()),
         given,
-        every=_every(package, name),
+        every=1 if name in said.sampled else _every(package, name),
+        sampled=said.sampled.get(name, 0.0),
         names=said.names.get(name, {}),
         own=tuple(changed for changed in said.changed.get(name, ()) if changed in given),
     )

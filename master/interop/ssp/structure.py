@@ -179,6 +179,7 @@ class Structure:
     macro_step: float | None  # s
     scene: Mapping[str, str]  # what a package of this project says beyond the structure
     names: Mapping[str, Mapping[str, str]]  # by component: variables of the contract, and its own
+    sampled: Mapping[str, float]  # s, by component: from one of its steps to the next
     changed: Mapping[str, Sequence[str]]  # by component: what the user set beside the scene
     bonds: Sequence[Mapping[str, str]]  # that are declared: the inputs that take force, position, velocity
     gaps: Sequence[Gap]
@@ -208,6 +209,7 @@ def read_structure(folder: Path, where: str) -> Structure:
         macro_step=macro_step or _masters_step(system, where),
         scene=dict(note.attrib),
         names=_names(note, where),
+        sampled=_sampled(note, where),
         changed=_changed(note, where),
         bonds=_bonds(note, where),
         gaps=_gaps(note, where),
@@ -371,6 +373,13 @@ def _names(note: Element, where: str) -> dict[str, dict[str, str]]:
         component, here, own = (xml.required(name, key, where) for key in ("component", "name", "own"))
         names.setdefault(component, {})[here] = own
     return names
+
+
+def _sampled(note: Element, where: str) -> dict[str, float]:
+    return {
+        xml.required(element, "component", where): xml.number(element, "period", where)
+        for element in xml.children(note, "touchdown:Sampled")
+    }
 
 
 def _changed(note: Element, where: str) -> dict[str, list[str]]:

@@ -87,6 +87,8 @@ def write_scene(
     for name, spec in scene.components.items():
         for here, own in spec.names.items():
             SubElement(note, "touchdown:Name", {"component": there(name), "name": here, "own": own})
+        if spec.sampled:
+            SubElement(note, "touchdown:Sampled", {"component": there(name), "period": repr(spec.sampled)})
         for changed in spec.own:
             SubElement(note, "touchdown:Changed", {"component": there(name), "name": changed})
     for gap in scene.gaps:
@@ -188,8 +190,8 @@ def structure(content: Content) -> Element:
     elements = SubElement(whole, "ssd:Elements")
     for name in content.sources:
         element = _component(elements, content, name, units)
-        if system.every[name] > 1:
-            write_hint(element, system.every[name] * scene.run.macro_step)
+        if system.every[name] > 1 or name in system.periods:
+            write_hint(element, scene.components[name].step(scene.run.macro_step))
     _connections(whole, content)
     write_master(whole, scene.run.macro_step)
     declared = system.bonds[: len(scene.bond)]  # they come before those that units tell

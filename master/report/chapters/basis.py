@@ -313,7 +313,12 @@ def command_of(scene: Scene) -> str | None:
     for key in scene.own:
         words += ["--set", f"run.{key}={_value(scene.resolved()['run'], key)}"]
     for component, spec in scene.components.items():
-        for key, value in (("every", spec.every), ("isolate", spec.isolate), ("native", spec.native)):
+        for key, value in (
+            ("every", spec.every),
+            ("sampled", spec.sampled),
+            ("isolate", spec.isolate),
+            ("native", spec.native),
+        ):
             if value != getattr(ComponentSpec, key):  # said again where the scene's file says it, too
                 words += ["--set", f"{component}.{key}={str(value).lower()}"]
         for variable, value in spec.set_beside.items():

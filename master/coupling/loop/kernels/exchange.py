@@ -13,6 +13,15 @@ from .tables import NOT_FINITE
 
 # pyright: basic
 
+ROUNDING = 1e-12  # s; a tick so near the end of a macro step lies at the beginning of the next
+
+
+@kernel
+def tick_within(time: float, step: float, period: float) -> float:
+    """The first multiple of `period` (s) from `time` (s) on, within `step` (s); infinite: there is none."""
+    tick = math.ceil((time - ROUNDING) / period) * period
+    return tick if tick < time + step - ROUNDING else math.inf
+
 
 @kernel
 def scale(inputs: np.ndarray, factors: np.ndarray, offsets: np.ndarray) -> None:

@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from .....modelkit.kernel.memory import call_exchange, float64_at, int32_at, int64_at
 from . import kernel, kernel_without_gil
 from .accounts import book, worst_of
 from .board import share
-from .exchange import answer, met, pull, push, step
+from .exchange import answer, met, pull, push, step, tick_within
 from .tables import FETCH, GET, INT, LONG, SET, STEP, TRUTH
 
 
@@ -26,7 +28,8 @@ def exchange(plan, turns, parts, signals, number, time):
     """One step of `plan.span` (s) from `time` (s) by all components; whether one failed.
 
     Group by group: inputs for all of it, then steps, then outputs of all. At once, what a component gave
-    before holds until its own step ends.
+    before holds until its own step ends. One that samples takes a step where its tick was sampled: in this
+    macro step or, at once, in the one before.
     """
     ends = number + 1 if plan.at_once else number
     first = 0
@@ -34,10 +37,14 @@ def exchange(plan, turns, parts, signals, number, time):
         end, due = turns[first].end, 0
         for i in range(first, end):
             turn = turns[i]
+            turn.time, turn.span = time, turn.every * plan.span
             turn.due = number % turn.every == 0
+            if turn.period > 0.0:
+                seen = time - plan.span if plan.at_once else time
+                turn.time, turn.span = tick_within(seen, plan.span, turn.period), turn.period
+                turn.due = turn.time < math.inf
             if turn.due:
                 due += 1
-                turn.time, turn.span = time, turn.every * plan.span
                 status = push(turn, parts, signals, number)
                 if status != 0:
                     return note(plan, i, SET, status)
@@ -46,7 +53,8 @@ def exchange(plan, turns, parts, signals, number, time):
         if failed >= 0:
             return note(plan, failed, STEP, turns[failed].status)
         for i in range(first, end):
-            if ends % turns[i].every == 0:
+            gives = turns[i].due if turns[i].period > 0.0 else ends % turns[i].every == 0
+            if gives:
                 status = pull(turns[i])
                 if status != 0:
                     return note(plan, i, GET, status)

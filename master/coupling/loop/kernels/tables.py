@@ -13,6 +13,7 @@ def _table(*fields: str) -> np.dtype:
 TURN = np.dtype(
     [
         ("every", "i8"),  # macro steps of the run that the component takes in one
+        ("period", "f8"),  # s, of one that samples: it takes one step from each of its ticks; 0: none
         ("inputs", "i8"),  # address of its inputs
         ("takes", "i8"),  # how many there are
         ("places", "i8"),  # address of their places in the signals

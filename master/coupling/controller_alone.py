@@ -1,0 +1,62 @@
+"""A controller by itself, told one position after another, without a rotor: to be pressed, or measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import count, takewhile
+
+import numpy as np
+
+from ..common.errors import TouchdownError
+from ..components.component import Component
+from .connections import AXIS, SET_POINTS, TOLD, TOLD_OF_ALL
+
+
+def axes_of(component: Component) -> list[int]:
+    """Its axes, counted from 1: those that have a position."""
+    names = component.variables
+    return list(takewhile(lambda k: AXIS.format(k, TOLD[0]) in names, count(1)))
+
+
+def set_point(component: Component, axis: int) -> str:
+    """The set point of an axis that it gives. Raises TouchdownError where it gives none."""
+    names = [AXIS.format(axis, kind) for kind in SET_POINTS]
+    for name in names:
+        if name in component.variables:
+            return name
+    raise TouchdownError(
+        f"{component.origin} has no variable {names[0]} (output in A) or {names[1]} (output in N); "
+        "name what it calls it in a file of names"
+    )
+
+
+class ControllerAlone:
+    """Axes of a controller that was not initialised, from its start on."""
+
+    def __init__(self, component: Component, axes: Sequence[int], period: float) -> None:
+        """period (s): from sample to sample. Raises TouchdownError where it lacks what a controller has."""
+        self._component, self._period = component, period
+        self._calls = 0
+        there = component.variables
+        self._sensed = [AXIS.format(k, TOLD[0]) for k in axes]
+        given = [*self._sensed, *TOLD_OF_ALL]
+        self._fed = [name for name in given if name in there]
+        component.bind(self._fed, np.zeros(0), [])
+        self._read = component.reader([set_point(component, k) for k in axes])
+        component.enter(0.0)
+        self._feed(np.zeros(len(axes)), 0)
+        component.exit()
+
+    def sample(self, positions: np.ndarray, parts: int = 1) -> np.ndarray:
+        """Set points (n,), A or N, after a call with positions (n,), m; `parts` calls make a period."""
+        step = self._period / parts
+        self._feed(positions, self._calls // parts + 1)
+        self._component.step(self._calls * step, step)
+        self._calls += 1
+        return np.array(self._read())
+
+    def _feed(self, positions: np.ndarray, tick: int) -> None:
+        values = dict(zip(self._sensed, map(float, positions), strict=True))
+        values |= dict(zip(TOLD_OF_ALL, (float(tick), self._period), strict=True))
+        self._component.inputs[:] = [values[name] for name in self._fed]
+        self._component.push()

@@ -1,0 +1,117 @@
+"""Controllers of others, good and bad: what `touchdown check --as controller` says of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+from places import ROOT
+from pythonfmu import FmuBuilder
+
+from touchdown.master.cli import main
+from touchdown.master.interop.check import check_fmu
+from touchdown.master.interop.contract import Report
+from touchdown.master.scene.file import read_names
+
+SCRIPT = ROOT / "examples" / "pid_controller.py"
+NAMES = ROOT / "examples" / "pid_controller.toml"
+PERIOD = 1e-4  # s
+ANSWER = "        self.cur_a = self.answer"
+
+Built = Callable[..., Path]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """The example with some of its text replaced, as an FMU."""
+
+    def build(name: str, replaced: Mapping[str, str]) -> Path:
+        folder = tmp_path_factory.mktemp(name.lower())
+        text = SCRIPT.read_text(encoding="utf-8").replace("class PidController", f"class {name}")
+        for before, after in replaced.items():
+            assert before in text
+            text = text.replace(before, after)
+        (folder / f"{name.lower()}.py").write_text(text, encoding="utf-8")
+        FmuBuilder.build_FMU(folder / f"{name.lower()}.py", dest=folder)
+        return folder / f"{name}.fmu"
+
+    return build
+
+
+def checked(path: Path) -> Report:
+    return check_fmu(str(path), "controller", read_names(NAMES))
+
+
+def test_the_example_passes(built: Built, capsys: pytest.CaptureFixture[str]):
+    path = built("GoodController", {})
+    assert main(["check", str(path), "--as", "controller", "--names", str(NAMES)]) == 0
+    said = capsys.readouterr().out
+    assert "axis 2: a rotor off the centre is pulled back, at 1.06e+04 A/m" in said
+    assert "it answers in the call of the sample, which makes 1 sample of delay in the loop" in said
+    assert 'it answers at every call: step it once a sample, sampled = "100 us" in its table' in said
+    assert "it can stand in for a controller" in said
+
+
+def test_a_sign_a_silence_and_axes_the_wrong_way_round_are_problems(built: Built):
+    for name, replaced, said in (
+        (
+            "TurnedController",
+            {"-self.pos_b": "self.pos_b"},
+            "axis 2 is pushed further out: axis\\[2\\].set",
+        ),
+        ("SilentController", {"-self.pos_b": "0.0"}, "axis 2 does not change axis\\[2\\].set within 10"),
+        (
+            "CrossedController",
+            {"-self.pos_a": "-self.pos_X", "-self.pos_b": "-self.pos_a", "pos_X": "pos_b"},
+            "does not change axis\\[1\\].set, but that of axis 2; name its variables the other way round",
+        ),
+    ):
+        with pytest.raises(AssertionError, match=said):
+            assert not checked(built(name, replaced)).problems
+
+
+def test_millimetres_are_said(built: Built):
+    path = built("MetricController", {"-self.pos_a": "-1e-3 * self.pos_a"})
+    assert "warning: 10.6 A/m on axis 1; controllers have 100 to 1e+07 A/m" in checked(path).text
+
+
+def test_its_delay_is_said(built: Built):
+    late = {ANSWER: "        self.cur_a, self.cur_b, old = *self.old, None\n        old_a = self.answer"}
+    late |= {
+        "self.cur_b = self.answer": "old_b = self.answer",
+        "return True": "self.old = old_a, old_b\n        return True",
+    }
+    late |= {"self.memory = None": "self.old = 0.0, 0.0\n        self.memory = None"}
+    assert (
+        "it answers 1 samples after it, which makes 2 samples of delay"
+        in checked(built("LateController", late)).text
+    )
+
+
+def test_one_that_skips_samples_by_rounding_is_a_problem(built: Built):
+    """It counts periods by the time, without a margin."""
+    own = "        if int((current_time + step_size) / 1e-4) <= self.seen:\n            return True\n"
+    own += "        self.seen = int((current_time + step_size) / 1e-4)\n"
+    skipping = {ANSWER: own + ANSWER, "self.memory = None": "self.seen = 0\n        self.memory = None"}
+    seen = {math.floor((k * PERIOD + PERIOD) / 1e-4) for k in range(1000)} - {0}
+    assert len(seen) < 990
+    (problem,) = checked(built("SkippingController", skipping)).problems
+    assert problem.startswith(f"it takes {len(seen)} of 1000 samples, called once every 100 us")
+
+
+def test_one_with_its_own_clock_may_be_stepped_at_every_macro_step(built: Built):
+    own = (
+        "        if int((current_time + step_size) / 1e-4 + 1e-6) <= self.seen:\n            return True\n"
+    )
+    own += "        self.seen = int((current_time + step_size) / 1e-4 + 1e-6)\n"
+    clocked = {ANSWER: own + ANSWER, "self.memory = None": "self.seen = 0\n        self.memory = None"}
+    report = checked(built("ClockedController", clocked))
+    assert "called more often, it uses each sample once: every macro step will do" in report.text
+    assert not report.problems
+
+
+def test_the_projects_own_passes_and_what_is_none_is_said():
+    assert check_fmu("amb_controller", "controller").problems == []
+    assert "axis[1].sensed is missing (input in m)" in check_fmu("bushing", "controller").problems[0]
