@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import block_diag, expm
@@ -18,6 +19,7 @@ from ...common.errors import TouchdownError
 from ...coupling.simulation import opened
 from ...coupling.system import System
 from ...scene.scene import Scene
+from .measured import MeasuredLaw, measure
 from .plant import FreeRotor, free_rotor
 
 ACTUATOR = "amb_actuator"  # models, by their FMUs' names
@@ -70,14 +72,16 @@ class Controlled:
 
 
 class Sampled(Loops):
-    """Actuators with controllers of the project's own."""
+    """Actuators with controllers: of the project's own, whose law is known, or of others, measured."""
 
     def __init__(self, scene: Scene) -> None:
         with opened(scene, in_process=True, listening=False) as system:
             system.initialise()
             self.bearings = tuple(_controlled(scene, system))
             self.period = _period(scene, system, self.bearings)
-            self.laws = _laws(system, self.bearings, self.period)
+            known = all(scene.components[b.controller].fmu == CONTROLLER for b in self.bearings)
+            laws = _laws(system, self.bearings, self.period) if known else None
+        self.laws: Laws = laws or measured_laws(scene, self.bearings, self.period)
         names = [b.name for b in self.bearings]
         self.rotor = free_rotor(scene, names, [b.by_sensor for b in self.bearings])
         self.names = tuple(f"{b.name}.axis[{k}]" for b in self.bearings for k in (1, 2))
@@ -144,7 +148,7 @@ class Sampled(Loops):
         n, m, k = len(a), len(self.names), len(law.A)
         delays = self.laws.delay
         size = n + k + m * delays
-        closed = np.zeros((size, size))
+        closed = np.zeros((size, size), law.A.dtype)
         closed[:n, :n] = a
         closed[:n, n + k : n + k + m] = b  # the oldest set points act
         closed[n : n + k, :n], closed[n : n + k, n : n + k] = -law.B @ self._sees, law.A
@@ -156,8 +160,28 @@ class Sampled(Loops):
         return np.log(found[np.abs(found) > 1e-9]) / self.period
 
 
+class Laws(Protocol):
+    """What the controllers make of the axes' samples."""
+
+    @property
+    def delay(self) -> int:
+        """Samples from one to the set points that act by it, but for what `whole` itself delays."""
+        ...
+
+    @property
+    def whole(self) -> Whole:
+        """From the axes' measurements to their control currents."""
+        ...
+
+    def response(self, z: complex) -> np.ndarray:
+        """C(z) of the axes (axes, axes), delays beyond the first included."""
+        ...
+
+
 @dataclass(frozen=True)
-class _Whole:
+class Whole:
+    """x+ = A x + B m, i = C x + D m."""
+
     A: np.ndarray
     B: np.ndarray  # (states, axes)
     C: np.ndarray  # (axes, states)
@@ -165,7 +189,7 @@ class _Whole:
 
 
 @dataclass(frozen=True)
-class _Laws:
+class KnownLaws:
     """All channels, and how axes are mixed into them."""
 
     channels: tuple[LinearLaw, ...]  # in the order of the axes
@@ -173,18 +197,46 @@ class _Laws:
     delay: int  # samples
 
     @property
-    def whole(self) -> _Whole:
-        """From the axes' measurements to their control currents."""
+    def whole(self) -> Whole:
         back = np.linalg.inv(self.mixed)
         a = np.asarray(block_diag(*(one.A for one in self.channels)))
         b = np.asarray(block_diag(*(one.B[:, None] for one in self.channels))) @ self.mixed
         c = back @ np.asarray(block_diag(*(one.C[None, :] for one in self.channels)))
-        return _Whole(a, b, c, back @ np.diag([one.D for one in self.channels]) @ self.mixed)
+        return Whole(a, b, c, back @ np.diag([one.D for one in self.channels]) @ self.mixed)
 
     def response(self, z: complex) -> np.ndarray:
-        """C(z) of the axes, delays beyond the first included."""
         own = np.diag([one.response(z) for one in self.channels])
         return np.linalg.inv(self.mixed) @ own @ self.mixed / z ** (self.delay - 1)
+
+
+@dataclass(frozen=True)
+class MeasuredLaws:
+    """Of controllers of which only the answers are known; their delays are within what was measured."""
+
+    laws: tuple[MeasuredLaw, ...]  # by controller
+    order: np.ndarray  # of the axes, among all that the controllers have
+    delay: int = 1  # samples; an answer acts from the next tick on
+
+    @property
+    def whole(self) -> Whole:
+        a, b, c, d = (np.asarray(block_diag(*(getattr(law, part) for law in self.laws))) for part in "ABCD")
+        return Whole(a, b[:, self.order], c[self.order], d[np.ix_(self.order, self.order)])
+
+    def response(self, z: complex) -> np.ndarray:
+        own = np.asarray(block_diag(*(law.response(z) for law in self.laws)))
+        return own[np.ix_(self.order, self.order)]
+
+
+def measured_laws(scene: Scene, bearings: tuple[Controlled, ...], period: float) -> MeasuredLaws:
+    """Of the controllers, in a system that has not run; for the axes in the bearings' order."""
+    axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
+    names = list(dict.fromkeys(name for name, _ in axes))
+    controlled = sorted(axes, key=lambda axis: (names.index(axis[0]), axis[1]))  # as the laws have them
+    with opened(scene, in_process=True, listening=False) as system:
+        laws = tuple(
+            measure(system.components[name], sum(one == name for one, _ in axes), period) for name in names
+        )
+    return MeasuredLaws(laws, np.array([controlled.index(axis) for axis in axes]))
 
 
 def _controlled(scene: Scene, system: System) -> list[Controlled]:
@@ -192,12 +244,11 @@ def _controlled(scene: Scene, system: System) -> list[Controlled]:
     found: list[Controlled] = []
     used: dict[str, int] = {}
     for controller, name in scene.control:
-        for component, made in ((name, ACTUATOR), (controller, CONTROLLER)):
-            if scene.components[component].fmu != made:
-                raise TouchdownError(
-                    f"{component} of scene {scene.name} is {scene.components[component].fmu}, whose linear "
-                    f"equations are not known; they are of {made}"
-                )
+        if scene.components[name].fmu != ACTUATOR:
+            raise TouchdownError(
+                f"{name} of scene {scene.name} is {scene.components[name].fmu}, whose linear equations are "
+                f"not known; they are of {ACTUATOR}"
+            )
 
         def value(variable: str, name: str = name) -> float:
             return system.value(f"{name}.{variable}")
@@ -231,7 +282,7 @@ def _period(scene: Scene, system: System, bearings: tuple[Controlled, ...]) -> f
     return periods.pop()
 
 
-def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _Laws:
+def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> KnownLaws:
     """Of the controllers, for the axes in the bearings' order."""
     axes = [(b.controller, b.first + k) for b in bearings for k in range(2)]
     channels, mixed = [], np.eye(len(axes))
@@ -248,7 +299,7 @@ def _laws(system: System, bearings: tuple[Controlled, ...], period: float) -> _L
             mixed[row, axes.index(partner)] = 0.5
     if len(delays) > 1:
         raise TouchdownError("controllers of different delay are not looked at together; set their delay")
-    return _Laws(tuple(channels), mixed, delays.pop())
+    return KnownLaws(tuple(channels), mixed, delays.pop())
 
 
 class Continuous(Loops):

@@ -11,7 +11,7 @@ import numpy as np
 from ...results.run import make_writable
 from ...scene.scene import Scene
 from .figure import draw
-from .loops import Controlled, Sampled
+from .loops import Controlled, MeasuredLaws, Sampled
 from .margins import zone
 from .over_speed import Found, loops_in
 
@@ -34,9 +34,7 @@ def lines(found: Found) -> Iterator[str]:
     yield found.scene.title
     loops, own = found.loops, found.own
     if isinstance(loops, Sampled):
-        delay = loops.laws.delay
-        later = "a sample" if delay == 1 else f"{delay} samples"
-        yield f"sampled every {1e6 * loops.period:g} us; set points act {later} later"
+        yield f"sampled every {1e6 * loops.period:g} us; {_law(loops)}"
         for bearing in loops.bearings:
             yield _magnet(bearing, found.clearance)
     yield f"\nat {RPM * own.speed:g} rpm, all other loops closed:"
@@ -58,6 +56,20 @@ def lines(found: Found) -> Iterator[str]:
     yield f"\nslowest poles at {RPM * own.speed:g} rpm:"
     yield "    real 1/s         Hz   damping ratio"
     yield from _poles(own.poles)
+
+
+def _law(loops: Sampled) -> str:
+    """When set points act, or how well the law is known that was measured."""
+    laws = loops.laws
+    if isinstance(laws, MeasuredLaws):
+        misfit = max(law.misfit for law in laws.laws)
+        states = sum(len(law.A) for law in laws.laws)
+        return (
+            f"C(z) measured, {states} states, which miss the lines by {misfit:.1g} of the largest; an answer "
+            "acts at the next sample"
+        )
+    later = "a sample" if laws.delay == 1 else f"{laws.delay} samples"
+    return f"set points act {later} later"
 
 
 def _magnet(bearing: Controlled, clearance: float) -> str:

@@ -25,14 +25,16 @@ from levitation import (
     K,
     Loop,
 )  # fmt: skip
+from places import ROOT
+from pythonfmu import FmuBuilder
 from scipy.linalg import expm
 from systems import history
 
 from touchdown.master.cli import main
 from touchdown.master.common.errors import TouchdownError
-from touchdown.master.scene.file import load_scene
+from touchdown.master.scene.file import load_scene, read_names
 from touchdown.master.scene.scene import Scene
-from touchdown.master.studies.loop.loops import Sampled, loops_of
+from touchdown.master.studies.loop.loops import Sampled, loops_of, measured_laws
 from touchdown.master.studies.loop.over_speed import loops_in
 
 DISK = "disk-caged-relevitated"
@@ -165,3 +167,47 @@ def test_scenes_without_a_known_loop_are_refused():
         loops_of(scene.set({"amb.sample_time": 0.0}))
     with pytest.raises(TouchdownError, match="has no magnetic bearing"):
         loops_of(replace(scene, control=()))
+
+
+def test_a_controller_of_others_is_measured(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """The example of a user's own controller has the law of the project's, found from its answers alone."""
+    FmuBuilder.build_FMU(ROOT / "examples" / "pid_controller.py", dest=tmp_path)
+    fmu, names = tmp_path / "PidController.fmu", ROOT / "examples" / "pid_controller.toml"
+    words = ["loop", DISK, "--swap", f"controller={fmu}", "--names", f"controller={names}"]
+    words += ["--set", "controller.sampled=1e-4"]
+    assert main([*words, "--speeds", "9000 rpm", "-o", str(tmp_path / "loop")]) == 0
+    assert "C(z) measured, 4 states, which miss the lines by" in capsys.readouterr().out
+    scene = load_scene(DISK)
+    swapped = scene.swap(controller=str(fmu)).with_names("controller", read_names(names))
+    found, known = loops_of(swapped.set({"controller.sampled": "100 us"})), loops_of(scene)
+    for hertz in (1.0, 20.0, 55.6, 400.0, 4500.0):
+        omega = 2.0 * math.pi * hertz
+        assert found.sensitivity(omega, 0.0) == pytest.approx(
+            known.sensitivity(omega, 0.0), rel=1e-9, abs=1e-9
+        )
+    expected = np.sort_complex(known.poles(0.0))
+    slow = expected[expected.real > -1000.0]
+    near = np.sort_complex(found.poles(0.0))
+    assert np.sort_complex(near[near.real > -1000.0]) == pytest.approx(slow, rel=1e-6)
+
+
+def test_a_measured_law_is_that_of_the_equations():
+    """Translation and tilt of rotor I with gains of their own, a notch, and a sample more of delay."""
+    apart = load_scene("rotor1-relevitated")
+    kept = {k: v for k, v in apart.components.items() if k != "controller_B"}
+    both = replace(
+        apart, components=kept, control=(("controller_A", "amb_A"), ("controller_A", "amb_B"))
+    ).set({"controller_A.structure": "translation_tilt", "controller_A.delay": 1})
+    notch = {"b0": 0.9, "b1": -1.5, "b2": 0.85, "a1": -1.4, "a2": 0.7}
+    for channel in (3, 4):
+        own = f"controller_A.channel[{channel}]"
+        both = both.set({f"{own}.derivative": 1.7})
+        both = both.set({f"{own}.section[1].{name}": value for name, value in notch.items()})
+    loops = loops_of(both)
+    assert isinstance(loops, Sampled)
+    measured = measured_laws(both, loops.bearings, loops.period)
+    for hertz in (1.0, 37.0, 555.0, 4900.0):
+        z = complex(np.exp(2j * math.pi * hertz * loops.period))
+        expected = loops.laws.response(z)
+        assert np.abs(expected[0, 2]) > 0.01 * np.abs(expected).max()  # both ends answer to one
+        assert np.abs(measured.response(z) - expected).max() < 1e-8 * np.abs(expected).max()
