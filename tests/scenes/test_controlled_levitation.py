@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import shutil
+import subprocess
+import sys
+import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
@@ -17,6 +21,7 @@ from systems import history
 
 from touchdown.master.common.errors import TouchdownError
 from touchdown.master.coupling.simulation import open_system, simulate
+from touchdown.master.interop.check import check_fmu
 from touchdown.master.interop.scenes import find_scene
 from touchdown.master.interop.ssp.write import write_package
 from touchdown.master.scene.file import load_scene, read_names
@@ -155,6 +160,22 @@ def foreign(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "PidController.fmu"
 
 
+@pytest.fixture(scope="module")
+def foreign_in_c(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example in C, built as its first comment says."""
+    compiler = shutil.which("cc")
+    if compiler is None or not sys.platform.startswith("linux"):
+        pytest.skip("there is no C compiler (cc), or no Linux")
+    folder, name = tmp_path_factory.mktemp("foreign_in_c"), "pid_controller_c.so"
+    source = ROOT / "examples" / "pid_controller.c"
+    options = ["-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"]
+    subprocess.run([compiler, *options, "-o", folder / name, source, "-lm"], check=True)
+    with zipfile.ZipFile(folder / "PidControllerC.fmu", "w") as archive:
+        archive.write(source.with_suffix(".xml"), "modelDescription.xml")
+        archive.write(folder / name, f"binaries/linux64/{name}")
+    return folder / "PidControllerC.fmu"
+
+
 def swapped(scene: Scene, fmu: Path, names: str = "pid_controller.toml") -> Scene:
     """With a controller of others, stepped once per sample."""
     scene = scene.swap(controller=str(fmu))
@@ -176,6 +197,21 @@ def test_a_controller_of_others_with_the_same_law_gives_the_same_trajectory(
     for name in CENTRE:
         assert np.abs(expected[name]).max() > 10e-6
         assert np.abs(found[name] - expected[name]).max() < 1e-12  # sums in another order
+
+
+def test_one_in_c_gives_the_same_trajectory_and_passes_its_check(foreign_in_c: Path):
+    report = check_fmu(
+        str(foreign_in_c), "controller", read_names(ROOT / "examples" / "pid_controller.toml")
+    )
+    assert not report.problems
+    assert "which makes 1 sample of delay in the loop" in report.text
+    for macro_step in (20e-6, 30e-6):
+        own = LEVITATED.scene(20e-3, macro_step)
+        _, expected, _ = history(own, CENTRE)
+        _, found, _ = history(swapped(own, foreign_in_c), CENTRE)
+        for name in CENTRE:
+            assert np.abs(expected[name]).max() > 10e-6
+            assert np.abs(found[name] - expected[name]).max() < 1e-12  # sums in another order
 
 
 def test_a_sample_time_that_does_not_go_with_the_actuator_is_refused(foreign: Path):

@@ -65,8 +65,8 @@ def _law(loops: Sampled) -> str:
         misfit = max(law.misfit for law in laws.laws)
         states = sum(len(law.A) for law in laws.laws)
         return (
-            f"C(z) measured, {states} states, which miss the lines by {misfit:.1g} of the largest; an answer "
-            "acts at the next sample"
+            f"C(z) measured, {states} states, which miss the lines by {misfit:.1g} of the largest; an "
+            "answer acts at the next sample"
         )
     later = "a sample" if laws.delay == 1 else f"{laws.delay} samples"
     return f"set points act {later} later"
