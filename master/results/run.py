@@ -23,7 +23,7 @@ from .folder import TABLE_FILE, ResultsFolder, claimed, write_ending
 from .gaps import closed
 from .recording import Recording, write_csv
 from .result import RECORDING, Result, Scratch
-from .summary import summarise
+from .summary import CENTRIFUGAL, summarise
 from .until import UntilSettled, unsettled
 from .whirl.evidence import first_contact
 
@@ -69,6 +69,7 @@ def run_scene(
                 *_early(summary),
                 *unsettled(scene, summary),
                 *closed(scene, summary),
+                *_fast_balls(summary),
             ]
             warnings += _warnings(outcome)
             with _writing(folder, outcome.ended is not Ended.STOPPED):
@@ -153,6 +154,24 @@ def _early(summary: Mapping[str, object]) -> list[str]:
         f"a touchdown bearing was touched {-1e3 * earliest:.3g} ms before the shutdown: the magnetic "
         "bearings do not hold the rotor clear of it; look at its weight, their stiffness and the clearance"
     ]
+
+
+FAST_BALLS = 0.05  # centrifugal force of a ball over its largest load, from which on contact angles are off
+
+
+def _fast_balls(summary: Mapping[str, object]) -> list[str]:
+    """That balls without centrifugal force orbit too fast for their contact angles to be right."""
+    told: list[str] = []
+    for name, share in summary.items():
+        if not name.startswith(CENTRIFUGAL) or not isinstance(share, float) or share <= FAST_BALLS:
+            continue
+        whose = name.removeprefix(CENTRIFUGAL).removeprefix("_")
+        told.append(
+            f"{whose or 'the bearing'}: a ball's centrifugal force is {100.0 * share:.3g} % of the largest "
+            f"load on one, and left out; above {100.0 * FAST_BALLS:g} % contact angles and loads are off "
+            "by some per cent"
+        )
+    return told
 
 
 def _warnings(outcome: Outcome) -> list[str]:

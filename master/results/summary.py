@@ -135,6 +135,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
         own = _strain_figures(Finished(scene, system, recording), a) | mount_figures(
             system, a, outcome.zero
         )
+        own |= _angular_figures(system, a)
         figures |= {f"{key}{tail}": value for key, value in own.items()}
     figures |= requirement_figures(scene.requirements, figures)
     figures |= stress_figures(system, outcome) | stresses_at(latest(overs), system, recording)
@@ -143,6 +144,7 @@ def summarise(scene: Scene, system: Readable, outcome: Outcome, recording: Recor
     return {key: _finite(value) for key, value in figures.items()}
 
 
+CENTRIFUGAL = "ball_centrifugal_share"  # a figure's name; behind it, of several bearings, which
 FACES = (  # of a shoulder's landing along the shaft
     Figure("face_landing_time_s", "shoulder.first_time", from_zero=True),
     Figure("face_landing_speed_m_s", "shoulder.first_speed"),
@@ -163,6 +165,14 @@ def _face_figures(system: Readable, a: Attachment, outcome: Outcome) -> dict[str
         value = system.value(f"{a.bearing}.{figure.variable}")
         found[figure.key] = value - (outcome.zero if figure.from_zero else 0.0) if landed else None
     return found
+
+
+def _angular_figures(system: Readable, a: Attachment) -> dict[str, object]:
+    """Of balls with a contact angle, whose centrifugal force is left out: its share of what they bear."""
+    share, angle = f"{a.bearing}.along.centrifugal", f"{a.bearing}.balls.contact_angle"
+    if share not in system or angle not in system or system.value(angle) == 0.0:
+        return {}
+    return {CENTRIFUGAL: system.value(share)}
 
 
 def _finite(figure: object) -> object:
